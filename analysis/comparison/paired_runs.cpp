@@ -54,11 +54,11 @@ MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
   }
   for (const double d : deviations) result.max_deviation = std::max(result.max_deviation, d);
   result.rms_deviation = root_mean_square(deviations);
-  result.run_by_run = result.outside == 0                              ? Judgement::equal
-                      : result.got_worse > 0 && result.got_better == 0 ? Judgement::worse
-                      : result.got_worse > 0                           ? Judgement::undecided
-                      : result.got_better == result.outside            ? Judgement::better
-                                                                       : Judgement::changed;
+  result.run_by_run = result.outside == 0                             ? Judgement::equal
+                      : result.got_worse == result.outside            ? Judgement::worse
+                      : result.got_better == result.outside           ? Judgement::better
+                      : result.got_worse > 0 || result.got_better > 0 ? Judgement::undecided
+                                                                      : Judgement::changed;
   return result;
 }
 

@@ -34,7 +34,8 @@ struct MeasureComparison {
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
   std::optional<std::size_t> first_outside = {};  // a run
   // Run by run: better or worse where all runs outside went that way, or the paired tests show that it
-  // prevails; undecided where runs went both ways and no test shows which.
+  // prevails; else undecided. Runs outside with another outcome (see is_outcome()) or a NaN went no way, so
+  // that the few which remain beside many of them decide nothing. Changed where no run went a way.
   Judgement run_by_run = Judgement::equal;
 };
 

@@ -12,6 +12,7 @@
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/perceived_force_measures.h"
 #include "analysis/measures/settled_contact_measures.h"
+#include "analysis/measures/surface_side.h"
 #include "analysis/measures/tool_measures.h"
 
 namespace remote_touch {
@@ -40,8 +41,8 @@ struct Row {
 // A force, its work, a count of contacts or a time is neither good nor bad by itself: a proxy that holds a
 // rising surface pushes harder than one that lets it pass.
 constexpr Row kMeasures[] = {
-    {"popped_through", "1", "1 when the proxy's centre ended below the true surface", proxy, smaller,
-     popped_through},
+    {"popped_through", "1", "1 when the proxy passed through the true surface and ended behind it", proxy,
+     smaller, popped_through},
     {"max_penetration", "m", "maximum depth of the proxy's centre behind the true surface", proxy, smaller,
      max_penetration_m},
     {"min_slave_distance", "m", "minimum distance of the slave command to the true surface", all,
@@ -116,8 +117,9 @@ constexpr Row kMeasures[] = {
     {"packet_rate_20", "1/s", "packets per second of the force with a dead-band of 20 %, IEEE 1918.1.1", all,
      neither, [](const Trace& trace) { return deadband_packets_per_s(trace, 0.2); }},
 
-    {"tool_popped_through", "1", "1 when the tool's centre of mass ended below the true surface", tool,
-     smaller, [](const Trace& trace) { return trace.has_tool() ? popped_through(trace) : kNoValue; }},
+    {"tool_popped_through", "1",
+     "1 when the tool's centre of mass passed through the true surface and ended behind it", tool, smaller,
+     [](const Trace& trace) { return trace.has_tool() ? popped_through(trace) : kNoValue; }},
     {"max_torque", "N m", "maximum torque about the HIP", tool, neither, max_torque_Nm},
     {"max_torque_jump", "N m", "maximum change of the torque at a frame update", tool, smaller,
      max_torque_jump_Nm},
@@ -212,8 +214,9 @@ double value_of(const Measure& measure, const Trace& trace) {
 }
 
 double popped_through(const Trace& trace) {
-  const double distance_m = end_distance_m(trace);
-  return std::isnan(distance_m) ? distance_m : (distance_m < 0 ? 1 : 0);
+  SurfaceSide side(trace.held_depth_m);
+  for (const double distance_m : trace.signed_distance_m) side.add(distance_m);
+  return side.popped_through();
 }
 
 double max_penetration_m(const Trace& trace) {
@@ -234,7 +237,7 @@ double wrong_side_fraction(const Trace& trace) {
   for (const double distance : trace.signed_distance_m) {
     if (std::isnan(distance)) continue;
     ++known;
-    wrong += distance < 0 ? 1 : 0;
+    wrong += distance < -trace.held_depth_m ? 1 : 0;
   }
   if (known == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(wrong) / static_cast<double>(known);

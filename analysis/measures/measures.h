@@ -10,8 +10,11 @@
 
 namespace remote_touch {
 
-// 1 when the proxy's centre ended below the true surface, else 0; NaN where the truth is not known at the
-// end.
+// 1 when the proxy's centre (with a tool its centre of mass) passed through the true surface and ended behind
+// it, else 0. It is behind if its distance to the surface is less than -Trace::held_depth_m, which is 0 for a
+// ball. 0 if it began behind the surface and stayed there. NaN if the truth is not known at the end, or was
+// not known while the proxy got to the back: beside an object it may have gone round the border. See
+// surface_side.h.
 double popped_through(const Trace& trace);
 // Maximum distance of the proxy's centre behind the true surface, m; 0 if it never was. Over the ticks with a
 // known truth; NaN without any.
@@ -19,8 +22,8 @@ double max_penetration_m(const Trace& trace);
 // The minimum distance of the slave command to the true surface, m, over the ticks with a known truth; NaN
 // without any. With a uniform radius the fixture is violated by r_f + r_c minus this.
 double min_slave_distance_m(const Trace& trace);
-// Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface; NaN without
-// any.
+// Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface, by more than
+// Trace::held_depth_m; NaN without any.
 double wrong_side_fraction(const Trace& trace);
 // How far the rendered surface is from the true one: rms difference of the centre's distance to the true
 // surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without

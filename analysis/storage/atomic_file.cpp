@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/storage/replacement_rule.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -171,8 +172,7 @@ void write_file_atomically(const std::filesystem::path& target, const void* data
     return;
   }
   const std::filesystem::path place = resolved(target), temporary = write_temporary(target, data, size);
-  if (::rename(temporary.c_str(), place.c_str()) != 0) {
-    const int error = errno;
+  if (const int error = rename_or_keep(temporary, target); error != 0) {
     ::unlink(temporary.c_str());
     refuse_size(target, error, size);
   }
@@ -201,7 +201,7 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
   int error = file < 0 ? errno : 0;
   if (error == 0 && ::fsync(file) != 0) error = errno;
   if (file >= 0) ::close(file);
-  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
+  if (error == 0) error = rename_or_keep(temporary, target);
   if (error != 0) {
     ::unlink(temporary.c_str());
     refuse(target, error, "a writable place with room for the file");

@@ -11,7 +11,7 @@ namespace remote_touch {
 // Writes to a temporary name in the same folder, flushes to the disk and renames over the target, or over
 // what it links to. On failure (missing folder, no permission, full disk, a pipe, a socket or a device)
 // throws InputError naming the target, and leaves neither a partial nor a temporary file. Of devices
-// /dev/null is written.
+// /dev/null is written. A file that appeared meanwhile is kept where replacement_rule.h says so.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
 
 struct NewFile {
@@ -33,7 +33,8 @@ void require_different_file(const std::filesystem::path& target, const std::file
 
 // The temporary name in the target's folder under which this process writes it.
 std::filesystem::path temporary_of(const std::filesystem::path& target);
-// Flushes the temporary file to the disk and renames it over the target. Fails as write_file_atomically().
+// Flushes the temporary file to the disk and renames it over the target. Fails as write_file_atomically(),
+// also where a file appeared meanwhile.
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
 // The names of the files in the target's folder outlast a power cut then, where the file system can promise

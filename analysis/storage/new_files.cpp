@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/replacement_rule.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -71,7 +72,12 @@ void NewFiles::finish() {
   if (files_.size() > 1)
     for (File& file : files_) keep_old(file);
   for (File& file : files_) {
-    if (::rename(file.temporary.c_str(), file.place.c_str()) != 0) refuse(file, errno);
+    if (const int error = rename_by_rule(file.temporary, file.target); error == EEXIST)
+      throw InputError(file.target.string(),
+                       "was written by another program meanwhile, and is unchanged: expected "
+                       "another file, or --force");
+    else if (error != 0)
+      refuse(file, error);
     file.is_new = true;
   }
   const std::vector<File> done = std::move(files_);  // from here on they stay

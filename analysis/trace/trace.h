@@ -59,6 +59,9 @@ struct Trace {
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 
+  // How far behind the true surface the position may lie while the surface still holds it, m; 0 for a ball,
+  // whose centre stays in front. See held_depth_m() in rendered_contact.h. For measures alone: no column.
+  double held_depth_m = 0;
   // Rows for measures alone: no column, because stored traces have none. Empty unless it was computed.
   std::vector<TrueContact> contact;
   std::vector<Vec3> true_normal;  // Truth::normal

@@ -36,20 +36,30 @@ std::size_t character_before(const std::string& line, std::size_t at) {
   return at;
 }
 
+// The first and the last bytes of a text with "..." between them, without a cut through a character.
+std::string ends_of(const std::string& text, std::size_t first_bytes, std::size_t last_bytes) {
+  const std::size_t first = character_before(text, first_bytes);
+  const std::size_t last = character_before(text, text.size() - last_bytes);
+  return text.substr(0, first) + "..." + text.substr(last);
+}
+
 // A number of many digits, or a key without end, is not worth its line. File names are shorter, but for few.
 std::string with_short_words(const std::string& line) {
   constexpr std::size_t kMaxWord = 400, kBegin = 200, kEnd = 100;
   std::string shorter;
   for (std::size_t at = 0, end = 0; at < line.size(); at = end) {
     end = std::min(line.find(' ', at + 1), line.size());
-    if (end - at <= kMaxWord) {
-      shorter.append(line, at, end - at);
-      continue;
-    }
-    const std::size_t first = character_before(line, at + kBegin), last = character_before(line, end - kEnd);
-    shorter.append(line, at, first - at).append("...").append(line, last, end - last);
+    const std::string word = line.substr(at, end - at);
+    shorter += word.size() <= kMaxWord ? word : ends_of(word, kBegin, kEnd);
   }
   return shorter;
+}
+
+// The limit leaves room for two long paths and a list of all names that are expected: these lists have up to
+// 300 bytes. Subject and problem begin the line, and what is expected ends it.
+std::string with_short_middle(const std::string& line) {
+  constexpr std::size_t kMaxLine = 1000, kBegin = 500, kEnd = 490;
+  return line.size() <= kMaxLine ? line : ends_of(line, kBegin, kEnd);
 }
 
 }  // namespace
@@ -70,7 +80,7 @@ std::string printable(const std::string& text) {
       line.append(text, at, size), at += size;
     }
   }
-  return with_short_words(line);
+  return with_short_middle(with_short_words(line));
 }
 
 }  // namespace remote_touch

@@ -22,8 +22,8 @@ class FramePreparation {
 class TrueSurface {
  public:
   virtual ~TrueSurface() = default;
-  // Distance to the surface at a time, m, positive on the side that the sensor sees; NaN where it is not
-  // known.
+  // Distance to the surface at a time, m, positive on the side that the sensor sees; NaN if it is not known,
+  // and beside a surface with a border, where there is no back.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
 };
 

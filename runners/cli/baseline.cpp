@@ -5,6 +5,7 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
+#include "runners/cli/replaced_settings.h"
 #include "runners/regression/baselines/baseline_bless.h"
 #include "runners/regression/baselines/baseline_check.h"
 #include "runners/regression/comparison/comparison_report.h"
@@ -23,6 +24,8 @@ const char* word_for(State state) {
       return "same";
     case State::changed:
       return "CHANGED";
+    case State::missing:
+      return "MISSING";
     case State::not_run:
       return "not run";
     case State::not_comparable:
@@ -58,25 +61,25 @@ void print(const BaselineCheck& check) {
 }
 
 // "66 baselines: 63 same, 1 changed, 1 could not be compared, 1 not run; 0 missing"
-void print_summary(const std::vector<BaselineCheck>& checks, std::size_t missing) {
+void print_summary(const std::vector<BaselineCheck>& checks) {
   const auto count = [&](State state) {
     return std::count_if(checks.begin(), checks.end(),
                          [&](const auto& check) { return check.state == state; });
   };
-  std::printf("%zu baselines: %td same, %td changed, %td could not be compared, %td not run; %zu missing\n",
-              checks.size() - missing, count(State::same),
-              count(State::changed) - static_cast<std::ptrdiff_t>(missing), count(State::not_comparable),
-              count(State::not_run), missing);
+  const auto missing = count(State::missing);
+  std::printf("%td baselines: %td same, %td changed, %td could not be compared, %td not run; %td missing\n",
+              static_cast<std::ptrdiff_t>(checks.size()) - missing, count(State::same), count(State::changed),
+              count(State::not_comparable), count(State::not_run), missing);
 }
 
 ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
   ReportSuite suite{"baselines"};
   for (const BaselineCheck& check : checks) {
     using Case = ReportCase::State;
-    const Case state = check.state == State::same      ? Case::passed
-                       : check.state == State::changed ? Case::failed
-                       : check.state == State::not_run ? Case::skipped
-                                                       : Case::error;
+    const Case state = check.state == State::same                                       ? Case::passed
+                       : check.state == State::changed || check.state == State::missing ? Case::failed
+                       : check.state == State::not_run                                  ? Case::skipped
+                                                                                        : Case::error;
     suite.cases.push_back({check.name, state, check.text});
   }
   return suite;
@@ -93,7 +96,7 @@ std::vector<ResultComparison> comparisons(const std::vector<BaselineCheck>& chec
     list.back().baseline = check.name;
     if (check.comparison) continue;
     list.back().verdict = check.text;
-    if (check.state == State::changed) list.back().outcome = Outcome::changed;  // it is missing
+    if (check.state == State::missing) list.back().outcome = Outcome::changed;
   }
   return list;
 }
@@ -102,8 +105,9 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
   const auto any = [&](State state) {
     return std::any_of(checks.begin(), checks.end(), [&](const auto& check) { return check.state == state; });
   };
-  if (!any(State::same) && !any(State::changed)) return kBadInput;  // nothing was compared
-  return any(State::not_comparable) ? kBadInput : any(State::changed) ? kCheckFailed : kDone;
+  const bool any_failed = any(State::changed) || any(State::missing);
+  if (!any(State::same) && !any_failed) return kBadInput;  // nothing was compared
+  return any(State::not_comparable) ? kBadInput : any_failed ? kCheckFailed : kDone;
 }
 
 }  // namespace
@@ -128,7 +132,7 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   for (const BaselineCheck& check : missing) print(check);
   checks.insert(checks.end(), missing.begin(), missing.end());
   if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
-  print_summary(checks, missing.size());
+  print_summary(checks);
   if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
   if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));
   return exit_code(checks);
@@ -150,6 +154,7 @@ int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& 
     std::printf("%s\n", done.c_str());
     std::fflush(stdout);
   }
+  print_replaced(request.overrides);
   return kDone;
 }
 

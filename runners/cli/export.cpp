@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/export/export_formats.h"
@@ -20,7 +21,7 @@ int command_export(const CommandLine& line, const ExportRequest& request) {
   export_result(format, {result, request.output, files, require_allowed, line.kernels, line.stop});
   const std::size_t count = files.count();
   files.finish();
-  std::printf("%s: %zu file%s, %.1f MB\n", request.output.c_str(), count, count == 1 ? "" : "s",
+  std::printf("%s: %zu file%s, %.1f MB\n", printable(request.output).c_str(), count, count == 1 ? "" : "s",
               1e-6 * static_cast<double>(files.size()));
   return kDone;
 }

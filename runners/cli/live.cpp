@@ -18,6 +18,8 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
+#include "runners/cli/replaced_settings.h"
+#include "runners/live/loop/live_inputs.h"
 #include "runners/live/view/live_view.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -150,6 +152,12 @@ void note_failure(std::string& lost, const std::function<void()>& write) {
   lost += (lost.empty() ? "" : "; ") + why;
 }
 
+// The files of a run that was refused say why, and state no hashes of files that it may not have read.
+void add_refusal(TextAttributes& origin, const LiveResult& result) {
+  std::erase_if(origin, [](const auto& attribute) { return attribute.first == "input_digests"; });
+  origin.emplace_back("ended", result.ended);
+}
+
 // Printed before the loop begins.
 void print_files(const LiveRequest& request) {
   if (!request.record.empty())
@@ -180,8 +188,11 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.record = request.record;
   options.kernels = line.kernels;
   options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;
-  options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
-                                  input_hashes(experiment.inputs()));
+  const std::vector<RecordingPart> inputs =
+      live_inputs(experiment, options.device, options.depth, request.view);
+  const std::string digests = input_hashes(inputs);
+  options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa, digests);
+  options.check_inputs = [&] { require_unchanged(inputs, digests); };
   if (!line.quiet) options.report_line = report_line;
   options.on_report = [&](const LiveReport& report) {
     report_now(report, request.report, options.provenance);
@@ -193,10 +204,12 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
     if (!line.quiet) print_files(request);
   };
   see_to_every_end();
+  print_replaced(request.overrides);
   const LiveResult result = run_live(experiment, options);
   if (view) view->end(result.ended);
   experiment.add_depth_device(options.provenance);
   add_report(options.provenance, result.report);
+  if (!result.refused.empty()) add_refusal(options.provenance, result);
 
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());
@@ -213,6 +226,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
     if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
   });
   // No InputError: after Ctrl-C the program takes that for the end of a wait, and does not print it.
+  if (lost.empty()) lost = result.refused;
   if (!lost.empty()) throw std::runtime_error(lost);
   if (request.strict) refuse_notes(result.report);
   return result.failed ? kCheckFailed : kDone;

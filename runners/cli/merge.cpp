@@ -6,6 +6,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/recipe.h"
@@ -125,6 +126,7 @@ int command_merge(const CommandLine&, const MergeRequest& request) {
     throw InputError(parts.front().file, "damaged (runs are missing)");
   const FileLock lock(request.output);
   require_nothing_more(request.output, whole);
+  replace_only_results(request.output);
   write_sweep(request.output, whole, parts.front().stored.attributes);
   return print_summary(request.output, whole);
 }

@@ -1,10 +1,12 @@
 #include "runners/cli/outputs.h"
 
 #include <filesystem>
+#include <functional>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
+#include "analysis/storage/replacement_rule.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -28,38 +30,54 @@ bool is_one_file(const std::string& a, const std::string& b) {
   return place(a) == place(b);
 }
 
-bool begins_with(const std::string& file, const std::string& opening) {
-  return holds_something(file) && opening_of(file, opening.size()) == opening;  // a pipe would wait
-}
+using IsOurs = std::function<bool(const std::string& file)>;
 
+// The same check decides again when the result is finished, because the file may have been written meanwhile.
 void require(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
-             bool is_ours, const char* kind) {
+             const IsOurs& is_ours, const char* kind) {
   for (const auto* all : {&inputs, &line.plugins})
     for (const std::string& input : *all) require_different_file(output, input);
   if (is_journal(output))
     throw InputError(output, "is an unfinished recording and is never overwritten: expected another file");
-  if (!line.force && !is_ours && holds_something(output))
+  const auto may_replace = [is_ours, force = line.force](const std::filesystem::path& file) {
+    if (is_journal(file)) return false;
+    return force || !holds_something(file) || is_ours(file);
+  };
+  if (!may_replace(output))
     throw InputError(output, std::string("is there already and is no ") + kind +
                                  " of this program: expected another file, or --force");
   require_writable(output);
+  set_replacement_rule(output, may_replace);
+}
+
+IsOurs begins_with(const std::string& opening) {
+  return [opening](const std::string& file) {
+    return holds_something(file) && opening_of(file, opening.size()) == opening;  // a pipe would wait
+  };
 }
 
 }  // namespace
 
 FileLock lock_output(const CommandLine& line, const std::string& output,
                      const std::vector<std::string>& inputs) {
-  require(line, output, inputs, has_result_header(output), "result");
+  require(line, output, inputs, has_result_header, "result");
   return FileLock(output);
 }
 
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
-  require(line, output, inputs, begins_with(output, opening), "report");
+  require(line, output, inputs, begins_with(opening), "report");
 }
 
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
-  require(line, output, inputs, begins_with(output, opening), "export of such a result");
+  require(line, output, inputs, begins_with(opening), "export of such a result");
+}
+
+void replace_only_results(const std::string& output) {
+  set_replacement_rule(output, [](const std::filesystem::path& file) {
+    return !holds_something(file) || has_result_header(file);
+  });
 }
 
 void require_distinct(const std::vector<OutputOption>& outputs) {

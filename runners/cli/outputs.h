@@ -15,7 +15,7 @@ namespace remote_touch {
 // unless the result can be written there. The folder must be writable. The output must be none of the inputs
 // and no plug-in. An existing file must be a result of this program, an empty file or /dev/null, unless
 // --force is given. No other process may be writing it. An unfinished recording is never overwritten, not
-// even with --force.
+// even with --force. The rule for existing files is checked again when the result is written.
 [[nodiscard]] FileLock lock_output(const CommandLine& line, const std::string& output,
                                    const std::vector<std::string>& inputs);
 // The same for a text report, without a lock: an existing file may be replaced if it begins with that
@@ -26,6 +26,10 @@ void require_report(const CommandLine& line, const std::string& output,
 // The same for a file of an export.
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
+
+// From now on a file that is no result of this program is not overwritten at this place. For a command that
+// has checked its output in another way.
+void replace_only_results(const std::string& output);
 
 // Options of one command and the files that they name, each empty where it was not given. Throws InputError
 // where two name one file, however its path is written: one result would be lost. /dev/null may come twice.

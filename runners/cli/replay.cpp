@@ -69,7 +69,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const std::size_t run = result.run(cell, request.replicate);
   const Replay replay =
       replay_run(stored, sweep, run, options, request.output, request.strict ? Strict::yes : Strict::no);
-  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), replay.trace.length(),
+  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), replay.trace.length(),
               replay.digest.c_str());
   std::fputs(text_of(replay.report).c_str(), stdout);
   if (agrees(sweep, result, run, replay.trace)) return kDone;

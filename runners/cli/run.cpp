@@ -8,6 +8,7 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
+#include "runners/cli/replaced_settings.h"
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/provenance/input_hashes.h"
@@ -65,7 +66,8 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   experiment.add_depth_device(origin);
   add_report(origin, report);
   const std::string sum = write_trace(request.output, trace, origin, durations);
-  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
+  print_replaced(request.overrides);
+  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), trace.length(), sum.c_str());
   std::fputs(text_of(report).c_str(), stdout);
   for (const Measure& measure : measures())
     if (applies(measure, trace))

@@ -55,8 +55,8 @@ int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest
     const std::string config = configuration_of(plan);
     const std::string sum =
         write_stored_card(request.file, card, provenance(config, program_text() + " scorecard store", ""));
-    std::printf("%s: %zu scenes, %zu methods, digest %s\n", request.file.c_str(), card.scenes.size(),
-                card.methods.size(), sum.c_str());
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n", printable(request.file).c_str(),
+                card.scenes.size(), card.methods.size(), sum.c_str());
     return kDone;
   } catch (const Interrupted&) {
     return report_interrupted(request.folder);
@@ -73,7 +73,7 @@ int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest
     const Scorecard card = scored(line, plan);
     const std::vector<std::string> list = differences(stored, plan, card);
     for (const std::string& difference : list) std::printf("differs: %s\n", difference.c_str());
-    std::printf("%s: %zu scenes and %zu methods compared, %zu differences\n", request.file.c_str(),
+    std::printf("%s: %zu scenes and %zu methods compared, %zu differences\n", printable(request.file).c_str(),
                 card.scenes.size(), card.methods.size(), list.size());
     return list.empty() ? kDone : kCheckFailed;
   } catch (const Interrupted&) {

@@ -9,6 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
+#include "runners/cli/replaced_settings.h"
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -72,7 +73,7 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   return sample;
 }
 
-int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, bool strict) {
+int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, const SweepRequest& request) {
   const std::size_t runs = plan.result.runs_in(RunState::pending).size();
   const Sample sample = sample_runs(sweep, plan.result, line);
   std::printf("%s\n  %s cells, %zu runs to do, all valid", sweep.title().c_str(),
@@ -88,7 +89,8 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, 
               1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
   for (const std::string& note : note_lines(sample.tried))
     std::printf("  note on the runs that were tried: %s\n", note.c_str());
-  if (strict) refuse_notes(sample.tried);
+  print_replaced(request.overrides);
+  if (request.strict) refuse_notes(sample.tried);
   return kDone;
 }
 
@@ -104,22 +106,22 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     throw InputError("--output", "is required; see remote-touch sweep --help");
   if (!request.dry_run) require_writable(file);
   const TextAttributes attributes = attributes_of(sweep, request, shard);
-  if (request.dry_run)
-    return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line, request.strict);
+  if (request.dry_run) return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
 
   SweepSession session(sweep, shard, attributes, file);
-  Progress progress(sweep.title(), line.quiet);
+  Progress progress(request.sweep, line.quiet);
   try {
     const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
       progress.update(done, total, earlier, "runs");
     });
-    if (!any) std::printf("%s: nothing left to do\n", file.c_str());
+    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted; %zu finished runs are kept in %s, and the same command goes on\n",
                  program_identity().name.c_str(), session.result().runs_in(RunState::done).size(),
-                 file.c_str());
+                 printable(file).c_str());
     return kInterrupted;
   }
+  print_replaced(request.overrides);
   const int code = print_summary(file, session.result());
   if (request.strict) refuse_notes(session.result());
   return code;

@@ -4,10 +4,12 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
+#include "runners/cli/replaced_settings.h"
 #include "runners/experiment/catalog.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/comparison/junit_report.h"
 #include "runners/regression/verification/metamorphic_checks.h"
+#include "runners/settings/changed_settings.h"
 
 namespace remote_touch {
 
@@ -67,6 +69,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
   for (const std::string& assignment : request.overrides)
     inputs.push_back(assignment.substr(assignment.find('=') + 1));
   if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
+  refuse_discarded(request.overrides);
   std::vector<const RendererEntry*> chosen;
   for (const std::string& name : request.renderers)
     chosen.push_back(&find_entry(renderers(), name, "renderer"));
@@ -82,6 +85,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
     suites.push_back(suite_of(entry->name, results));
   }
   if (!request.junit.empty()) write_report(request.junit, junit(suites));
+  print_replaced(request.overrides);
   return all_pass ? kDone : kCheckFailed;
 }
 

@@ -10,6 +10,7 @@
 #include "runners/experiment/section_rules.h"
 #include "runners/experiment/sections.h"
 #include "runners/sessions/session_scene.h"
+#include "runners/settings/changed_settings.h"
 #include "runners/settings/embedded_data.h"
 #include "runners/settings/json_parameters.h"
 
@@ -19,7 +20,7 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
                                  const std::vector<std::string>& overrides) {
   Json configuration = parse_json(text, label);
   if (!configuration.is_object()) throw InputError(label, "not an object: expected {\"scenario\": ..., ...}");
-  for (const std::string& assignment : overrides) apply_override(configuration, assignment);
+  apply_overrides(configuration, overrides);
   return from_json(configuration);
 }
 
@@ -55,9 +56,11 @@ Json Experiment::value_at_start(const std::string& path) const {
   return found ? *found : Json();
 }
 
-std::vector<RecordingPart> Experiment::inputs() const {
+std::vector<RecordingPart> Experiment::inputs(const std::vector<std::string>& except) const {
   std::vector<RecordingPart> all;
-  for (const ExperimentSection& section : experiment_sections()) section.add_inputs(configuration_, all);
+  for (const ExperimentSection& section : experiment_sections())
+    if (std::find(except.begin(), except.end(), section.key) == except.end())
+      section.add_inputs(configuration_, all);
   return all;
 }
 

@@ -8,6 +8,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/configuration.h"
+#include "runners/experiment/scheduled_phases.h"
 #include "runners/settings/embedded_data.h"
 
 namespace remote_touch {
@@ -25,9 +26,9 @@ struct LiveParameter {
 
 class Experiment {
  public:
-  // From JSON text; label names the source in errors. Overrides are "key=value" and come last. Throws
-  // InputError for anything that cannot be run, so that no run starts that would fail because of its
-  // configuration.
+  // From JSON text; label names the source in errors. Overrides are "key=value" and come last; the title
+  // names them (changed_settings.h). Throws InputError for anything that cannot be run, so that no run starts
+  // that would fail because of its configuration, and for an override that a later one discards.
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
   static Experiment from_json(const nlohmann::ordered_json& configuration);
@@ -42,7 +43,8 @@ class Experiment {
   // change at 0 s. Null if there is none.
   nlohmann::ordered_json value_at_start(const std::string& path) const;
   // The recordings that a run reads, as named in the configuration, not yet searched for.
-  std::vector<RecordingPart> inputs() const;
+  // except: keys of sections that this run does not read.
+  std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
 
   // The scenario as the sensor shows it, with its faults.
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
@@ -66,6 +68,11 @@ class Experiment {
   // device that processes its depth images; nothing where it is the CPU.
   void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
+  // The phases in the sections of the experiment itself: changes of the renderer, schedules of fixtures, and
+  // steps of the sequence that wait for a time.
+  std::vector<Phase> phases() const { return setting_phases(configuration_); }
+  // The button presses of the simulated operator, and the changes of the grip.
+  std::vector<Phase> operator_phases() const { return remote_touch::operator_phases(configuration_); }
   // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
   // renderer or of a forbidden region, plus those of all guidance.
   double max_stiffness_N_per_m() const;

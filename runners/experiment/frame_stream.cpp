@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "analysis/columns/hash64.h"
@@ -62,9 +63,14 @@ void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const Sensor
   fill(frame, cloud_of(sensed, view, X_WC), off);
 }
 
+// A rule that needs colours refuses the frame that has none, and does not know its number.
 void FrameProcessing::apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const {
-  frame.guidance = fixtures.targets(cloud, frame.captured_s);
-  fixtures.assign(cloud, frame.captured_s, off);
+  try {
+    frame.guidance = fixtures.targets(cloud, frame.captured_s);
+    fixtures.assign(cloud, frame.captured_s, off);
+  } catch (const InputError& error) {
+    throw InputError("frame " + std::to_string(frame.index), error.what());
+  }
   frame.points = make_search(std::move(cloud));
 }
 

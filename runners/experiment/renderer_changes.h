@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 // Takes effect in the first tick at or after its time, before that tick's frame. Changes of the same time
-// take effect together.
+// take effect together; two of one parameter in one tick are refused.
 struct RendererChange {
   double time_s = 0;
   std::string parameter;  // "renderer.stiffness_N_per_m"; one that is marked live

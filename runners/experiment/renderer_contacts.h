@@ -24,10 +24,11 @@ namespace remote_touch {
 inline constexpr double kReferenceSpacing_m = 0.0015;
 
 inline RenderedContact rendered_contact(const ProxyParameters& p) {
-  return {p.contact_radius_m()};
+  return {p.contact_radius_m(), 0, p.contact_radius_m()};
 }
+// A sheet that is fitted to the points holds the ball, also between them.
 inline RenderedContact rendered_contact(const TrackedSheetParameters& p) {
-  return rendered_contact(p.proxy);
+  return {p.proxy.contact_radius_m()};
 }
 inline RenderedContact rendered_contact(const OracleProxyParameters& p) {
   return rendered_contact(p.proxy);
@@ -35,9 +36,10 @@ inline RenderedContact rendered_contact(const OracleProxyParameters& p) {
 inline RenderedContact rendered_contact(const AveragedProxyParameters& p) {
   return rendered_contact(p.proxy);
 }
-// Whatever its radius is, it reports where a ball of the nominal one would be.
+// Whatever its radius is, it reports where a ball of the nominal one would be. Its radius grows with the
+// spacing of the points, so that it does not fall through between them.
 inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
-  return rendered_contact(p.proxy);
+  return {p.proxy.contact_radius_m()};
 }
 inline RenderedContact rendered_contact(const SurfelParameters&) {
   return {};

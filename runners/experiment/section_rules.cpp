@@ -1,6 +1,7 @@
 #include "runners/experiment/section_rules.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
@@ -52,6 +53,21 @@ void make(const RendererChange& change, const Parameters& live, const std::strin
   set_number(*found, change.value);
 }
 
+// The first tick at or after a time, which is the one that makes a change of that time.
+double first_tick(const ExperimentConfiguration& configuration, const RendererChange& change) {
+  return std::ceil(change.time_s * configuration.run.haptic_rate_hz);
+}
+
+// Of two changes of one parameter in one tick the first would have no effect, whatever it says.
+void refuse_change_without_effect(const ExperimentConfiguration& configuration, std::size_t later) {
+  const std::vector<RendererChange>& changes = configuration.changes;
+  for (std::size_t i = 0; i < later; ++i)
+    if (changes[i].parameter == changes[later].parameter &&
+        first_tick(configuration, changes[i]) == first_tick(configuration, changes[later]))
+      throw InputError("changes." + std::to_string(later) + ".parameter = " + changes[later].parameter,
+                       "changes." + std::to_string(i) + " sets it in the same tick: expected one of them");
+}
+
 // Calls visit(factory, where) with the settings after each time at which some change.
 template <class Visit>
 void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
@@ -65,6 +81,7 @@ void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
       throw InputError(where + ".time_s = " + shown(changes[i].time_s),
                        "expected the time of the change before it or later");
     make(changes[i], live, where);
+    refuse_change_without_effect(configuration, i);
     if (i + 1 == changes.size() || changes[i + 1].time_s > changes[i].time_s) visit(*factory, where);
   }
 }

@@ -67,6 +67,11 @@ template <class Entry>
 Part<Entry> read_part(const Json& json, std::span<const Entry> catalog, const std::string& path) {
   if (json.is_object() && json.contains("name") && !json["name"].is_string())
     throw InputError(path + ".name = " + shown(json["name"]), "expected a name from `remote-touch list`");
+  if (json.is_string())
+    throw InputError(path + " = " + shown(json), "not an object: expected {\"name\": " + shown(json) +
+                                                     "}, with parameters beside the name");
+  if (!json.is_null() && !json.is_object())
+    throw InputError(path + " = " + shown(json), "not an object: expected {\"name\": ..., parameters}");
   if (!json.is_object() || !json.contains("name"))
     throw InputError(path, "missing: expected {\"name\": ..., parameters}");
   Part<Entry> part;

@@ -25,10 +25,12 @@ void exchange(DeviceFrame& frame, PointCloud& cloud) {
 }  // namespace
 
 DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings,
-                               const Kernels& kernels, std::function<void(const std::string&)> report)
+                               const Kernels& kernels, std::function<void(const std::string&)> report,
+                               std::chrono::milliseconds frame_limit)
     : DepthProcessor(settings),
       device_(device),
       report_(std::move(report)),
+      frame_limit_(frame_limit),
       cpu_(settings, kernels),
       frame_(std::make_shared<DeviceFrame>()),
       thread_(std::make_unique<DeadlineThread>()) {
@@ -99,12 +101,12 @@ void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
 bool DevicePipeline::on_device() {
   bool in_time = false;
   try {
-    in_time = thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, kFrameLimit);
+    in_time = thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, frame_limit_);
   } catch (const std::exception& error) {
     give_up(error.what());
     return false;
   }
-  if (!in_time) give_up("no answer within 2 s");
+  if (!in_time) give_up("no answer within " + std::to_string(frame_limit_.count() / 1000) + " s");
   return in_time;
 }
 

@@ -24,10 +24,11 @@ class DevicePipeline final : public DepthProcessor {
   // Builds the kernels unless this process has them, and processes a small frame for their first call. Throws
   // OpenClError if that fails, OpenClTimeout if it takes longer than kBuildLimit.
   DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
-                 std::function<void(const std::string&)> report);
+                 std::function<void(const std::string&)> report,
+                 std::chrono::milliseconds frame_limit = kFrameLimit);
 
   // report() is called once, with the reason in one line, when the CPU takes over. A frame in which the
-  // device fails, or takes longer than kFrameLimit, is processed on the CPU, and so is every frame after it.
+  // device fails, or takes longer than frame_limit, is processed on the CPU, and so is every frame after it.
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
 
   // True unless the device has failed, before or in this frame, or columns of fixtures cannot be filled: the
@@ -45,6 +46,7 @@ class DevicePipeline final : public DepthProcessor {
 
   const OpenClDevice device_;
   const std::function<void(const std::string&)> report_;
+  const std::chrono::milliseconds frame_limit_;
   DepthPipeline cpu_;
   std::shared_ptr<DeviceFrames> frames_;  // null: given up
   std::shared_ptr<DeviceFrame> frame_;

@@ -49,18 +49,19 @@ void SensedPoints::add(const SensorFrame& frame, const SensorView& view) {
   points_ += counted.points, measured_ += counted.measured;
   nearest_m_ = std::min(nearest_m_, counted.nearest_m);
   farthest_m_ = std::max(farthest_m_, counted.farthest_m);
-  has_colours_ = view.has_colour;
+  are_clouds_ = view.cloud.has_value(), has_colours_ = view.has_colour;
 }
 
 std::string SensedPoints::text() const {
   const double share = points_ > 0 ? 100 * static_cast<double>(measured_) / static_cast<double>(points_) : 0;
-  char measured[80], depth[80];
+  char measured[80], range[80];
   std::snprintf(measured, sizeof measured, "%.3g %% of %llu points measured", share,
                 static_cast<unsigned long long>(points_));
   std::string text = measured;
   if (measured_ > 0) {
-    std::snprintf(depth, sizeof depth, ", depth %.3g to %.3g m", nearest_m_, farthest_m_);
-    text += depth;
+    std::snprintf(range, sizeof range, ", %s %.3g to %.3g m", are_clouds_ ? "z" : "depth", nearest_m_,
+                  farthest_m_);
+    text += range;
   }
   return text + (has_colours_ ? ", with colours" : ", without colours");
 }

@@ -16,7 +16,7 @@ class SensedPoints {
 
   std::int64_t frames() const { return frames_; }
   // Returns a text such as "68.3 % of 3686400 points measured, depth 0.41 to 2.98 m, with colours". The depth
-  // is along the optical axis.
+  // is along the optical axis. Clouds of points have no depth: the text then has the range of their z.
   std::string text() const;
 
  private:
@@ -24,7 +24,7 @@ class SensedPoints {
   std::uint64_t points_ = 0, measured_ = 0;
   double nearest_m_ = std::numeric_limits<double>::infinity();
   double farthest_m_ = -std::numeric_limits<double>::infinity();
-  bool has_colours_ = false;
+  bool are_clouds_ = false, has_colours_ = false;
 };
 
 // Returns a text such as "640 x 480 pixels", or "clouds of points".

@@ -17,7 +17,8 @@ std::string text(const Json* value) {
 void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {
   if (a && b && *a == *b) return;
   if (!a || !b || !a->is_object() || !b->is_object()) {
-    if (path != "title") found.push_back(path + " " + text(a) + " against " + text(b));
+    if (path != "title" && path != "experiment.title")
+      found.push_back(path + " " + text(a) + " against " + text(b));
     return;
   }
   const auto member = [](const Json& object, const std::string& key) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
@@ -20,6 +21,12 @@ std::string number_text(double value) {
   out.precision(12);
   out << value;
   return out.str();
+}
+
+// In full. A limit is a double: that of 64 bits is 2^64, one more than the largest integer.
+std::string integer_text(double limit) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
+  return std::to_string(limit < 0x1p64 ? static_cast<std::uint64_t>(limit) : kLargest);
 }
 
 std::string range_text(const Parameter& p) {
@@ -119,7 +126,9 @@ struct Allowed {
   const Parameter& p;
   std::string operator()(const double*) const { return range_text(p); }
   std::string operator()(const int*) const { return "integers " + range_text(p); }
-  std::string operator()(const std::uint64_t*) const { return "integers " + range_text(p); }
+  std::string operator()(const std::uint64_t*) const {
+    return "integers " + integer_text(p.low) + " to " + integer_text(p.high);
+  }
   std::string operator()(const bool*) const { return "true, false"; }
   std::string operator()(const std::string*) const { return "UTF-8 text"; }
   std::string operator()(const Vec3*) const { return "three numbers, each " + range_text(p); }

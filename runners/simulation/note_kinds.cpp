@@ -16,12 +16,13 @@ std::size_t number_of_kind(const std::string& name) {
 
 const std::vector<NoteKind>& note_kinds() {
   static const std::vector<NoteKind> kinds = {
-      {"other", "a note of another kind"},
-      {"phase not reached", "the run ends before the press, the motion of the scene or the trajectory does"},
+      {"other", "a note of a program or plug-in of one's own; replay prints its text"},
+      {"phase not reached",
+       "the run ends before a press, a motion or a change begins, or before the trajectory ends"},
       {"after the motion", "the press begins after the motion of the scene has ended"},
       {"no contact", "no point was touched and no force was felt"},
       {"no frame", "no frame arrived before the run ended"},
-      {"wide spacing", "the points near the first contact are farther apart than 1.41 r_c"},
+      {"wide spacing", "a ball of the contact radius passes between the points"},
       {"points dropped", "many measured points are beyond scenario.max_depth_m"},
       {"frames unused", "not all frames of the recording were used"},
       {"frames apart", "successive frames show different places"},
@@ -34,8 +35,13 @@ const std::vector<NoteKind>& note_kinds() {
       {"off the surface", "the hand was meant to touch but was off what the camera sees"},
       {"holes bridged", "image-scan or image-press treats holes up to bridge_m wide as closed"},
       {"edges bridged", "image-scan treats depth jumps above edge_jump_m as surface"},
-      {"object not scanned", "image-scan touches only other things than the nearest object"},
+      {"object not scanned", "image-scan touches another thing than the nearest object"},
       {"camera changes", "a later CameraInfo or depth unit of a bag differs from the first, which is used"},
+      {"starts in contact", "the hand starts behind the surface, or within the contact radius of it"},
+      {"lost at the first touch",
+       "the surface passed the proxy before a third frame after the first contact"},
+      {"object not pressed", "image-press presses another thing than the nearest object"},
+      {"hand jumped", "the pixel that image-press follows suddenly showed another place"},
   };
   return kinds;
 }

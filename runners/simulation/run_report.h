@@ -14,32 +14,26 @@ namespace remote_touch {
 struct RunReport {
   std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()
   std::vector<Note> notes;
+  std::string hand{};  // what a hand that was planned on depth images follows, see Trajectory::aim()
 };
 
 // end_s: the time of the first tick that was not simulated.
 RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace, double end_s);
 
-// Returns a note if a proxy of this contact radius falls through between the points around the first contact,
-// 4.2.1: if the median distance of these points to their nearest neighbour is larger than sqrt(2)
-// contact_radius_m. Returns no note without a contact. Generates only the points within 3 contact_radius_m of
-// the contact, because sweeps call it too.
-std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m,
-                                const Kernels& kernels);
-
 // The note "no contact", for a run or a session in which nothing was touched.
 Note no_contact_note();
 
-// Adds a note for each phase of the scene or of the hand that begins at end_s or later.
+// Adds a note for each phase that begins at end_s or later, one for phases of the same name.
 void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes);
 
-// Returns "  read LINE\n" for each input and "  note: LINE\n" for each note.
+// Returns "  read LINE\n" for each input, "  hand: LINE\n" and "  note: LINE\n" for each note.
 std::string text_of(const RunReport& report);
 
-// Appends the attributes `frames_read` and `notes`, one line for each entry; an attribute without a line is
-// left out. The names of the kinds are not stored.
+// Appends the attributes `frames_read`, `hand` and `notes`, one line for each entry; an attribute without a
+// line is left out. The names of the kinds are not stored.
 void add_report(TextAttributes& attributes, const RunReport& report);
 
-// Throws InputError with the first note, for --strict. Does nothing without a note.
+// Throws InputError with kind and text of every note, for --strict. Does nothing without a note.
 void refuse_notes(const RunReport& report);
 
 }  // namespace remote_touch

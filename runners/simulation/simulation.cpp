@@ -7,6 +7,7 @@
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/frame_stream.h"
+#include "runners/simulation/contact_watch.h"
 #include "runners/simulation/surface_watch.h"
 
 namespace remote_touch {
@@ -70,13 +71,15 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// A renderer that notes how long it takes to take a frame, and shows it to who wants to see it.
+// A renderer that notes how long it takes to take a frame, shows it to who wants to see it, and keeps the
+// points of the newest frame.
 class ObservedFrames final : public Renderer {
  public:
   ObservedFrames(Renderer& renderer, const SimulationOptions& options)
       : renderer_(renderer), duration_s_(options.frame_duration_s), observe_(options.on_frame) {}
   void on_frame(const Frame& frame) override {
     if (observe_) observe_(frame);
+    if (!points_ || frame.captured_s > captured_s_) points_ = frame.points, captured_s_ = frame.captured_s;
     StopWatch watch;
     renderer_.on_frame(frame);
     if (duration_s_) duration_s_->push_back(watch.lap_s());
@@ -84,12 +87,30 @@ class ObservedFrames final : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) override {
     return renderer_.step(device, time_s);
   }
+  const ContactWatch::Points& newest_points() const { return points_; }  // null before the first frame
 
  private:
   Renderer& renderer_;
+  ContactWatch::Points points_;
+  double captured_s_ = 0;
   std::vector<double>* duration_s_;
   const std::function<void(const Frame&)>& observe_;
 };
+
+void add(std::vector<Note> more, std::vector<Note>& notes) {
+  for (Note& note : more) notes.push_back(std::move(note));
+}
+
+// The notes on the contacts of a run without a tool, which touches with an area.
+std::vector<Note> contact_notes(const ContactWatch& watch, const Scenario& scenario,
+                                const RenderedContact& contact, bool has_fixtures, const Kernels& kernels) {
+  std::vector<Note> notes;
+  if (contact.rest_distance_m >= 0) add(watch.start_notes(scenario, contact.rest_distance_m, kernels), notes);
+  if (!(contact.ball_radius_m > 0) || has_fixtures) return notes;  // regions are larger than the ball
+  add(watch.spacing_notes(contact.ball_radius_m, kernels), notes);
+  add(watch.first_touch_notes(scenario, contact.ball_radius_m, kernels), notes);
+  return notes;
+}
 
 }  // namespace
 
@@ -112,8 +133,10 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
 
   SurfaceWatch surface(scenario->without_faults(), *trajectory);
+  ContactWatch contacts;
   Trace trace;
   trace.reserve(ticks);
+  trace.held_depth_m = held_depth_m(contact);
   StopWatch watch;
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     if (options.stop && *options.stop) throw Interrupted{};
@@ -133,18 +156,22 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     trace.append(time_s, device, out, known, hand.state());
-    if (options.report) surface.add(device.position_W, time_s);
+    if (options.report) {
+      surface.add(device.position_W, time_s);
+      contacts.add(time_s, device.position_W, out, observed.newest_points(), known.proxy_distance_m);
+    }
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }
   if (options.report) {
     const double end_s = static_cast<double>(ticks) / experiment.settings().haptic_rate_hz;
     *options.report = report_of(scenario->without_faults(), *trajectory, trace, end_s);
-    for (Note& note : surface.notes()) options.report->notes.push_back(std::move(note));
-    // Regions are larger than the contact radius, and a tool touches with an area.
-    if (contact.rest_distance_m > 0 && !has_fixtures && !trace.has_tool())
-      for (Note& note : spacing_notes(scenario->without_faults(), trace, contact.rest_distance_m, kernels))
-        options.report->notes.push_back(std::move(note));
+    std::vector<Note>& notes = options.report->notes;
+    add_missed_phases(experiment.phases(), end_s, notes);
+    add_missed_phases(experiment.operator_phases(), end_s, notes);
+    add(surface.notes(), notes);
+    if (!trace.has_tool())
+      add(contact_notes(contacts, scenario->without_faults(), contact, has_fixtures, kernels), notes);
   }
   return trace;
 }

@@ -43,14 +43,28 @@ const PointCloud* SurfaceWatch::image_at(double time_s) {
     copy_ = scenario_.cloud(frame);
     cloud_ = &*copy_;
   }
-  if (!cloud_->image) return cloud_ = nullptr;
+  const auto is_image = [](const PointCloud& cloud) {
+    if (!cloud.image) return false;
+    const CameraIntrinsics& camera = cloud.image->camera;
+    return cloud.size() == static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  };
+  if (!is_image(*cloud_)) return cloud_ = nullptr;
   X_CW_ = cloud_->image->X_WC.inverse();
   return cloud_;
+}
+
+void SurfaceWatch::add_step(const Vec3& hand_W, double time_s, double max_step_m) {
+  const double step_m = last_W_ ? (hand_W - *last_W_).norm() : 0;
+  last_W_ = hand_W;
+  if (max_step_m <= 0 || !(step_m > max_step_m)) return;
+  if (jumps_++ == 0) first_jump_s_ = time_s, first_jump_m_ = step_m;
+  longest_jump_m_ = std::max(longest_jump_m_, step_m);
 }
 
 void SurfaceWatch::add(const Vec3& hand_W, double time_s) {
   const std::optional<SurfacePlan> plan = trajectory_.surface_plan(time_s);
   if (!plan) return;
+  add_step(hand_W, time_s, plan->max_step_m);
   const PointCloud* cloud = image_at(time_s);
   if (!cloud) return;
   ++ticks_;
@@ -84,6 +98,17 @@ std::vector<Note> SurfaceWatch::notes() const {
         "ticks, first at %.6g s: there is a hole or an edge, or the surface has moved",
         percent(off_), first_off_s_);
     notes.push_back({"off the surface", text});
+  }
+  if (jumps_ > 0) {
+    std::snprintf(text, sizeof text,
+                  "the hand jumped by %.3g mm at %.6g s, because its pixel then showed another place",
+                  1e3 * first_jump_m_, first_jump_s_);
+    notes.push_back({"hand jumped", text});
+    if (jumps_ > 1) {
+      std::snprintf(text, sizeof text, "; it jumped %zu times, by up to %.3g mm", jumps_,
+                    1e3 * longest_jump_m_);
+      notes.back().text += text;
+    }
   }
   return notes;
 }

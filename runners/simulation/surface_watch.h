@@ -24,14 +24,17 @@ class SurfaceWatch {
   // Compares the hand at the time of a tick with the newest frame that was captured until then.
   void add(const Vec3& hand_W, double time_s);
 
-  // Returns up to two notes. "behind the surface": in some ticks the hand was farther behind the surface at
+  // Returns up to three notes. "behind the surface": in some ticks the hand was farther behind the surface at
   // its pixel than the motion plans at most. "off the surface": in some ticks the motion was meant to touch,
   // but nothing was measured around the hand's pixel, the hand was outside the image, or the hand was farther
-  // in front of the surface than planned. Returns no notes for motions that are not planned on images.
+  // in front of the surface than planned. "hand jumped": from one tick to the next the hand moved farther
+  // than the motion does while the surface is at rest. Returns no notes for motions that are not planned on
+  // images.
   std::vector<Note> notes() const;
 
  private:
   const PointCloud* image_at(double time_s);
+  void add_step(const Vec3& hand_W, double time_s, double max_step_m);
 
   const Scenario& scenario_;
   const Trajectory& trajectory_;
@@ -43,6 +46,9 @@ class SurfaceWatch {
 
   std::size_t ticks_ = 0, off_ = 0, behind_ = 0;
   double first_off_s_ = 0, first_behind_s_ = 0, deepest_m_ = 0, allowed_m_ = 0;
+  std::optional<Vec3> last_W_;  // the hand in the tick before
+  std::size_t jumps_ = 0;
+  double first_jump_s_ = 0, first_jump_m_ = 0, longest_jump_m_ = 0;
 };
 
 // Returns the depth of the surface that an image shows at p_C, a position in the camera's frame. It is the

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
+#include "runners/settings/changed_settings.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/settings/renamed_names.h"
 #include "runners/simulation/note_kinds.h"
@@ -36,6 +37,7 @@ struct Sweep::Definition {
 
   // The experiment of one run, which has the values that the result states of its cell.
   Experiment run(std::size_t cell, int replicate) const;
+  std::string title_of_run(const std::vector<std::size_t>& place) const;
   void refuse_other_entry(const SweepAxis& axis, const std::string& label) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
@@ -88,6 +90,20 @@ Json read_experiment(const Json& json, const std::string& label, const std::vect
   return parse_json(experiment.to_json(), label);
 }
 
+// The title of a sweep that has none: that of its experiment, with the axes. The former names already what
+// was changed of the experiment, but not of the sweep.
+std::string title_over(const Json& experiment, const std::vector<ChangedSetting>& changes,
+                       const std::vector<SweepAxis>& axes) {
+  const std::string title = experiment.value("title", std::string());
+  if (title.empty()) return title;
+  std::vector<ChangedSetting> of_sweep;
+  for (const ChangedSetting& change : changes)
+    if (is_of_sweep(change.first)) of_sweep.push_back(change);
+  std::string over;
+  for (const SweepAxis& axis : axes) over += (over.empty() ? ", over " : " and ") + axis.parameter;
+  return changed_title(title, of_sweep) + over;
+}
+
 std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int levels) {
   const auto found = json.find("axes");
   if (found == json.end() || !found->is_array() || found->empty() || found->size() > 8)
@@ -132,12 +148,21 @@ Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
   Json json = experiment;
   for (std::size_t i = 0; i < axes.size(); ++i)
     set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
+  json["title"] = title_of_run(place);
   json["cell"] = cell;
   json["replicate"] = static_cast<std::uint64_t>(replicate);
   Experiment made = Experiment::from_json(json);
   for (std::size_t i = 0; i < axes.size(); ++i)
     require_run(made, axes[i].parameter, axes[i].values[place[i]]);
   return made;
+}
+
+// That of the experiment, with the values of the cell.
+std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& place) const {
+  std::vector<ChangedSetting> changes;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    changes.emplace_back(axes[i].parameter, axes[i].values[place[i]]);
+  return changed_title(experiment.value("title", std::string()), changes);
 }
 
 // The experiment has the settings of its own renderer, scenario and trajectory, which another one may not
@@ -219,6 +244,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   Json json = parse_json(text, label);
   if (!json.is_object())
     throw InputError(label, "not an object: expected {\"experiment\": ..., \"axes\": [...]}");
+  refuse_discarded(overrides);
+  const std::vector<ChangedSetting> changes = changes_of(json, overrides);
   std::vector<std::string> of_experiment;
   for (const std::string& assignment : overrides)
     if (is_of_sweep(assignment))
@@ -238,7 +265,9 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   refuse_overlapping(definition->axes, label);
   refuse_overwritten(json, overrides, of_experiment, definition->axes, label);
   definition->experiment = read_experiment(json, label, of_experiment);
-  if (definition->title.empty()) definition->title = definition->experiment.value("title", std::string());
+  definition->title = definition->title.empty()
+                          ? title_over(definition->experiment, changes, definition->axes)
+                          : changed_title(definition->title, changes);
   if (definition->title.empty()) definition->title = label;
   definition->check_axes(label);
   definition->check_budget(label);

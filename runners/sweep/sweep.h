@@ -18,8 +18,9 @@ class Sweep {
  public:
   // From JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
   // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
-  // else its experiment. Every cell is resolved and checked: throws InputError for the first that cannot be
-  // run, and for parts that overwrite each other (sweep_statements.h).
+  // else its experiment; the title names them (changed_settings.h). Every cell is resolved and checked:
+  // throws InputError for the first that cannot be run, and for parts that overwrite each other
+  // (sweep_statements.h).
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
   // A name of data/sweeps, or a JSON file.

@@ -19,8 +19,9 @@ std::vector<std::string> note_lines(const SweepResult& result) {
 }
 
 void refuse_notes(const SweepResult& result) {
-  const std::vector<std::string> lines = note_lines(result);
-  if (!lines.empty()) throw InputError("--strict", lines.front());
+  std::string all;
+  for (const std::string& line : note_lines(result)) all += (all.empty() ? "" : "; ") + line;
+  if (!all.empty()) throw InputError("--strict", all);
 }
 
 }  // namespace remote_touch

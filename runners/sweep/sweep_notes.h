@@ -13,7 +13,7 @@ namespace remote_touch {
 // If there are several replicates, --replicate follows. Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
 
-// For --strict: throws InputError with the first of these lines. Does nothing if there is none.
+// For --strict: throws InputError with all these lines. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
 
 }  // namespace remote_touch

@@ -72,7 +72,12 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
                        const std::filesystem::path& file) {
   SweepPlan plan{sweep.plan(shard), attributes};
   std::error_code unreachable;
-  if (!std::filesystem::is_regular_file(file, unreachable)) return plan;
+  const auto there = std::filesystem::status(file, unreachable);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+      !std::filesystem::is_directory(there))
+    throw InputError(file.string(),
+                     "a pipe or a device: expected a file, because a sweep stores each run when it is done");
+  if (!std::filesystem::is_regular_file(there)) return plan;
   StoredSweep stored = read_sweep(file);
   require_same(file, stored.attributes, attributes);
   take_over(std::move(stored.result), file, plan.result);

@@ -4,21 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
+#include "runners/settings/changed_settings.h"
 
 namespace remote_touch {
 
 namespace {
 
 using Keys = std::vector<std::string>;
-
-// A place in a list may be written with zeros before it.
-Keys keys_of(const std::string& path) {
-  Keys keys = path_keys(path);
-  for (std::string& key : keys)
-    if (!key.empty() && key.find_first_not_of("0123456789") == std::string::npos)
-      key.erase(0, std::min(key.find_first_not_of('0'), key.size() - 1));
-  return keys;
-}
 
 bool is_within(const Keys& inner, const Keys& outer) {
   return outer.size() <= inner.size() && std::equal(outer.begin(), outer.end(), inner.begin());
@@ -47,17 +39,21 @@ bool overwrites(const Statement& later, const Statement& earlier) {
   return has_member(earlier.value, std::span(later.keys).subspan(earlier.keys.size()));
 }
 
-// The last --set counts.
+// The last --set counts, but none may discard another value with the object or list around it; that one --set
+// discards another is found before, see refuse_discarded().
 bool may_overwrite(const Statement& later, const Statement& earlier) {
   using Of = Statement::Of;
   if (earlier.of == later.of) return later.of != Of::set;
-  return earlier.of == Of::set && later.of == Of::option;
+  if (earlier.of != Of::set || later.of != Of::option) return false;
+  if (later.keys.size() >= earlier.keys.size()) return true;
+  const Json* const kept = find_value(later.value, std::span(earlier.keys).subspan(later.keys.size()));
+  return kept && *kept == earlier.value;
 }
 
 Statement option(Statement::Of of, const std::string& assignment, const std::string& begin) {
   auto [path, value] = read_assignment(assignment.substr(begin.size()));
   const std::string name = "--set " + begin + path;
-  return {of, name + "=" + shown(value), name, keys_of(path), std::move(value)};
+  return {of, name + "=" + shown(value), name, place_keys(path), std::move(value)};
 }
 
 std::vector<Statement> statements_of(const Json& json, const std::vector<std::string>& overrides,
@@ -70,11 +66,11 @@ std::vector<Statement> statements_of(const Json& json, const std::vector<std::st
     if (assignment.starts_with(own)) all.push_back(option(Of::option_of_own_experiment, assignment, own));
   if (const auto set = json.find("set"); set != json.end() && set->is_object())
     for (const auto& item : set->items())
-      all.push_back(
-          {Of::set, label + ": set." + item.key(), "set." + item.key(), keys_of(item.key()), item.value()});
+      all.push_back({Of::set, label + ": set." + item.key(), "set." + item.key(), place_keys(item.key()),
+                     item.value()});
   for (const std::string& assignment : of_experiment) all.push_back(option(Of::option, assignment, ""));
   for (const SweepAxis& axis : axes)
-    all.push_back({Of::axis, "", "the axis " + axis.parameter, keys_of(axis.parameter), {}});
+    all.push_back({Of::axis, "", "the axis " + axis.parameter, place_keys(axis.parameter), {}});
   return all;
 }
 
@@ -102,7 +98,7 @@ bool states(const Json& stated, const Json& run) {
 void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label) {
   for (std::size_t later = 0; later < axes.size(); ++later)
     for (std::size_t i = 0; i < later; ++i) {
-      const Keys a = keys_of(axes[i].parameter), b = keys_of(axes[later].parameter);
+      const Keys a = place_keys(axes[i].parameter), b = place_keys(axes[later].parameter);
       if (!is_within(a, b) && !is_within(b, a)) continue;
       throw InputError(label + ": axes." + std::to_string(later) + " " + axes[later].parameter,
                        "overlaps axes." + std::to_string(i) + " " + axes[i].parameter +

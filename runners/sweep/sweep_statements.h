@@ -16,10 +16,10 @@ void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& l
 
 // Throws InputError, with both paths, for a value of `set` or of --set that something later replaces: --set
 // of the sweep's own experiment comes first, then `set`, then --set, then the axes. A --set may replace a
-// value of `set`, and an earlier --set. A value replaces another also where one is an object that has the
-// other as a member; the elements of a list may be axes, because a list cannot be given without them.
-// overrides: all "key=value" of the command line; of_experiment: those that do not begin with a key of the
-// sweep. json: the sweep with the others applied.
+// value of `set`, and an earlier --set, but not the object or list around it. A value replaces another also
+// where one is an object that has the other as a member; the elements of a list may be axes, because a list
+// cannot be given without them. overrides: all "key=value" of the command line; of_experiment: those that do
+// not begin with a key of the sweep. json: the sweep with the others applied.
 void refuse_overwritten(const Json& json, const std::vector<std::string>& overrides,
                         const std::vector<std::string>& of_experiment, const std::vector<SweepAxis>& axes,
                         const std::string& label);

@@ -19,7 +19,9 @@
 #include "core/tool/mesh/mesh_corners.h"
 #include "core/tool/mesh/polygon_triangles.h"
 #include "runners/tool_files/obj_text.h"
+#include "runners/tool_files/ply_body.h"
 #include "runners/tool_files/ply_header.h"
+#include "runners/tool_files/stl_text.h"
 
 namespace remote_touch {
 
@@ -135,15 +137,16 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 namespace {
 
-// Owned by the importer. OBJ and PLY files without a byte order mark and without what the library reads
-// wrongly.
+// Owned by the importer. The library gets the bytes without a byte order mark and without what it reads
+// wrongly; what they do not say clearly is refused before.
 const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   const std::string ending = ending_of(file);
-  if (ending == ".stl") return importer.ReadFile(file, 0);
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   std::string bytes = opening_of(file, std::filesystem::file_size(file));
   if (bytes.starts_with(kMark)) bytes.erase(0, kMark.size());
-  bytes = ending == ".obj" ? only_shape(bytes) : with_first_byte_kept(std::move(bytes));
+  if (ending == ".obj") bytes = only_shape(bytes);
+  if (ending == ".ply") bytes = with_first_byte_kept(with_vertices_first(bytes));
+  if (ending == ".stl" && is_stl_text(bytes)) bytes = plain_stl(bytes);
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
 }
 
@@ -207,7 +210,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
 
 std::string mesh_reader_version() {
   return "assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
-         std::to_string(aiGetVersionPatch()) + ", concave polygons";
+         std::to_string(aiGetVersionPatch()) + ", concave polygons, strict text";
 }
 
 }  // namespace remote_touch

@@ -1,9 +1,13 @@
 #include "runners/tool_files/obj_text.h"
 
 #include <algorithm>
-#include <stdexcept>
+#include <cstdint>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "runners/tool_files/mesh_words.h"
 
 namespace remote_touch {
 
@@ -32,50 +36,85 @@ bool has_corners(std::string_view line) {
   return line.size() > 1 && (line[0] == 'f' || line[0] == 'l' || line[0] == 'p') && is_blank(line[1]);
 }
 
-// Keeps only the vertex of a corner such as "3/1/2".
-void add_vertices(std::string_view line, std::string& text) {
-  bool is_vertex = true;
-  for (const char c : line) {
-    if (is_blank(c) || c == '\r' || c == '\n' || c == '\\') is_vertex = true;
-    if (c == '/') is_vertex = false;
-    if (is_vertex) text += c;
-  }
+// The words of a line and its continuations, up to a comment.
+std::vector<std::string_view> words_before_comment(std::string_view line) {
+  return words_of(line.substr(0, line.find('#')), "\\");
 }
 
-// Drops the colour, because the library skips vertices whose colour does not have three numbers.
-void add_position(std::string_view line, std::string& text) {
-  std::vector<std::string_view> numbers;
-  for (std::size_t at = 1; at < line.size();) {
-    const std::size_t begin = line.find_first_not_of(" \t\r\n\\", at);
-    if (begin == std::string_view::npos || line[begin] == '#') break;
-    at = std::min(line.find_first_of(" \t\r\n\\", begin), line.size());
-    numbers.push_back(line.substr(begin, at - begin));
+// Copies the lines that say something of the shape, one by one.
+class ShapeLines {
+ public:
+  explicit ShapeLines(const std::string& obj) : obj_(obj) { text_.reserve(obj.size()); }
+
+  void add(std::size_t at, std::string_view line) {
+    at_ = at;
+    if (has_corners(line))
+      add_corners(line);
+    else if (line.size() > 1 && line[0] == 'v' && is_blank(line[1]))
+      add_position(line);
+    else if (is_used(line))
+      text_ += line;
   }
-  if (numbers.size() < 3) throw std::runtime_error("a vertex has fewer than three coordinates");
-  if (numbers.size() > 4) numbers.resize(3);
-  text += 'v';
-  for (const std::string_view number : numbers) text.append(" ").append(number);
-  text += '\n';
-}
+
+  // Faces may come before their vertices.
+  std::string take() {
+    if (farthest_ > vertices_)
+      refuse_line(obj_, farthest_at_,
+                  "vertex " + std::to_string(farthest_) + ": expected 1 to " + std::to_string(vertices_));
+    return std::move(text_);
+  }
+
+ private:
+  // Keeps only the vertex of a corner such as "3/1/2".
+  void add_corners(std::string_view line) {
+    text_ += line[0];
+    for (const std::string_view corner : words_before_comment(line.substr(1))) {
+      const std::string_view vertex = corner.substr(0, corner.find('/'));
+      const std::optional<std::int64_t> number = integer_of(vertex);
+      if (!number || *number == 0 || *number < -vertices_)
+        refuse_line(obj_, at_, "corner " + in_quotes(corner) + ": expected the number of a vertex");
+      if (*number > farthest_) farthest_ = *number, farthest_at_ = at_;
+      text_.append(" ").append(std::to_string(*number));  // without a plus and zeros before it
+    }
+    text_ += '\n';
+  }
+
+  // Drops the colour, because the library skips vertices whose colour does not have three numbers, and the
+  // weight w, by which it would divide: w belongs to rational curves and surfaces.
+  void add_position(std::string_view line) {
+    const std::vector<std::string_view> numbers = words_before_comment(line.substr(1));
+    if (numbers.size() < 3) refuse_line(obj_, at_, "a vertex has fewer than three coordinates");
+    if (numbers.size() == 5 || numbers.size() > 7)
+      refuse_line(obj_, at_,
+                  "a vertex has " + std::to_string(numbers.size()) +
+                      " numbers: expected x y z, then w, or a colour of 3 or 4");
+    for (const std::string_view number : numbers)
+      if (!is_number(number)) refuse_line(obj_, at_, in_quotes(number) + " in a vertex: expected a number");
+    text_ += 'v';
+    for (std::size_t i = 0; i < 3; ++i) text_.append(" ").append(numbers[i]);
+    text_ += '\n';
+    ++vertices_;
+  }
+
+  const std::string& obj_;
+  std::string text_;
+  std::size_t at_ = 0;  // of the line in the file
+  std::int64_t vertices_ = 0, farthest_ = 0;
+  std::size_t farthest_at_ = 0;
+};
 
 }  // namespace
 
 std::string only_shape(const std::string& obj) {
-  std::string text;
-  text.reserve(obj.size());
+  ShapeLines shape(obj);
   for (std::size_t at = 0, end = 0; at < obj.size(); at = end) {
     end = end_of_line(obj, at);
     std::string_view line(obj.data() + at, end - at);
     line.remove_prefix(
         static_cast<std::size_t>(std::find_if_not(line.begin(), line.end(), is_blank) - line.begin()));
-    if (has_corners(line))
-      add_vertices(line, text);
-    else if (line.size() > 1 && line[0] == 'v' && is_blank(line[1]))
-      add_position(line, text);
-    else if (is_used(line))
-      text += line;
+    shape.add(at, line);
   }
-  return text;
+  return shape.take();
 }
 
 }  // namespace remote_touch

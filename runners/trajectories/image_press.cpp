@@ -2,13 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/trajectories/nearest_object.h"
+#include "runners/trajectories/image_frames.h"
 
 namespace remote_touch {
+
+namespace {
+
+constexpr const char* kSubject = "trajectory.name = image-press";
+
+std::string pixel_text(int row, int column) {
+  return "row " + std::to_string(row) + ", column " + std::to_string(column);
+}
+
+}  // namespace
 
 Parameters parameters(ImagePress::Settings& s) {
   return {
@@ -31,21 +42,16 @@ Parameters parameters(ImagePress::Settings& s) {
 
 ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
     : settings_(settings), scenario_(scenario) {
-  const PointCloud cloud = scenario.cloud(0);
-  if (!cloud.image)
-    throw InputError("trajectory.name = image-press",
-                     "the frames are not images: expected a scenario with a camera");
-  image_ = *cloud.image;
+  FrameImage first = first_image(scenario, kSubject);
+  image_ = first.layout;
   if (settings.row >= image_.camera.height || settings.column >= image_.camera.width)
     throw InputError("trajectory.row, column", "expected below " + std::to_string(image_.camera.height) +
                                                    " and " + std::to_string(image_.camera.width));
-  choose_pixel(BridgeableImage(depth_image(cloud), image_.camera.fx, settings.bridge_m));
+  BridgeableImage image(std::move(first.depth), image_.camera.fx, settings.bridge_m);
+  const NearestObject object = choose_pixel(image);
   const double surface_m = seen(0).supported_m;
-  if (std::isnan(surface_m))
-    throw InputError("trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
-                     "no surface without edges and with holes of at most " + millimetres(settings.bridge_m) +
-                         " at this pixel of the first frame: expected another pixel, a smaller margin_m or a "
-                         "larger bridge_m");
+  if (std::isnan(surface_m)) refuse_pixel(image);
+  if (!object.pixels.empty()) find_missed_object(object, image.measured());
   if (!(settings.clearance_m < surface_m && -settings.depth_m < surface_m))
     throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
                                                             millimetres(surface_m) +
@@ -54,14 +60,13 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
 
 bool ImagePress::has_support(const DepthImage& image, int pixel) const {
   const int u = pixel % image.width, v = pixel / image.width;
-  return std::isfinite(
-      supported_depth(image, u, v, image_.camera.fx, {settings_.edge_jump_m, settings_.margin_m}));
+  return std::isfinite(supported_depth(image, u, v, image_.camera.fx, support()));
 }
 
 // The pixel of the nearest large object that is nearest to its middle and can be touched, without closed
 // holes if possible. A row or a column that is given is kept. Without such a pixel: the middle, which cannot
-// be touched or is not of the object.
-void ImagePress::choose_pixel(BridgeableImage image) {
+// be touched or is not of the object. Returns the object, without pixels if it was not needed.
+NearestObject ImagePress::choose_pixel(BridgeableImage& image) {
   row_ = settings_.row, column_ = settings_.column;
   NearestObject object;
   if (row_ < 0 || column_ < 0) object = nearest_large_object(image, image_.camera);
@@ -88,7 +93,41 @@ void ImagePress::choose_pixel(BridgeableImage image) {
     if (found == candidates.end()) continue;
     row_ = *found / width, column_ = *found % width;
     bridges_holes_ = bridges;
-    return;
+    break;
+  }
+  return object;
+}
+
+// The first frame shows no surface at the pixel: tries what the message proposes.
+void ImagePress::refuse_pixel(BridgeableImage& image) const {
+  std::string expected = "a smaller margin_m or a larger bridge_m";
+  for (const bool bridges : {false, true}) {
+    const DepthImage& surface = bridges ? image.closed() : image.measured();
+    const auto nearest = nearest_supported(surface, {row_, column_}, image_.camera.fx, support());
+    if (!nearest) continue;
+    expected = "the nearest pixel that can be touched, " + pixel_text(nearest->row, nearest->column) +
+               ", or " + expected;
+    const std::vector<int> object = nearest_large_object(image, image_.camera).pixels;
+    if (settings_.row >= 0 && settings_.column >= 0 &&
+        std::any_of(object.begin(), object.end(), [&](int pixel) { return has_support(surface, pixel); }))
+      expected = "-1 for both (the nearest object), " + expected;
+    break;
+  }
+  throw InputError("trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
+                   "no surface without edges and with holes of at most " + millimetres(settings_.bridge_m) +
+                       " at this pixel of the first frame: expected " + expected);
+}
+
+// For a pixel that was chosen from the image: whether something other than the nearest object is pressed.
+void ImagePress::find_missed_object(const NearestObject& object, const DepthImage& measured) {
+  const int pixel = row_ * image_.camera.width + column_;
+  const std::string pressed = pixel_text(row_, column_) + " is pressed, but ";
+  if (object.is_whole_scene) {
+    const auto nearer = nearer_small_object(measured, image_.camera, {pixel}, seen(0).supported_m);
+    if (nearer) missed_object_ = pressed + text_of(*nearer);
+  } else if (std::find(object.pixels.begin(), object.pixels.end(), pixel) == object.pixels.end()) {
+    missed_object_ = pressed + "the nearest object is around " + pixel_text(object.row, object.column) +
+                     ", and cannot be touched there";
   }
 }
 
@@ -96,16 +135,18 @@ const ImagePress::Seen& ImagePress::seen(int frame) const {
   const auto known = seen_.find(frame);
   if (known != seen_.end()) return known->second;
   const double focal_px = image_.camera.fx;
-  const DepthImage measured = depth_image(scenario_.cloud(frame));
+  const FrameImage image = image_of(scenario_, frame, image_, kSubject);
+  const DepthImage& measured = image.depth;
   Seen now;
+  now.X_WC = image.layout.X_WC;
   now.supported_m =
       supported_depth(bridges_holes_ ? bridged(measured, focal_px, settings_.bridge_m) : measured, column_,
-                      row_, focal_px, {settings_.edge_jump_m, settings_.margin_m});
+                      row_, focal_px, support());
   // A frame that shows a hole there has the margin of the first frame.
   double z = measured.z_m[static_cast<std::size_t>(row_) * measured.width + column_];
   if (!std::isfinite(z) && frame != 0) z = seen(0).supported_m;
   const auto around = [&](double radius_m) {
-    const int half = std::isfinite(z) ? std::max(1, static_cast<int>(focal_px * radius_m / z)) : 1;
+    const int half = reach_px(measured, focal_px, radius_m, z);
     return PixelWindow{column_ - half, column_ + half, row_ - half, row_ + half};
   };
   now.shown_m = median_depth(measured, around(0.5 * settings_.bridge_m));
@@ -136,20 +177,34 @@ DeviceState ImagePress::at(double time_s) const {
   double z = surface_m + offset_m;
   if (!(z > 0)) z = 0.5 * surface_m;  // the surface came so near that the clearance does not fit
   if (is_lifted) z = lifted_depth(z, seen(newest));
-  return {image_.X_WC * unproject(image_.camera, column_, row_, z)};
+  return {seen(newest).X_WC * unproject(image_.camera, column_, row_, z)};
 }
 
 std::optional<SurfacePlan> ImagePress::surface_plan(double time_s) const {
+  // A hand that lifts off or comes back moves by the first two along the ray at once. Meanwhile the surface
+  // may have moved: by up to 46 mm in the recordings of a camera that is carried by hand.
+  constexpr double kSurfaceMoves_m = 0.1;
+  const double step_m = std::abs(settings_.depth_m) + settings_.clearance_m + kSurfaceMoves_m;
   return SurfacePlan{travelled_m(time_s) >= settings_.clearance_m,
                      std::min(settings_.depth_m, 0.0) - settings_.edge_jump_m,
-                     std::max(settings_.depth_m, 0.0) + settings_.edge_jump_m, 0.5 * settings_.bridge_m};
+                     std::max(settings_.depth_m, 0.0) + settings_.edge_jump_m, 0.5 * settings_.bridge_m,
+                     step_m * unproject(image_.camera, column_, row_, 1).norm()};
+}
+
+std::string ImagePress::aim() const {
+  char depth[40];
+  std::snprintf(depth, sizeof depth, " at depth %.3f m", seen(0).supported_m);
+  return "image-press, " + pixel_text(row_, column_) + depth;
 }
 
 std::vector<Note> ImagePress::notes() const {
-  if (!bridges_holes_) return {};
-  return {{"holes bridged", "pixel " + std::to_string(column_) + ", " + std::to_string(row_) +
-                                ": holes up to trajectory.bridge_m = " + millimetres(settings_.bridge_m) +
-                                " wide are taken as closed"}};
+  std::vector<Note> notes;
+  if (bridges_holes_)
+    notes.push_back({"holes bridged", "pixel " + std::to_string(column_) + ", " + std::to_string(row_) +
+                                          ": holes up to trajectory.bridge_m = " +
+                                          millimetres(settings_.bridge_m) + " wide are taken as closed"});
+  if (!missed_object_.empty()) notes.push_back({"object not pressed", missed_object_});
+  return notes;
 }
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
+#include "runners/trajectories/nearest_object.h"
 #include "runners/trajectories/surface_support.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
@@ -33,14 +34,17 @@ class ImagePress final : public Trajectory {
     double margin_m = 0.01;
   };
 
-  // The scenario must outlive the trajectory. Throws InputError if its frames are not organised images, if
-  // the first frame shows nothing to touch at the pixel, or if the device would be behind the camera.
+  // The scenario must outlive the trajectory. Throws InputError if its first frame is not an image or shows
+  // nothing to touch at the pixel, or if the device would be behind the camera.
   ImagePress(const Settings& settings, const Scenario& scenario);
+  // Throws InputError if a frame has another size or camera than the first, see require_image_of().
   DeviceState at(double time_s) const override;
   double duration_s() const override { return 0; }
   std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
   // The press is meant to touch from the time at which it reaches the surface.
   std::optional<SurfacePlan> surface_plan(double time_s) const override;
+  // "image-press, row 220, column 450 at depth 0.523 m"
+  std::string aim() const override;
   std::vector<Note> notes() const override;
   int row() const { return row_; }
   int column() const { return column_; }
@@ -51,10 +55,14 @@ class ImagePress final : public Trajectory {
     double supported_m = 0;  // depth of the surface; NaN: no surface without gaps
     double shown_m = 0;      // median of the depths measured within bridge_m / 2; NaN: none
     double nearest_m = 0;    // least depth within margin_m or bridge_m / 2, the larger one; infinite: none
+    RigidTransform X_WC = RigidTransform::Identity();  // the camera
   };
   const Seen& seen(int frame) const;
-  void choose_pixel(BridgeableImage image);
+  Support support() const { return {settings_.edge_jump_m, settings_.margin_m}; }
+  NearestObject choose_pixel(BridgeableImage& image);
   bool has_support(const DepthImage& image, int pixel) const;
+  void find_missed_object(const NearestObject& object, const DepthImage& measured);
+  [[noreturn]] void refuse_pixel(BridgeableImage& image) const;
   double travelled_m(double time_s) const;
   double lifted_depth(double planned_m, const Seen& newest) const;
 
@@ -63,6 +71,7 @@ class ImagePress final : public Trajectory {
   ImageLayout image_;
   int row_ = 0, column_ = 0;
   bool bridges_holes_ = false;
+  std::string missed_object_;         // the text of the note "object not pressed"; empty: no note
   mutable std::map<int, Seen> seen_;  // cache, by frame: many ticks use the same one
 };
 

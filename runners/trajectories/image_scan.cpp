@@ -2,11 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/trajectories/image_frames.h"
+#include "runners/trajectories/nearest_object.h"
 
 namespace remote_touch {
+
+namespace {
+
+ScanRowRequest request_of(const ImageScan::Settings& s) {
+  return {s.row, s.first_column, s.last_column, s.span_m, s.edge_jump_m, s.bridge_m, s.margin_m};
+}
+
+}  // namespace
 
 Parameters parameters(ImageScan::Settings& s) {
   return {
@@ -40,25 +52,54 @@ std::string validate(const ImageScan::Settings& s) {
 }
 
 ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s), path_(Vec3::Zero()) {
-  const PointCloud cloud = scenario.cloud(0);
-  if (!cloud.image)
-    throw InputError("trajectory.name = image-scan",
-                     "the frames are not images: expected a scenario with a camera");
-  const CameraIntrinsics& camera = cloud.image->camera;
+  const FrameImage first = first_image(scenario, "trajectory.name = image-scan");
+  const CameraIntrinsics& camera = first.layout.camera;
   if (s.row >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
         "trajectory.row, first_column, last_column",
         "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
-  const DepthImage image = depth_image(cloud);
-  scan_ = find_scan_row(
-      image, camera, {s.row, s.first_column, s.last_column, s.span_m, s.edge_jump_m, s.bridge_m, s.margin_m});
-  if (scan_.patches.empty())
-    throw InputError("trajectory.row = " + std::to_string(scan_.row),
-                     std::string("no surface without edges and with holes of at most ") +
-                         millimetres(s.bridge_m) + " in this row" +
-                         (s.row < 0 ? " or another of the nearest object" : "") +
-                         ": expected another row, a smaller margin_m or a larger bridge_m");
-  plan_path(image, *cloud.image);
+  scan_ = find_scan_row(first.depth, camera, request_of(s));
+  if (scan_.patches.empty()) refuse_row(first.depth, camera);
+  if (s.row < 0) find_missed_object(first.depth, camera);
+  plan_path(first.depth, first.layout);
+}
+
+// The row shows no patch to touch: tries what the message proposes.
+void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& camera) const {
+  std::string expected = "a smaller margin_m or a larger bridge_m";
+  if (settings_.row < 0) {
+    expected = "another row, " + expected;
+  } else {
+    ScanRowRequest request = request_of(settings_);
+    request.row = -1;
+    const ScanRow other = find_scan_row(image, camera, request);
+    expected = (other.patches.empty() ? "another row, "
+                                      : "-1 (the nearest object: row " + std::to_string(other.row) + "), ") +
+               expected;
+  }
+  throw InputError("trajectory.row = " + std::to_string(scan_.row),
+                   "no surface without edges and with holes of at most " + millimetres(settings_.bridge_m) +
+                       " in this row" + (settings_.row < 0 ? " or another of the nearest object" : "") +
+                       ": expected " + expected);
+}
+
+// For a row that was chosen from the image: whether only other things than the nearest object are touched.
+void ImageScan::find_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
+  const std::string row = "row " + std::to_string(scan_.row);
+  if (!scan_.is_on_object) {
+    missed_object_ =
+        row + ": the nearest object has no surface without holes and edges; only others are touched";
+  } else if (scan_.is_whole_scene) {
+    std::vector<int> touched;
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const ScanPatch& patch : scan_.patches)
+      for (int u = patch.first_column; u <= patch.last_column; ++u) {
+        touched.push_back(scan_.row * camera.width + u);
+        nearest_m = std::min(nearest_m, scan_.depth_m[static_cast<std::size_t>(u)]);
+      }
+    const auto nearer = nearer_small_object(image, camera, touched, nearest_m);
+    if (nearer) missed_object_ = row + " is scanned, but " + text_of(*nearer);
+  }
 }
 
 // Approaches the first patch, follows each, and flies from one to the next in front of all that is between.
@@ -79,8 +120,7 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   const auto flight_offset = [&](int u, int from, int to) {
     const double other = depth_at(u == from ? to : from);
     const double planned = std::min(other - depth_at(u), 0.0) - s.clearance_m;
-    const int half =
-        std::max(1, static_cast<int>(camera.fx * s.margin_m / std::min(depth_at(from), depth_at(to))));
+    const int half = reach_px(image, camera.fx, s.margin_m, std::min(depth_at(from), depth_at(to)));
     const double nearest = nearest_depth(image, {from, to, scan_.row - half, scan_.row + half});
     // Nearer than an edge's jump the hand could touch; farther in front it needs no detour.
     if (nearest - (depth_at(u) + planned) >= s.edge_jump_m) return planned;
@@ -114,6 +154,23 @@ std::optional<SurfacePlan> ImageScan::surface_plan(double time_s) const {
                      std::max(settings_.depth_m, 0.0) + scan_.edge_jump_m, 0.5 * settings_.bridge_m};
 }
 
+std::string ImageScan::aim() const {
+  constexpr std::size_t kMostPatches = 8;  // a noisy row may have many: the line stays readable
+  std::string text = "image-scan, row " + std::to_string(scan_.row);
+  for (std::size_t i = 0; i < std::min(kMostPatches, scan_.patches.size()); ++i) {
+    const ScanPatch& patch = scan_.patches[i];
+    const auto begin = scan_.depth_m.begin();
+    const auto [least, most] = std::minmax_element(begin + patch.first_column, begin + patch.last_column + 1);
+    char columns[100];
+    std::snprintf(columns, sizeof columns, ", columns %d to %d at depth %.3f to %.3f m", patch.first_column,
+                  patch.last_column, *least, *most);
+    text += columns;
+  }
+  if (scan_.patches.size() > kMostPatches)
+    text += ", and " + std::to_string(scan_.patches.size() - kMostPatches) + " more parts of the row";
+  return text;
+}
+
 std::vector<Note> ImageScan::notes() const {
   std::vector<Note> notes;
   const std::string row = "row " + std::to_string(scan_.row);
@@ -125,10 +182,7 @@ std::vector<Note> ImageScan::notes() const {
                                           " between neighbouring pixels are taken as surface, more than "
                                           "trajectory.edge_jump_m = " +
                                           millimetres(settings_.edge_jump_m)});
-  if (!scan_.is_on_object && settings_.row < 0)
-    notes.push_back(
-        {"object not scanned",
-         row + ": the nearest object has no surface without holes and edges; only others are touched"});
+  if (!missed_object_.empty()) notes.push_back({"object not scanned", missed_object_});
   return notes;
 }
 

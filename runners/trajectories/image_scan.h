@@ -38,15 +38,20 @@ class ImageScan final : public Trajectory {
   DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
   double duration_s() const override { return path_.duration_s(); }
   std::optional<SurfacePlan> surface_plan(double time_s) const override;
+  // "image-scan, row 310, columns 256 to 287 at depth 0.601 to 0.612 m, columns ..."
+  std::string aim() const override;
   std::vector<Note> notes() const override;
   int row() const { return scan_.row; }
   const std::vector<ScanPatch>& patches() const { return scan_.patches; }
 
  private:
+  [[noreturn]] void refuse_row(const DepthImage& image, const CameraIntrinsics& camera) const;
+  void find_missed_object(const DepthImage& image, const CameraIntrinsics& camera);
   void plan_path(const DepthImage& image, const ImageLayout& layout);
 
   const Settings settings_;
   ScanRow scan_;
+  std::string missed_object_;  // the text of the note "object not scanned"; empty: no note
   PolylinePath path_;
   struct Interval {
     double begins_s = 0, ends_s = 0;

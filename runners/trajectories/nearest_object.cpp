@@ -22,6 +22,8 @@ struct Plane {
   double offset;
   // How far from the plane still belongs to it: sensor noise grows with the square of the depth.
   bool holds(const Vec3& p) const { return std::abs(normal.dot(p) - offset) < 0.008 + 0.005 * p.z() * p.z(); }
+  // p is on the side of the camera, which is at the origin.
+  bool is_camera_side(const Vec3& p) const { return (normal.dot(p) - offset) * offset < 0; }
 };
 
 std::vector<Vec3> sample(const DepthImage& image, const CameraIntrinsics& camera) {
@@ -56,8 +58,11 @@ std::optional<Plane> dominant_plane(const std::vector<Vec3>& points) {
   return best;
 }
 
+enum class Joined { by_sides, also_diagonally };
+
 // Pixels of one patch of continuous depth, taken out of open.
-std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>& open) {
+std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>& open,
+                            Joined joined = Joined::by_sides) {
   std::vector<int> patch{seed};
   open[static_cast<std::size_t>(seed)] = 0;
   for (std::size_t next = 0; next < patch.size(); ++next) {
@@ -71,9 +76,26 @@ std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>
     if (u > 0) visit(i - 1);
     if (u + 1 < image.width) visit(i + 1);
     if (i >= image.width) visit(i - image.width);
-    if (i + image.width < image.width * image.height) visit(i + image.width);
+    const bool has_below = i + image.width < image.width * image.height;
+    if (has_below) visit(i + image.width);
+    if (joined == Joined::by_sides) continue;
+    for (const int step : {-1, 1}) {
+      if (u + step < 0 || u + step >= image.width) continue;
+      if (i >= image.width) visit(i - image.width + step);
+      if (has_below) visit(i + image.width + step);
+    }
   }
   return patch;
+}
+
+// The area that the pixels see, as if it faced the camera.
+double area_m2(const DepthImage& image, const CameraIntrinsics& camera, const std::vector<int>& patch) {
+  double area = 0;
+  for (const int i : patch) {
+    const double z = image.z_m[static_cast<std::size_t>(i)];
+    area += z * z / (camera.fx * camera.fy);
+  }
+  return area;
 }
 
 NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
@@ -122,6 +144,39 @@ NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsic
   // Closing the holes of one and the same object moves its nearest part by less.
   const bool is_nearer = closed.nearest_depth_m < object.nearest_depth_m - kContinuous_m;
   return !closed.is_whole_scene && (object.is_whole_scene || is_nearer) ? closed : object;
+}
+
+std::string text_of(const NearerObject& object) {
+  return "an object at row " + std::to_string(object.row) + ", column " + std::to_string(object.column) +
+         " is nearer, at " + millimetres(object.depth_m) + "; it does not fill 1 % of the image without gaps";
+}
+
+std::optional<NearerObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
+                                                const std::vector<int>& touched, double touched_depth_m) {
+  constexpr double kMinArea_m2 = 0.02 * 0.02;
+  const std::optional<Plane> plane = dominant_plane(sample(image, camera));
+  const auto is_in_front = [&](const Vec3& p) {
+    return !plane || (plane->is_camera_side(p) && !plane->holds(p));
+  };
+  std::vector<char> open(image.z_m.size(), 0);
+  for (int i = 0; i < image.width * image.height; ++i) {
+    const double z = image.z_m[static_cast<std::size_t>(i)];
+    open[static_cast<std::size_t>(i)] =
+        std::isfinite(z) && is_in_front(unproject(camera, i % image.width, i / image.width, z));
+  }
+  for (const int pixel : touched)
+    if (open[static_cast<std::size_t>(pixel)]) take_patch(image, pixel, open, Joined::also_diagonally);
+
+  std::optional<NearerObject> nearest;
+  for (int i = 0; i < image.width * image.height; ++i) {
+    if (!open[static_cast<std::size_t>(i)]) continue;
+    const std::vector<int> patch = take_patch(image, i, open, Joined::also_diagonally);
+    if (area_m2(image, camera, patch) < kMinArea_m2) continue;
+    const NearestObject object = describe(image, patch);
+    if (object.nearest_depth_m < (nearest ? nearest->depth_m : touched_depth_m - kContinuous_m))
+      nearest = NearerObject{object.nearest_depth_m, object.row, object.column};
+  }
+  return nearest;
 }
 
 }  // namespace remote_touch

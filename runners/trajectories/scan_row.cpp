@@ -53,7 +53,7 @@ class RowSearch {
         }
       }
     return first_found.value_or(
-        ScanRow{request_.row >= 0 ? request_.row : object_.row, {}, {}, 0, false, false});
+        ScanRow{request_.row >= 0 ? request_.row : object_.row, {}, {}, 0, false, false, false});
   }
 
  private:
@@ -94,7 +94,7 @@ class RowSearch {
   }
 
   ScanRow attempt(int row, double edge_jump_m, bool bridges) {
-    ScanRow found{row, {}, {}, edge_jump_m, bridges, false};
+    ScanRow found{row, {}, {}, edge_jump_m, bridges, false, object_.is_whole_scene};
     for (int u = 0; u < camera_.width; ++u)
       found.depth_m.push_back(surface_depth(u, row, edge_jump_m, bridges));
     found.patches = supported_patches(found.depth_m, first_, last_, camera_.fx, request_.margin_m);

@@ -29,6 +29,7 @@ struct ScanRow {
   double edge_jump_m = 0;          // the largest depth jump that was taken as surface
   bool bridges_holes = false;      // holes up to bridge_m were closed
   bool is_on_object = false;       // a patch touches the nearest large object
+  bool is_whole_scene = false;     // there is no large object: the whole scene stands for it
 };
 
 // Returns the first row with a patch on the nearest large object. If there is none, it returns the first row

@@ -10,18 +10,11 @@
 
 namespace remote_touch {
 
-DepthImage depth_image(const PointCloud& cloud) {
-  const CameraIntrinsics& camera = cloud.image->camera;
-  const RigidTransform X_CW = cloud.image->X_WC.inverse();
-  DepthImage depth{camera.width, camera.height, std::vector<double>(cloud.size())};
-  for (std::size_t i = 0; i < cloud.size(); ++i) depth.z_m[i] = (X_CW * cloud.point(i)).z();
-  return depth;
-}
-
 double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support) {
+  if (u < 0 || v < 0 || u >= image.width || v >= image.height) return std::nan("");
   const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-  if (!std::isfinite(z)) return std::nan("");
-  const int half = std::max(1, static_cast<int>(focal_px * support.margin_m / z));
+  if (!(std::isfinite(z) && z > 0)) return std::nan("");
+  const int half = reach_px(image, focal_px, support.margin_m, z);
   if (u <= half || v <= half || u + half >= image.width || v + half >= image.height) return std::nan("");
   std::vector<double> seen;
   for (int y = v - half; y <= v + half; ++y) {
@@ -35,6 +28,26 @@ double supported_depth(const DepthImage& image, int u, int v, double focal_px, c
     }
   }
   return median_in_place(seen);
+}
+
+int reach_px(const DepthImage& image, double focal_px, double length_m, double depth_m) {
+  if (!(depth_m > 0)) return 1;
+  const double most = std::max({1, image.width, image.height});
+  return static_cast<int>(std::clamp(focal_px * length_m / depth_m, 1.0, most));
+}
+
+std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to, double focal_px,
+                                            const Support& support) {
+  std::optional<ImagePixel> nearest;
+  long least = std::numeric_limits<long>::max();
+  for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u) {
+      const long across = u - to.column, down = v - to.row, squared = across * across + down * down;
+      if (squared >= least || std::isnan(supported_depth(image, u, v, focal_px, support))) continue;
+      least = squared;
+      nearest = ImagePixel{v, u};
+    }
+  return nearest;
 }
 
 namespace {

@@ -9,17 +9,25 @@
 
 namespace remote_touch {
 
-// Depth along the optical axis of every pixel, NaN where nothing was measured. pre: cloud.image is set.
-DepthImage depth_image(const PointCloud& cloud);
-
 // Criteria for a surface without gaps.
 struct Support {
   double edge_jump_m = 0.006;  // a larger depth difference between neighbouring pixels is an edge
   double margin_m = 0.01;      // how far around a pixel the surface must go on
 };
 // Median depth of the square around a pixel that is as wide as the margin; NaN if the square contains a hole,
-// an edge or the image's border.
+// an edge or the image's border, or if the pixel is outside the image.
 double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support);
+
+// Returns how many pixels away a length appears at a depth: at least 1, and at most the width or height of
+// the image, the larger one. 1 if the depth is NaN or not positive.
+int reach_px(const DepthImage& image, double focal_px, double length_m, double depth_m);
+
+struct ImagePixel {
+  int row = 0, column = 0;
+};
+// Returns the pixel nearest to (row, column) that has a supported_depth(). Nothing: no pixel has one.
+std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to, double focal_px,
+                                            const Support& support);
 
 // The default of bridge_m. The proxy does not fall into a hole of this diameter, even if the depth of its rim
 // varies by edge_jump_m: (0.008 / 2)^2 + (0.006 / 2)^2 = r_c^2 with the default radius r_c = 0.005 m.

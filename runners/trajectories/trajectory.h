@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/rendering/frame.h"
@@ -19,12 +20,16 @@ struct SurfacePlan {
   // The surface at a pixel is the median of the depths measured within this radius of the pixel's viewing
   // ray.
   double reach_m = 0;
+  // The farthest that the hand is meant to move from one tick to the next while the surface is at rest; 0:
+  // not stated.
+  double max_step_m = 0;
 };
 
 // A pure function of time.
 class Trajectory {
  public:
   virtual ~Trajectory() = default;
+  // Throws InputError if the motion follows the frames and one of them cannot be used.
   virtual DeviceState at(double time_s) const = 0;
   // When the motion ends; the device rests afterwards. 0 if it has no end.
   virtual double duration_s() const = 0;
@@ -32,6 +37,9 @@ class Trajectory {
   virtual std::vector<Phase> phases() const { return {}; }
   // Returns nothing if the motion is not planned on depth images.
   virtual std::optional<SurfacePlan> surface_plan(double /*time_s*/) const { return {}; }
+  // One line on the pixels of the first frame that the motion follows, and their depth, if it is planned on
+  // depth images. Empty: it is not.
+  virtual std::string aim() const { return {}; }
   // Notes on how the motion was planned.
   virtual std::vector<Note> notes() const { return {}; }
   // Of a recorded live session: its loop missed the tick at that time, which is then skipped.

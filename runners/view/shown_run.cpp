@@ -83,9 +83,9 @@ std::string text_of(const std::vector<ShownFrame>& frames) {
   for (const ShownFrame& frame : frames)
     measured += frame.measured, in_box += frame.in_box, shown += frame.positions.size() / 3;
   const std::size_t count = std::max<std::size_t>(frames.size(), 1);
-  return std::to_string(frames.size()) + " frames; of " + std::to_string(measured / count) +
-         " points a frame " + std::to_string(in_box / count) + " are around the action, " +
-         std::to_string(shown / count) + " are shown" +
+  return std::to_string(frames.size()) + (frames.size() == 1 ? " frame; of " : " frames; of ") +
+         std::to_string(measured / count) + " points a frame " + std::to_string(in_box / count) +
+         " are around the action, " + std::to_string(shown / count) + " are shown" +
          (shown == in_box ? "" : ": all near the proxy, of the others some");
 }
 
@@ -165,7 +165,8 @@ struct ShownRun::State {
     return list;
   }
   Json events() const {
-    std::vector<TraceEvent> all = trace_events(*source.columns, steps());
+    std::vector<TraceEvent> all =
+        trace_events(*source.columns, steps(), held_depth_m(experiment.rendered_contact()));
     if (divergence) all.push_back(*divergence);
     std::stable_sort(all.begin(), all.end(),
                      [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });

@@ -131,6 +131,13 @@ Json axis_json(const Column& axis) {
   return {{"name", axis.name}, {"unit", axis.units}, {"values", std::move(values)}};
 }
 
+// How many runs of each cell are done.
+std::vector<int> done_in_cells(const SweepResult& result) {
+  std::vector<int> done(result.cell_count(), 0);
+  for (const std::size_t run : result.runs_in(RunState::done)) ++done[result.cell_of(run)];
+  return done;
+}
+
 // runs: those that the page shows, in the order of its list of runs.
 Json map_json(const std::string& file, const std::string& title, const SweepResult& result,
               const std::vector<std::size_t>& runs, const Judged& judged, PackedArrays& numbers) {
@@ -140,6 +147,7 @@ Json map_json(const std::string& file, const std::string& title, const SweepResu
            {"judged", judged.measure},
            {"threshold", judged.threshold},
            {"runs", runs},
+           {"done", done_in_cells(result)},
            {"notes", note_lines(result)},
            {"axes", Json::array()},
            {"measures", Json::array()}};

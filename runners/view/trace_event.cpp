@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "analysis/measures/surface_side.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {
@@ -20,11 +21,12 @@ std::vector<T> values_or_none(const ColumnSource& trace, const std::string& name
   return of_type ? std::move(*of_type) : std::vector<T>{};
 }
 
-void find_pop_throughs(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vector<TraceEvent>& events) {
   const auto distance_m = values_or_none<double>(trace, "signed_distance");
-  for (std::size_t i = 1; i < distance_m.size(); ++i)
-    if (distance_m[i - 1] >= 0 && distance_m[i] < 0)
-      events.push_back({i, "pop-through", "The proxy's centre gets below the true surface."});
+  SurfaceSide side(held_depth_m);
+  for (std::size_t i = 0; i < distance_m.size(); ++i)
+    if (side.add(distance_m[i]))
+      events.push_back({i, "pop-through", "The proxy's centre gets behind the true surface."});
 }
 
 void find_force_jump(const ColumnSource& trace, std::vector<TraceEvent>& events) {
@@ -97,9 +99,10 @@ void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& 
 
 }  // namespace
 
-std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps) {
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps,
+                                     double held_depth_m) {
   std::vector<TraceEvent> events;
-  find_pop_throughs(trace, events);
+  find_pop_throughs(trace, held_depth_m, events);
   find_force_jump(trace, events);
   if (trace.has("budget_exhausted"))
     find_spells(trace, "budget_exhausted", 1, events);

@@ -15,12 +15,14 @@ struct TraceEvent {
 };
 
 // In the order of their ticks:
-//   pop-through    the proxy's centre goes from above to below the true surface, where that is known
+//   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
 //   force jump     the largest change of the force from one tick to the next
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,
 //                  at most 50
 //   task           a step of the task began or ended
-// steps: what the steps of the task do, for the text; may be fewer than there are.
-std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps = {});
+// steps: what the steps of the task do, for the text; may be fewer than there are. held_depth_m: see
+// rendered_contact.h.
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps = {},
+                                     double held_depth_m = 0);
 
 }  // namespace remote_touch

@@ -9,12 +9,13 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxTimes = 200, kMaxChanges = 2000;
-constexpr double kEvery_s = 1.0 / 60;
+constexpr double kEvery_s = 1.0 / 60, kAbove_m = 1e-6;
 
-// Unknown, too, where the distance to it is: it has vanished.
+// NaN also if the distance to the surface is unknown because it has vanished. The distance is that of a
+// position a little above: beyond the border of a surface nothing is known below it.
 float height_at(const Scenario& scenario, double x, double z, double time_s) {
   const double y = scenario.surface_height(x, z, scenario.truth_time_s(time_s));
-  if (std::isnan(y) || std::isnan(scenario.signed_distance({x, y, z}, time_s)))
+  if (std::isnan(y) || std::isnan(scenario.signed_distance({x, y + kAbove_m, z}, time_s)))
     return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(y);
 }

@@ -58,8 +58,11 @@ class Scenario {
   // The same frame with every point computed: for drawing, for planning a path and as the oracle of points().
   virtual PointCloud cloud(int frame) const = 0;
 
-  // Ground truth at a time: distance to the true surface, m, positive on the side that the sensor sees; NaN
-  // where the truth is not known.
+  // Ground truth at a time: distance to the true surface, m, positive on the side that the sensor sees. NaN
+  // if the truth is not known, if the scene has no surface (single points), and beside a surface with a
+  // border. Beside it, behind the plane that ends at the border, there is no back: nothing hides p from the
+  // sensor, and the way there goes round the border and not through the surface. Above that plane the
+  // distance to the border is positive.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
   // Returns the unit normal of the true surface of signed_distance() at the point that is nearest to p,
   // towards the side that the sensor sees. Returns NaN in all three coordinates if the truth is not known. It

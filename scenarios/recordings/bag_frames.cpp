@@ -20,17 +20,19 @@ void check_image_size(const std::string& subject, const DepthImage& depth, std::
     return;
   throw InputError(subject, "has " + std::to_string(depth.width) + " x " + std::to_string(depth.height) +
                                 " pixels: expected " + std::to_string(width) + " x " +
-                                std::to_string(height) + ", as its CameraInfo has");
+                                std::to_string(height) +
+                                ", as its CameraInfo has (width, height, binning, roi)");
 }
 
 // The cameras agree in all that makes a depth image a cloud.
 bool same_camera(const CameraInfoMessage& a, const CameraInfoMessage& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
-         a.distortion == b.distortion && a.K == b.K && a.P == b.P;
+         a.distortion == b.distortion && a.K == b.K && a.P == b.P && a.binning_x == b.binning_x &&
+         a.binning_y == b.binning_y && a.region == b.region;
 }
 
 void drop_beyond(double max_depth_m, PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
     if (!(cloud.z[i] > max_depth_m)) continue;
     cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
   }
@@ -83,7 +85,8 @@ void BagFrames::choose_camera(const BagChoice& choice) {
                              : choice.images == BagChoice::Images::rectified;
   const CameraInfoMessage info = read_camera_info({message, wire_format(bag_->topics()[camera]), name});
   const MessagePlace& image = frames_.front();
-  check_image_size(subject(topic_, image), depth_of(image, 1), info.width, info.height);
+  const ImageSize size = image_size(info, name);
+  check_image_size(subject(topic_, image), depth_of(image, 1), size.width, size.height);
   rays_.emplace(info, rectified, name);
   note_changes(camera, [&](const MessageCursor& from) { return same_camera(read_camera_info(from), info); });
 }

@@ -43,8 +43,11 @@ class BagFrames {
   // none does.
   const std::string& camera_change() const { return camera_change_; }
 
-  // In the frame of the messages. What is farther than max_depth_m along z is NaN. Throws InputError about
-  // the message when it cannot be used.
+  // The path, the topic and the message of a frame, for a message about it.
+  std::string name_of(std::size_t frame) const { return subject(topic_, frames_[frame]); }
+
+  // In the frame of the messages. Pixels of an image whose depth z is above max_depth_m are NaN; the limit
+  // does not apply to clouds that are no image. Throws InputError about the message when it cannot be used.
   PointCloud cloud(std::size_t frame, double max_depth_m) const;
 
  private:

@@ -68,8 +68,8 @@ std::string frame_id_of(const std::string& path, const BagFile& bag, std::size_t
   constexpr std::uint64_t kLongestHeader = 1024;
   const std::string start = bag.start(bag.places(t).front(), kLongestHeader);
   MessageCursor cursor(start, wire_format(topic), path + ": " + topic.name);
-  const std::string frame_id = read_header(cursor).frame_id;
-  return frame_id.starts_with('/') ? frame_id.substr(1) : frame_id;
+  const MessageHeader header = read_header(cursor);
+  return header.frame_id.substr(header.frame_id.find('/') == 0 ? 1 : 0);
 }
 
 std::string listed(const BagFile& bag, const std::vector<std::size_t>& topics) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 
 namespace remote_touch {
@@ -61,7 +62,7 @@ std::vector<fs::path> paired_by_numbers(const std::vector<fs::path>& depth,
 std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != extension) continue;
+    if (!has_ending(entry.path(), extension) || is_hidden(entry.path())) continue;
     require_target(entry.path());
     files.push_back(entry.path());
   }
@@ -78,10 +79,15 @@ std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs
     throw InputError(folder.string(), "holds no .png file: expected the colour images of " +
                                           depth.front().string() + " and the others");
   if (colours.empty()) return images;
+  std::map<std::string, fs::path> of_stem;
+  for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);
   bool any = false;
-  for (std::size_t j = 0; j < depth.size(); ++j)
-    if (const fs::path colour = folder / depth[j].filename(); fs::exists(colour))
-      images[j] = colour, any = true;
+  for (std::size_t j = 0; j < depth.size(); ++j) {
+    const fs::path same = folder / depth[j].filename();  // beside 1.png there may be another 1.PNG
+    const auto found = of_stem.find(depth[j].stem().string());
+    if (found == of_stem.end()) continue;
+    images[j] = fs::exists(same) ? same : found->second, any = true;
+  }
   return any ? images : paired_by_numbers(depth, colours);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/cloud/near_origin.h"
@@ -24,8 +25,11 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
       {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0,
        "after the last frame: hold it, loop from the first, or ping_pong back and forth"},
-      {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
-      {"max_depth_m", &s.max_depth_m, 0.01, 100, "maximum depth; measurements beyond it are discarded"},
+      {"frame_rate_hz", &s.frame_rate_hz, 0, kMaxFrameRate_hz,
+       "frames per second, evenly; 0: at the times of the recording"},
+      {"max_depth_m", &s.max_depth_m, 0.01, 100,
+       "maximum depth, along the camera's axis; measurements beyond it are discarded; does not apply to clouds "
+       "without a camera"},
       {"truth_radius_m", &s.truth_radius_m, 1e-4, 1,
        "radius of the patch whose plane is used as true surface"},
       {"camera_position_m", &s.camera_position_m, -100, 100,
@@ -78,11 +82,15 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
     : settings_(settings),
       recording_(index_recording(find_recording(settings.path), settings.bag)),
       X_WC_(camera_pose(settings, recording_)),
+      times_(recording_, input_files(settings), settings.playback, settings.frame_rate_hz),
       statistics_(recording_.frames.size()) {
-  const FrameRange frames = frames_of(input_files(settings), recording_);
-  first_ = frames.first, count_ = frames.last - frames.first + 1;
-  rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
   require_points();
+  recording_.camera = layout_->camera.value_or(CameraIntrinsics{});
+  if (!layout_->camera && settings_.max_depth_m != Settings{}.max_depth_m)
+    throw InputError(
+        settings_.path,
+        "its points are no image of a camera and have no depth: expected scenario.max_depth_m = " +
+            std::to_string(Settings{}.max_depth_m) + ", the default, which does not apply to them");
 }
 
 // What shows nothing from the beginning on is a mistake: another unit, another limit, a file of nothing, a
@@ -92,24 +100,54 @@ void RecordedScene::require_points() const {
   const PointCloud first = cloud(0);
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first.point(i).norm() <= kReach_m) return;  // not where it is not finite
-  throw InputError(settings_.path, "its first frame has no point within scenario.max_depth_m = " +
-                                       std::to_string(settings_.max_depth_m) +
+  const std::string limit = std::to_string(layout_->camera ? settings_.max_depth_m : kReach_m);
+  throw InputError(settings_.path, "its first frame has no point within " +
+                                       (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m") +
                                        ": expected a frame of measured points, in metres");
 }
 
 int RecordedScene::frame_count() const {
-  return settings_.playback == Playback::hold || count_ == 1 ? count_ : std::numeric_limits<int>::max();
+  const bool ends = settings_.playback == Playback::hold || times_.count() == 1;
+  return ends ? times_.count() : std::numeric_limits<int>::max();
 }
 
-// The recorded time stamps, when the frames run once and in order at the recorded rate.
 double RecordedScene::captured_s(int frame) const {
-  if (settings_.playback != Playback::hold || settings_.frame_rate_hz > 0) return frame / rate_hz_;
-  const auto& frames = recording_.frames;
-  return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
+  return times_.captured_s(frame);
 }
 
 std::string RecordedScene::input() const {
-  return recording_.description + "; " + statistics_.text();
+  return description(recording_, times_.text()) + "; " + statistics_.text() +
+         (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply");
+}
+
+std::vector<Note> RecordedScene::unused_frames() const {
+  int passed = 0, after = 0;
+  for (int i = times_.count() - 1; i >= 0; --i)
+    if (!statistics_.has(static_cast<std::size_t>(times_.first() + i)))
+      ++(after == times_.count() - 1 - i ? after : passed);
+  if (passed + after == 0) return {};
+  const std::string reason = passed == 0  ? "the run ends before"
+                             : after == 0 ? "newer ones replaced them, or they were lost"
+                                          : "the run ends before " + std::to_string(after) +
+                                                " of them, newer ones replaced "
+                                                "the others, or these were lost";
+  return {{"frames unused", std::to_string(passed + after) + " of " + std::to_string(times_.count()) +
+                                " frames were not used: " + reason}};
+}
+
+// A camera has a rate between these; otherwise the stamps are probably not in seconds. The stamps of bags
+// have a unit.
+std::vector<Note> RecordedScene::unusual_rate() const {
+  constexpr double kSlowest_Hz = 1, kFastest_Hz = 1000;
+  if (!times_.follows_stamps()) return {};
+  const double rate_hz = times_.usual_rate_hz();
+  if (rate_hz >= kSlowest_Hz && rate_hz <= kFastest_Hz) return {};
+  char rate[32];
+  std::snprintf(rate, sizeof rate, "%.3g Hz: ", rate_hz);
+  const char* reason = recording_.bag          ? "this is the rate of the stamps in the messages"
+                       : rate_hz < kSlowest_Hz ? "stamps are read as seconds, these may be milliseconds"
+                                               : "stamps are read as seconds, these may not be";
+  return {{"unusual rate", std::string(rate) + reason}};
 }
 
 std::vector<Note> RecordedScene::input_notes() const {
@@ -119,49 +157,31 @@ std::vector<Note> RecordedScene::input_notes() const {
   if (recording_.bag && !recording_.bag->camera_change().empty())
     notes.push_back({"camera changes", recording_.bag->camera_change()});
   if (!recording_.remark.empty()) notes.push_back({"viewpoint unused", recording_.remark});
-  const auto used = static_cast<std::size_t>(count_);
-  if (settings_.playback == Playback::hold && statistics_.frames_read() < used)
-    notes.push_back({"frames unused", std::to_string(used - statistics_.frames_read()) + " of " +
-                                          std::to_string(used) +
-                                          " frames were not used: the run ends before"});
-  // A camera has a rate between these; otherwise the stamps are probably not in seconds.
-  constexpr double kSlowest_Hz = 1, kFastest_Hz = 1000;
-  if (const double rate = recording_.frame_rate_hz; rate < kSlowest_Hz || rate > kFastest_Hz)
-    notes.push_back(
-        {"unusual rate", std::to_string(rate) + " Hz: stamps are read as seconds, " +
-                             (rate < kSlowest_Hz ? "these may be milliseconds" : "these may not be")});
+  for (const std::vector<Note>& more : {unused_frames(), unusual_rate()})
+    notes.insert(notes.end(), more.begin(), more.end());
   for (Note& note : notes) note.text = settings_.path + ": " + note.text;
   return notes;
 }
 
-// Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...
-std::size_t RecordedScene::source_frame(int frame) const {
-  int place = 0;
-  switch (settings_.playback) {
-    case Playback::hold:
-      place = std::min(frame, count_ - 1);
-      break;
-    case Playback::loop:
-      place = frame % count_;
-      break;
-    case Playback::ping_pong: {
-      const int cycle = std::max(1, 2 * count_ - 2);
-      place = frame % cycle;
-      if (place >= count_) place = cycle - place;
-      break;
-    }
-  }
-  return static_cast<std::size_t>(first_ + place);
+// A frame of the layout in its camera's frame, or in its own coordinates if it has no camera. X_FC becomes
+// the camera in the coordinates of the file.
+PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) const {
+  PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &X_FC);
+  if (layout_)
+    conform(*layout_, frame_name(recording_, source), cloud);
+  else
+    layout_ = layout_of(cloud);
+  statistics_.add(source, cloud, settings_.max_depth_m);
+  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i)
+    if (cloud.z[i] > settings_.max_depth_m)
+      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  return cloud;
 }
 
 // A frame in the base frame. Without a registration the bits stay as they were read.
 PointCloud RecordedScene::registered(std::size_t source) const {
-  RigidTransform X_FC;  // the camera in the coordinates of the file
-  PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &X_FC);
-  statistics_.add(source, cloud, settings_.max_depth_m);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.z[i] > settings_.max_depth_m)
-      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  RigidTransform X_FC;
+  PointCloud cloud = as_recorded(source, X_FC);
   if (is_far_from_origin(cloud))
     throw InputError(settings_.path,
                      far_from_origin("frame " + std::to_string(source) + " has all its points"));
@@ -179,7 +199,7 @@ PointCloud RecordedScene::registered(std::size_t source) const {
 }
 
 std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
-  const std::size_t source = source_frame(frame);
+  const std::size_t source = times_.source(frame);
   const auto found =
       std::find_if(cache_.begin(), cache_.end(), [&](const CachedFrame& k) { return k.source == source; });
   if (found != cache_.end()) {
@@ -202,7 +222,7 @@ PointCloud RecordedScene::cloud(int frame) const {
     const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
     if (image) return image->cloud();
   }
-  return registered(source_frame(frame));
+  return registered(times_.source(frame));
 }
 
 namespace {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/parameters/parameter.h"
 #include "scenarios/interface/scenario.h"
+#include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/frame_statistics.h"
+#include "scenarios/recordings/frame_times.h"
 #include "scenarios/recordings/recording.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -16,24 +19,26 @@ namespace remote_touch {
 // The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another.
 class RecordedScene final : public Scenario {
  public:
-  enum class Playback { hold, loop, ping_pong };
+  using Playback = FrameTimes::Playback;
   struct Settings {
     std::string path;
     int first_frame = 0;
     int last_frame = -1;
     Playback playback = Playback::hold;
     double frame_rate_hz = 0;
-    double max_depth_m = 3;
+    double max_depth_m = 3;  // along the camera's axis; does not apply to clouds that are no image
     double truth_radius_m = 0.006;
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
     BagChoice bag;  // where the path is a bag of ROS
   };
 
-  // Throws InputError when the recording cannot be read.
+  // Throws InputError when the recording cannot be read, and when a later frame is not of the layout of the
+  // first one that is used, see conform().
   RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  double frame_rate_hz() const override { return rate_hz_; }
+  // The mean rate at which the frames are played.
+  double frame_rate_hz() const override { return times_.rate_hz(); }
   int frame_count() const override;
   double captured_s(int frame) const override;
   // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels; 12 read: ..."
@@ -51,15 +56,16 @@ class RecordedScene final : public Scenario {
 
  private:
   void require_points() const;
-  std::size_t source_frame(int frame) const;
+  PointCloud as_recorded(std::size_t source, RigidTransform& X_FC) const;
+  std::vector<Note> unused_frames() const;
+  std::vector<Note> unusual_rate() const;
   PointCloud registered(std::size_t source) const;
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
-  RecordingIndex recording_;
+  RecordingIndex recording_;  // its camera is that of the layout
   const RigidTransform X_WC_;
-  int first_ = 0, count_ = 0;
-  double rate_hz_ = 0;
+  const FrameTimes times_;
   // The frames used last, the newest in front: renderer, trajectory and truth use them in turn, and a short
   // part is played many times.
   struct CachedFrame {
@@ -68,6 +74,7 @@ class RecordedScene final : public Scenario {
   };
   mutable std::vector<CachedFrame> cache_;
   mutable FrameStatistics statistics_;
+  mutable std::optional<FrameLayout> layout_;  // that of frame 0, which the constructor reads
 };
 
 Parameters parameters(RecordedScene::Settings& s);

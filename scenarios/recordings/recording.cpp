@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "core/cloud/camera.h"
@@ -15,6 +14,7 @@
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "scenarios/recordings/png/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"
+#include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/json_text.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -29,7 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr double kNominalRate_hz = 30;  // of the Kinect class; used where a recording does not tell
 constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
-constexpr double kMaxRate_hz = 10000;  // the fastest haptic rate: more would only pile frames up in a tick
 
 // What camera.json tells of a camera; the rate, which TUM folders do not need, is read apart.
 struct CameraFile {
@@ -75,7 +74,7 @@ int pixel_count(const fs::path& file, const Json& json, const std::string& key) 
 
 double frame_rate(const fs::path& file, const Json& json) {
   const double value = number(file, json, "frame_rate_hz", true);
-  if (value <= kMaxRate_hz) return value;
+  if (value <= kMaxFrameRate_hz) return value;
   refuse(file, "frame_rate_hz = " + shown(json["frame_rate_hz"]) + ": expected above 0 to 10000");
 }
 
@@ -100,7 +99,7 @@ CameraFile read_camera(const fs::path& file, const Json& json) {
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
   if (frames < 2) return kNominalRate_hz;
   const double rate_hz = static_cast<double>(frames - 1) / last_s;
-  if (rate_hz > kMaxRate_hz)
+  if (rate_hz > kMaxFrameRate_hz)
     throw InputError(file, "has timestamps of more than 10000 frames a second: expected seconds");
   return rate_hz;
 }
@@ -123,6 +122,7 @@ RecordingIndex index_tum(const fs::path& folder) {
   }
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frames = associate_stamps(depth, colour);
+  index.is_stamped = true;
   const auto has_colour = [](const RecordedFrame& frame) { return !frame.colour.empty(); };
   if (!colour.empty() && std::none_of(index.frames.begin(), index.frames.end(), has_colour))
     refuse(folder / "rgb.txt", "no image is within 0.02 s of one in depth.txt; the first are " +
@@ -161,9 +161,15 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
   return index;
 }
 
+RecordingIndex index_of_clouds(RecordingIndex::Kind kind) {
+  RecordingIndex index;
+  index.kind = kind, index.metres_per_unit = 1, index.frame_rate_hz = kNominalRate_hz;
+  return index;
+}
+
 // Of camera.json only the rate serves: every PCD file tells its own intrinsics.
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
-  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}, {}, {}};
+  RecordingIndex index = index_of_clouds(RecordingIndex::Kind::pcd);
   if (fs::exists(camera_file)) {
     index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
     index.texts = {camera_file};
@@ -173,7 +179,8 @@ RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& cam
 }
 
 RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
-  RecordingIndex index{RecordingIndex::Kind::bag, {}, 1, kNominalRate_hz, {}, {}, {}, {}, {}};
+  RecordingIndex index = index_of_clouds(RecordingIndex::Kind::bag);
+  index.is_stamped = true;
   index.bag = std::make_shared<const BagFrames>(path, choice);
   index.camera = index.bag->camera();
   for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, {}, {}});
@@ -181,18 +188,10 @@ RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
   return index;
 }
 
-// One line for the user: what was found, and how it will be taken.
-std::string describe(const fs::path& path, const RecordingIndex& index) {
-  std::ostringstream text;
-  text.exceptions(std::ios::badbit);
-  const fs::path clean = (path / "").lexically_normal().parent_path();  // "DIR" and "DIR/" alike
-  const std::string kind = index.bag                                 ? index.bag->kind()
-                           : index.kind == RecordingIndex::Kind::pcd ? "PCD"
-                                                                     : "depth PNG";
-  text << clean.filename().string() << ": " << index.frames.size() << " frame(s) from " << kind << " at "
-       << index.frame_rate_hz << " Hz";
-  if (index.camera.width > 0) text << ", " << index.camera.width << " x " << index.camera.height << " pixels";
-  return text.str();
+// "DIR" and "DIR/" alike; "." has the name of the current folder. The root has no name but its path.
+std::string name_of(const fs::path& path) {
+  const fs::path clean = fs::absolute(path / "").lexically_normal().parent_path();
+  return clean.has_filename() ? clean.filename().string() : clean.string();
 }
 
 // The layouts in the order that index_recording promises.
@@ -204,7 +203,7 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (choice.depth_unit_m != 0) refuse(path, "is no bag of ROS: expected scenario.depth_unit_m = 0");
   if (choice.images != BagChoice::Images::by_name)
     refuse(path, "is no bag of ROS: expected scenario.images = by_name");
-  if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
+  if (fs::is_regular_file(path) && has_ending(path, ".pcd")) return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
                      ": expected a recording folder, a .pcd file or a bag (.mcap, .db3, .bag)");
@@ -247,8 +246,25 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
     const PointCloud first = index.bag->cloud(0, kNoLimit_m);
     if (first.image) index.camera = first.image->camera;
   }
-  index.description = describe(path, index);
+  index.name = name_of(path);
   return index;
+}
+
+std::string description(const RecordingIndex& index, const std::string& rate) {
+  const std::string kind = index.bag                                 ? index.bag->kind()
+                           : index.kind == RecordingIndex::Kind::pcd ? "PCD"
+                                                                     : "depth PNG";
+  std::string text =
+      index.name + ": " + std::to_string(index.frames.size()) + " frame(s) from " + kind + " at " + rate;
+  if (index.camera.width > 0)
+    text +=
+        ", " + std::to_string(index.camera.width) + " x " + std::to_string(index.camera.height) + " pixels";
+  return text;
+}
+
+std::string frame_name(const RecordingIndex& index, std::size_t frame) {
+  assert(frame < index.frames.size());
+  return index.bag ? index.bag->name_of(frame) : index.frames[frame].depth.string();
 }
 
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
@@ -261,7 +277,7 @@ PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max
     PcdCloud file = read_pcd(source.depth);
     if (camera_pose) *camera_pose = file.X_FC;
     PointCloud& cloud = file.cloud;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
       if (!(cloud.z[i] > max_depth_m)) continue;
       cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
     }

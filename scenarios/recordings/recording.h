@@ -14,6 +14,9 @@ namespace remote_touch {
 
 class BagFrames;
 
+// The fastest haptic rate: more frames would only pile up in a tick.
+inline constexpr double kMaxFrameRate_hz = 10000;
+
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
   std::filesystem::path depth;   // a depth PNG or a PCD file; of a bag: empty
@@ -27,8 +30,11 @@ struct RecordingIndex {
   CameraIntrinsics camera;
   double metres_per_unit = 0;  // of the depth PNG; others: 1
   double frame_rate_hz = 0;
+  // True if captured_s are stamps, and frame_rate_hz is their mean rate; else frame j is captured at
+  // j / frame_rate_hz.
+  bool is_stamped = false;
   std::vector<RecordedFrame> frames;  // at least one, captured_s strictly increasing
-  std::string description;            // one line
+  std::string name;                   // that of the folder or file, without the folders above it
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // of kind bag
@@ -49,6 +55,7 @@ struct RecordingIndex {
 //   times in file names are not either.
 // - FILE.pcd: one frame.
 // Frames are in the order of the file names, in which numbers are compared as numbers: sort_by_name().
+// Endings may be in capital letters. Hidden files, whose names begin with a dot, are ignored.
 //
 // camera.json: {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, optionally colour_registered
 // (default false); other keys are refused. Pixels, metres per unit, hertz.
@@ -56,14 +63,21 @@ struct RecordingIndex {
 // Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Depth images
 // are opened by read_frame only; of PCD files and clouds of a bag the first is read here.
 RecordingIndex index_recording(const std::filesystem::path& path, const BagChoice& choice = {});
-// The same without opening any PCD file: no description, and no camera for kind pcd or clouds of a bag.
+// The same without opening any PCD file: no name, and no camera for kind pcd or clouds of a bag.
 RecordingIndex list_recording(const std::filesystem::path& path, const BagChoice& choice = {});
 
+// One line for the user: "office: 71 frame(s) from depth PNG at RATE, 640 x 480 pixels".
+std::string description(const RecordingIndex& index, const std::string& rate);
+
+// Where a frame is, for a message about it: its file, or its message in a bag.
+std::string frame_name(const RecordingIndex& index, std::size_t frame);
+
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
-// What is missing or farther than max_depth_m is NaN. A PCD file or a bag may also hold a cloud that is not
-// organised. camera_pose, if any, becomes where the camera stood in the coordinates of a PCD file: its
-// VIEWPOINT where that is used, see read_pcd(); else the identity.
-// Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not of the camera's size.
+// What is missing is NaN, and so are pixels whose depth is above max_depth_m. A PCD file or a bag may also
+// hold a cloud that is not organised, or no image: max_depth_m does not apply to it. camera_pose, if any,
+// becomes where the camera stood in the coordinates of a PCD file: its VIEWPOINT where that is used, see
+// read_pcd(); else the identity. Pre: frame < index.frames.size(). Throws InputError if a file is unusable or
+// not of the camera's size.
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
                       RigidTransform* camera_pose = nullptr);
 

@@ -1,9 +1,11 @@
 #include "scenarios/recordings/recording_part.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/text_files/file_ending.h"
 
 namespace remote_touch {
 
@@ -45,11 +47,9 @@ namespace {
 
 // Images, the meshes of tools, and live sessions: nothing that a recording of frames is made from.
 bool is_single_file(const fs::path& file) {
-  std::string ending = file.extension().string();
-  if (ending == ".png") return true;
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".h5";
+  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return has_ending(file, ending); });
 }
 
 // As a whole, whatever the topic and the frames.

@@ -23,7 +23,10 @@ class FlatGrid final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  double signed_distance(const Vec3& p_W, double) const override { return p_W.y(); }
+  // The height; NaN below the plane beyond the grid.
+  double signed_distance(const Vec3& p_W, double) const override {
+    return settings_.grid.signed_distance(p_W, 0);
+  }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double) const override { return 0; }
 

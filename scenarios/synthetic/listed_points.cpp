@@ -1,8 +1,5 @@
 #include "scenarios/synthetic/listed_points.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace remote_touch {
 
 Parameters parameters(ListedPoints::Settings& s) {
@@ -27,14 +24,6 @@ PointCloud ListedPoints::cloud(int) const {
 
 std::shared_ptr<const NeighbourSearch> ListedPoints::points(int frame) const {
   return make_search(cloud(frame));
-}
-
-double ListedPoints::signed_distance(const Vec3& p_W, double) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  const std::vector<double>& p = settings_.points;
-  for (std::size_t i = 0; i + 2 < p.size(); i += 3)
-    nearest = std::min(nearest, (p_W - Vec3(p[i], p[i + 1], p[i + 2])).norm());
-  return nearest;
 }
 
 }  // namespace remote_touch

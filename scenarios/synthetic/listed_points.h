@@ -1,6 +1,7 @@
 // A few points given in the settings, such as the single point of 5.3.1.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ class ListedPoints final : public Scenario {
   int frame_count() const override { return 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // To the nearest point: points have no other side.
-  double signed_distance(const Vec3& p_W, double time_s) const override;
+  // NaN: single points are no surface and have no sides.
+  double signed_distance(const Vec3&, double) const override {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 
  private:
   const Settings settings_;

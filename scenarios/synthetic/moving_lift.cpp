@@ -26,7 +26,8 @@ MovingLift::MovingLift(const Settings& settings, const NoiseKey& key, const Kern
 
 double MovingLift::signed_distance(const Vec3& p_W, double time_s) const {
   const bool moving = settings_.truth == Truth::moving;
-  return p_W.y() - (moving ? lift_.height_m(time_s) : height_m(newest_frame(time_s)));
+  return settings_.grid.signed_distance(p_W,
+                                        moving ? lift_.height_m(time_s) : height_m(newest_frame(time_s)));
 }
 
 std::shared_ptr<const NeighbourSearch> MovingLift::points(int frame) const {

@@ -34,7 +34,7 @@ class MovingLift final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane of the newest frame, because pop-through is judged against what the camera has
-  // seen; or (Truth::moving) over the plane as it moves.
+  // seen; or (Truth::moving) over the plane as it moves. NaN below the plane beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));

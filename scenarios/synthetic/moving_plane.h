@@ -28,12 +28,15 @@ class MovingPlane final : public Scenario {
   // Up to the first frame in which the plane has come to rest, and stays.
   int frame_count() const override { return frame_count_; }
   std::vector<Phase> phases() const override {
+    if (settings_.rise_height_m == 0) return {};
     return {{"the rise of the plane", settings_.wait_s, settings_.wait_s + rising_s_}};
   }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Height over the plane as it is at that time, between frames too.
-  double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - height(time_s); }
+  // Height over the plane as it is at that time, between frames too; NaN below it beyond the grid.
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return settings_.grid.signed_distance(p_W, height(time_s));
+  }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 

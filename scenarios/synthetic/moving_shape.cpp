@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scenarios/synthetic/noisy_grid_search.h"
 
@@ -81,6 +82,14 @@ int MovingShape::frame_count() const {
   if (vanish_frame_ >= 0) return vanish_frame_ + 1;
   if (!motion_.ever_rests()) return std::numeric_limits<int>::max();
   return std::max(motion_.lift_frames(), empty_frame_ + 2);
+}
+
+std::vector<Phase> MovingShape::phases() const {
+  std::vector<Phase> list;
+  if (vanish_frame_ >= 0) list.push_back({"the vanishing of the surface", settings_.vanish_at_s});
+  if (empty_frame_ >= 0) list.push_back({"the empty frame", settings_.empty_frame_at_s});
+  for (Phase& phase : motion_.phases()) list.push_back(std::move(phase));
+  return list;
 }
 
 NoiseStream MovingShape::noise(int frame) const {

@@ -38,7 +38,9 @@ class MovingShape final : public Scenario {
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Up to the last frame that differs from the one before; noise is redrawn in those frames alone.
   int frame_count() const override;
-  std::vector<Phase> phases() const override { return motion_.phases(); }
+  // The loss of the points and the empty frame, then the motion, which comes last because a press may come
+  // after it.
+  std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Without points where the frame is empty.
   PointCloud cloud(int frame) const override;

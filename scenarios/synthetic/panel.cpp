@@ -1,6 +1,7 @@
 #include "scenarios/synthetic/panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,8 @@ namespace {
 
 // A border that falls on a point of the grid counts, and distances that differ by rounding are equal.
 constexpr double kSame_m = 1e-9;
+// Normals whose directions differ by less are those of one plane.
+constexpr double kParallel = 1e-6;
 
 int first_index(double half_m, double phase_m, double spacing_m) {
   return static_cast<int>(std::ceil((-half_m - phase_m - kSame_m) / spacing_m));
@@ -42,16 +45,43 @@ int columns(const FlatPanel& panel, const PanelGrid& grid) {
          first_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) + 1;
 }
 
+namespace {
+
+// True if the way from p to its nearest point q on the panels is a combination of the normals of the panels
+// that contain q: p lies over the inside of a panel, or over an edge or corner at which panels meet. False if
+// p lies beyond a border that no other panel continues.
+bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Vec3& q) {
+  Vec3 rest = p - q;  // without its parts along those normals
+  std::array<Vec3, 3> axes;
+  std::size_t count = 0;
+  for (const FlatPanel& panel : panels) {
+    if (count == axes.size()) break;
+    if ((panel.nearest(q) - q).norm() > kSame_m) continue;
+    Vec3 axis = panel.normal;
+    for (std::size_t i = 0; i < count; ++i) axis -= axis.dot(axes[i]) * axes[i];
+    if (axis.norm() < kParallel) continue;
+    axes[count] = axis.normalized();
+    rest -= rest.dot(axes[count]) * axes[count];
+    ++count;
+  }
+  return rest.norm() <= kSame_m;
+}
+
+}  // namespace
+
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity(), over = 0;
+  Vec3 foot = p;
   for (const FlatPanel& panel : panels) {
-    const double distance = (p - panel.nearest(p)).norm();
+    const Vec3 on_panel = panel.nearest(p);
+    const double distance = (p - on_panel).norm();
     const double height = panel.normal.dot(p - panel.centre);
     if (distance > nearest + kSame_m) continue;
     if (distance < nearest - kSame_m || std::abs(height) > std::abs(over)) over = height;
-    nearest = std::min(nearest, distance);
+    if (distance < nearest) nearest = distance, foot = on_panel;
   }
-  return over < 0 ? -nearest : nearest;
+  if (over >= 0) return nearest;
+  return faces_the_inside(panels, p, foot) ? -nearest : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace remote_touch

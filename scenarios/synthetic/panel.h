@@ -33,9 +33,10 @@ void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid);
 // Number of points in such a row.
 int columns(const FlatPanel& panel, const PanelGrid& grid);
 
-// Distance to the nearest of the panels, positive on the side that its normal points to. Beyond a border the
-// side is that of its plane; if several panels are equally near, that of the one whose plane is farthest from
-// p. Infinite without panels.
+// Distance to the nearest of the panels, m, positive on the side that its normal points to. If several panels
+// are equally near, the side is that of the panel whose plane is farthest from p. Infinite without panels.
+// Beyond a border that no other panel continues there is no back: the distance to the border is positive in
+// front of the plane that ends there, and the result is NaN behind it.
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p);
 
 }  // namespace remote_touch

@@ -47,14 +47,29 @@ std::string validate(const Plates::Settings& s) {
 Plates::Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings), key_(key), kernels_(kernels) {}
 
-int Plates::frame_count() const {
-  double until = 0;
+bool Plates::moves(std::size_t number) const {
+  const double* row = settings_.plates.data() + number * kColumns;
+  const bool has_velocity = row[PlateColumn::velocity_x] != 0 || row[PlateColumn::velocity_y] != 0;
+  return has_velocity && row[PlateColumn::until_s] > row[PlateColumn::from_s];
+}
+
+std::vector<Phase> Plates::phases() const {
+  std::vector<Phase> list;
   for (std::size_t i = 0; i < plate_count(); ++i) {
     const double* row = settings_.plates.data() + i * kColumns;
-    if ((row[PlateColumn::velocity_x] != 0 || row[PlateColumn::velocity_y] != 0) &&
-        row[PlateColumn::until_s] > row[PlateColumn::from_s])
-      until = std::max(until, row[PlateColumn::until_s]);
+    if (moves(i))
+      list.push_back({"the motion of plate " + std::to_string(i + 1), row[PlateColumn::from_s],
+                      row[PlateColumn::until_s]});
   }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Phase& a, const Phase& b) { return a.ends_s < b.ends_s; });
+  return list;
+}
+
+int Plates::frame_count() const {
+  double until = 0;
+  for (std::size_t i = 0; i < plate_count(); ++i)
+    if (moves(i)) until = std::max(until, settings_.plates[i * kColumns + PlateColumn::until_s]);
   if (settings_.noise_sigma_m > 0) return std::numeric_limits<int>::max();
   return static_cast<int>(std::ceil(until * settings_.frame_rate_hz)) + 1;
 }

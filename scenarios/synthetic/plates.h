@@ -33,10 +33,12 @@ class Plates final : public Scenario {
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
+  // The motion of each plate that moves, in the order of their ends.
+  std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // To the first plate, positive above it; beyond its border the distance to the border with the sign of the
-  // side of its plane.
+  // To the first plate, positive above it; beyond its border the distance to the border above the plane, and
+  // NaN below it.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.true_motion ? time_s : captured_s(newest_frame(time_s));
@@ -48,6 +50,7 @@ class Plates final : public Scenario {
   FlatPanel plate(std::size_t number, double time_s) const;
 
  private:
+  bool moves(std::size_t number) const;
   std::size_t plate_count() const { return settings_.plates.size() / kColumns; }
 
   const Settings settings_;

@@ -11,6 +11,8 @@ namespace remote_touch {
 namespace {
 
 constexpr double kFullRotation = 360 * kRadiansPerDegree;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSame_m = 1e-9;  // on the border, up to rounding
 
 }  // namespace
 
@@ -126,15 +128,30 @@ double Shape::signed_distance(const Vec3& p_S) const {
   if (settings_.kind == Kind::corner) return distance_to_corner(p_S);
   const bool over = p_S.x() >= x0_ && p_S.x() <= x1_ && p_S.z() >= z0_ && p_S.z() <= z1_;
   if (settings_.kind == Kind::flat && over) return p_S.y();  // to the last bit
-  return remote_touch::signed_distance(flanks_, p_S);
+  const double distance_m = remote_touch::signed_distance(flanks_, p_S);
+  // Deep below a ridge its lower borders are nearest, and the ridge still covers p.
+  return std::isnan(distance_m) && covers(p_S) ? -distance_to_flanks(p_S) : distance_m;
 }
 
-// Above the plane through the ball's middle its skin is nearest, below it the rim.
+bool Shape::covers(const Vec3& p_S) const {
+  return p_S.x() >= x0_ - kSame_m && p_S.x() <= x1_ + kSame_m && p_S.z() >= z0_ - kSame_m &&
+         p_S.z() <= z1_ + kSame_m;
+}
+
+// Without a sign.
+double Shape::distance_to_flanks(const Vec3& p_S) const {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const FlatPanel& flank : flanks_) nearest_m = std::min(nearest_m, (p_S - flank.nearest(p_S)).norm());
+  return nearest_m;
+}
+
+// Above the plane through the ball's middle its skin is nearest, below it the rim: the dome covers only what
+// lies within the rim.
 double Shape::distance_to_dome(const Vec3& p_S) const {
   const double r = settings_.radius_m, y = p_S.y() + r;
   const double beside = std::sqrt(p_S.x() * p_S.x() + p_S.z() * p_S.z());
   if (y >= 0) return std::sqrt(beside * beside + y * y) - r;
-  return -std::sqrt((beside - r) * (beside - r) + y * y);
+  return beside <= r + kSame_m ? -std::sqrt((beside - r) * (beside - r) + y * y) : kUnknown;
 }
 
 // Its solid is where all three planes are above: inside the nearest plane is nearest; outside the foot on a
@@ -145,7 +162,11 @@ double Shape::distance_to_corner(const Vec3& p_S) const {
     return std::max({faces_[0].dot(p), faces_[1].dot(p), faces_[2].dot(p)});
   };
   const double above = most_above(p_S);
-  if (above <= 0) return above;
+  if (above <= 0) {
+    const Vec3& face = *std::max_element(
+        faces_.begin(), faces_.end(), [&](const Vec3& a, const Vec3& b) { return a.dot(p_S) < b.dot(p_S); });
+    return covers(p_S) || covers(p_S - above * face) ? above : kUnknown;
+  }
   double nearest = p_S.norm();  // the top
   for (std::size_t k = 0; k < faces_.size(); ++k) {
     const Vec3 on_face = p_S - faces_[k].dot(p_S) * faces_[k];
@@ -170,6 +191,7 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
     return across * across + up * up;
   };
   double squared = std::min(squared_at(from), squared_at(to));
+  const double squared_to_ends = squared;
   double before = from;
   bool falls = distance_along_wave(p_S, before).value <= 0;
   for (int i = 1; i <= kSamples; ++i) {
@@ -180,7 +202,9 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
   }
   const double beside = p_S.z() - std::clamp(p_S.z(), z0_, z1_);
   const double distance = std::sqrt(squared + beside * beside);
-  return p_S.y() >= wave(x).height_m ? distance : -distance;
+  if (p_S.y() >= wave(x).height_m) return distance;
+  const bool has_foot = beside == 0 && squared < squared_to_ends;
+  return has_foot || covers(p_S) ? -distance : kUnknown;
 }
 
 // Half the slope, along x, of the squared distance from p to the wave at x; and how that changes.

@@ -34,10 +34,12 @@ class Shape {
   Vec3 point(double x, double z) const;
   // Unit, upwards; on a crease that of one of its sides.
   Vec3 normal(double x, double z) const;
-  // Distance to the surface, positive above. Beyond the border it is the distance to the border, with the
-  // sign of the side of the plane that ends there (sphere: the plane through its centre; ripple: the height
-  // at the border). Exact; for the ripple by a search along x, within 1e-6 m where its curvature is about
-  // that of a circle around p.
+  // Distance to the surface, positive above. Beyond the border it is the distance to the border, positive
+  // above the plane that ends there (sphere: the plane through its centre; ripple: the height at the border).
+  // NaN below that plane, where there is neither a front nor a back: p is not below the surface, and the
+  // border is the nearest part of it. For the corner, whose faces go on, NaN inside it if neither p nor the
+  // nearest point is within the grid. Exact; for the ripple by a search along x, within 1e-6 m where its
+  // curvature is about that of a circle around p.
   double signed_distance(const Vec3& p_S) const;
 
  private:
@@ -51,6 +53,8 @@ class Shape {
   Wave wave(double x) const;
   DistanceSlope distance_along_wave(const Vec3& p_S, double x) const;
   double foot_on_wave(const Vec3& p_S, double low, double high) const;
+  bool covers(const Vec3& p_S) const;  // p lies within the border along x and z
+  double distance_to_flanks(const Vec3& p_S) const;
   double distance_to_dome(const Vec3& p_S) const;
   double distance_to_wave(const Vec3& p_S) const;
   double distance_to_corner(const Vec3& p_S) const;

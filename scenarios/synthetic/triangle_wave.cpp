@@ -37,19 +37,27 @@ double TriangleWave::surface_height(double x, double, double) const {
 
 // Exact distance to the polyline across x; the wave does not change along z.
 double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
+  constexpr double kSame_m = 1e-9;
   const double start = settings_.grid.x(0), end = settings_.grid.x(settings_.grid.columns - 1);
   const double half = 0.5 * settings_.period_m;
   const int corners = static_cast<int>(std::ceil((end - start) / half)) + 1;
   double nearest = std::numeric_limits<double>::infinity();
+  bool is_at_end = false;
   for (int k = 0; k + 1 < corners; ++k) {
     const double x0 = start + k * half, x1 = std::min(x0 + half, end);
     const double y0 = surface_height(x0, 0, time_s), y1 = surface_height(x1, 0, time_s);
     const double ex = x1 - x0, ey = y1 - y0, px = p_W.x() - x0, py = p_W.y() - y0;
     const double t = std::clamp((px * ex + py * ey) / (ex * ex + ey * ey), 0.0, 1.0);
     const double dx = px - t * ex, dy = py - t * ey;
-    nearest = std::min(nearest, std::sqrt(dx * dx + dy * dy));  // not hypot: its bits depend on the machine
+    const double distance = std::sqrt(dx * dx + dy * dy);  // not hypot: its bits depend on the machine
+    if (!(distance < nearest)) continue;
+    const double foot_x = x0 + t * ex;
+    nearest = distance, is_at_end = foot_x <= start + kSame_m || foot_x >= end - kSame_m;
   }
-  return p_W.y() >= surface_height(p_W.x(), 0, time_s) ? nearest : -nearest;
+  if (p_W.y() >= surface_height(p_W.x(), 0, time_s)) return nearest;
+  // Beyond the ends of the grid in x the foot may still be on a flank.
+  const double x_m = is_at_end ? p_W.x() : settings_.grid.x(0);
+  return settings_.grid.covers(x_m, p_W.z()) ? -nearest : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::shared_ptr<const NeighbourSearch> TriangleWave::points(int frame) const {

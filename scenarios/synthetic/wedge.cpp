@@ -41,6 +41,13 @@ Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)
   std::tie(sine_, cosine_) = sin_cos(0.5 * settings.angle_deg * kRadiansPerDegree);
 }
 
+std::vector<Phase> Wedge::phases() const {
+  const Settings& s = settings_;
+  if (s.open_gap_m == s.closed_gap_m || !(s.open_end_s > s.close_start_s)) return {};
+  return {{"the closing of the walls", s.close_start_s, s.close_end_s},
+          {"the opening of the walls", s.open_start_s, s.open_end_s}};
+}
+
 double Wedge::gap_m(double time_s) const {
   const Settings& s = settings_;
   if (time_s < s.close_start_s || time_s >= s.open_end_s) return s.open_gap_m;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/parameters/parameter.h"
 #include "scenarios/synthetic/panel_scene.h"
@@ -30,6 +31,8 @@ class Wedge final : public PanelScene {
   Wedge(const Settings& settings, const NoiseKey&, const Kernels&);
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override { return frame_count_; }
+  // The closing and the opening; none if the walls always have the same distance.
+  std::vector<Phase> phases() const override;
   std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
   // Distance between the lower edges of the walls, m; linear in time while it changes.
   double gap_m(double time_s) const;

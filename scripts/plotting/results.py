@@ -12,6 +12,7 @@ from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, enum_name
 from plotting.plot_error import PlotError
 
 MAX_PANELS = 8
+DONE = 2  # state of a run of a sweep
 AUTOMATIC = [math.nan, math.nan]
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
 
@@ -89,6 +90,12 @@ def grid(file, axes):
             for each, place, is_log in zip(columns, places, log_axes(file, len(axes)))]
 
 
+def unknown(measure, is_done):
+    """How many finished runs have no value of a measure, in words; nothing if all have one."""
+    count = int(np.count_nonzero(is_done & ~np.isfinite(measure[()])))
+    return f", without {count} of {np.count_nonzero(is_done)} runs, whose value is unknown" if count else ""
+
+
 def sweep_panels(file):
     """A line for each measure over one axis, dots where that has words, a map over two."""
     axes = [dataset(file, f"/sweep/{name}") for name in text(file.attrs, "axes").split(",")]
@@ -97,11 +104,13 @@ def sweep_panels(file):
         raise PlotError(f"{file.filename}: a sweep over {len(axes)} axes: expected one or two, to be drawn")
     at = grid(file, axes)
     labels = [axis_label(axis.name.rsplit("/")[-1], place) for axis, place in zip(axes, at)]
+    is_done = dataset(file, "/sweep/state")[()] == DONE
     panels = []
     for name in names:
         measure = dataset(file, f"/sweep/{name}")
         values = column(measure, over_replicates(measure, len(axes)))
         mean = f", mean of up to {measure.shape[-1]} runs" if measure.ndim > len(axes) else ""
+        mean += unknown(measure, is_done)
         values.long_name += mean
         if len(axes) == 1:
             style = "dots" if at[0].names else "line"
@@ -134,7 +143,7 @@ def left_out(file):
                         ("are not done", states.count("pending") + states.count("elsewhere"))):
         if count:
             words.append(f"without {count} of {planned} runs, which {what}")
-    words += notes(file, np.ravel(state[()]) == 2)
+    words += notes(file, np.ravel(state[()]) == DONE)
     return "".join(f"; {each}" for each in words)
 
 

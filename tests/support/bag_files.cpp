@@ -128,7 +128,8 @@ std::string camera_message(int width, int height, const std::vector<double>& dis
   for (const double k : {10.0, 0.0, cx, 0.0, 10.0, cy, 0.0, 0.0, 1.0}) message.add(k);
   for (const double r : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) message.add(r);
   for (const double p : {20.0, 0.0, cx, 0.0, 0.0, 20.0, cy, 0.0, 0.0, 0.0, 1.0, 0.0}) message.add(p);
-  return message.add(std::uint32_t{0}).add(std::uint32_t{0}).done();
+  for (int i = 0; i < 6; ++i) message.add(std::uint32_t{0});  // binning, region of interest
+  return message.add(std::uint8_t{0}).done();
 }
 
 namespace {

@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// Why a reading or a command failed; what: a text that lives as long as the program.
+// Why a reading or a command failed; what: a text that lives as long as the device.
 struct DeviceFault {
   const char* what = nullptr;
   int code = 0;  // the vendor's, if there is one

@@ -16,9 +16,10 @@ SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const
 void SimulatedDevice::run(DeviceCycle& cycle) {
   start_s_ = clock().now_s();
   HapticDevice::run(cycle);
+  if (failure_) std::rethrow_exception(failure_);
 }
 
-DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
+void SimulatedDevice::move_to_now() {
   const auto now = static_cast<long long>((clock().now_s() - start_s_) * traits_.tick_rate_hz);
   const long long first = ticks_;
   ticks_ = std::max(ticks_ + 1, now);
@@ -26,12 +27,24 @@ DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
     const double time_s = static_cast<double>(tick) / traits_.tick_rate_hz;
     state_ = hand_.move(script_->at(time_s), time_s);
   }
+}
+
+DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept try {
+  if (fault_) return fault_;
+  const long long first = ticks_;
+  move_to_now();
   reading = placement_.of_device(state_);
   if (first > 0)
     reading.velocity_m_per_s =
         (reading.position_m - last_.position_m) * traits_.tick_rate_hz / static_cast<double>(ticks_ - first);
   last_ = reading;
   return {};
+} catch (const std::exception& error) {
+  failure_ = std::current_exception();
+  return fault_ = {error.what()};
+} catch (...) {
+  failure_ = std::current_exception();
+  return fault_ = {"the script of the simulated hand failed"};
 }
 
 DeviceFault SimulatedDevice::write(const Wrench& wrench) noexcept {

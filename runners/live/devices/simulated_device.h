@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <memory>
 
 #include "runners/live/devices/device_placement.h"
@@ -21,7 +22,9 @@ class SimulatedDevice final : public HapticDevice {
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
   const DeviceTraits& traits() const override { return traits_; }
+  // Throws what the script threw, after the loop has ended: an InputError if a frame cannot be used.
   void run(DeviceCycle& cycle) override;
+  // A fault, from then on, if the script throws.
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
   void release() noexcept override { armed_.store(false, std::memory_order_relaxed); }
@@ -31,6 +34,8 @@ class SimulatedDevice final : public HapticDevice {
   }
 
  private:
+  void move_to_now();
+
   // The largest number of steps of one tick that the hand makes in one read(). The earlier part of a longer
   // pause is covered by one longer step before them.
   static constexpr int kMaxTicksAtOnce = 200;
@@ -43,6 +48,8 @@ class SimulatedDevice final : public HapticDevice {
   long long ticks_ = 0;
   DeviceState state_;
   DeviceReading last_;
+  std::exception_ptr failure_;  // of the script
+  DeviceFault fault_;           // its text is in failure_
   std::atomic<bool> armed_ = true;
 };
 

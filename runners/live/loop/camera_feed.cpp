@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/parameters/input_error.h"
 #include "runners/sessions/sensor_cloud.h"
 
 namespace remote_touch {
@@ -55,6 +56,10 @@ bool CameraFeed::step(double patience_s) noexcept try {
       return end(source_->failure());
   }
   return true;
+} catch (const InputError& error) {
+  end(error.what());
+  refused_.store(true, std::memory_order_release);
+  return false;
 } catch (const std::bad_alloc&) {
   return end(kNoMemory);
 } catch (const std::exception& error) {

@@ -40,12 +40,15 @@ class CameraFeed {
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
              TripleBuffer<LiveFrame>& out, FrameSink sink, std::function<void(const Frame&)> on_frame = {});
 
-  // Waits at most patience_s for the next frame and passes it on. False: there will be no more.
+  // Waits at most patience_s for the next frame and passes it on. False: there will be no more. It checks
+  // each frame against the needs of the renderer and the rules, as FrameStream does in a simulated run.
   bool step(double patience_s) noexcept;
 
   // For other threads.
   CameraCounts counts() const;  // so far
   std::string ended() const;    // why there will be no more frames; empty while there may be
+  // True if they ended with an input error: a frame that cannot be used, as ended() says.
+  bool has_refused() const { return refused_.load(std::memory_order_acquire); }
   double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the clock
   bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }    // a frame, to the servo
   const SensorView& view() const { return source_->view(); }
@@ -76,7 +79,7 @@ class CameraFeed {
   std::deque<Frame> held_;
   std::atomic<double> newest_s_;
   std::string why_;
-  std::atomic<bool> ended_ = false, has_sent_ = false;
+  std::atomic<bool> ended_ = false, refused_ = false, has_sent_ = false;
 };
 
 }  // namespace remote_touch

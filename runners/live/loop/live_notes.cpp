@@ -41,12 +41,17 @@ void add_unused_frames(const CameraCounts& camera, std::vector<Note>& notes) {
 std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
                                     const std::string& depth, const Kernels& kernels) {
   const auto is_simulated = [](const std::string& address) { return address.starts_with("sim:"); };
-  std::vector<Phase> phases;
+  std::vector<Phase> phases = experiment.phases();
+  const auto add = [&](std::vector<Phase> more) {
+    for (Phase& phase : more) phases.push_back(std::move(phase));
+  };
   if (!is_simulated(device) && !is_simulated(depth)) return phases;
   const auto scenario = experiment.build_scenario(kernels);
-  if (is_simulated(depth)) phases = scenario->without_faults().phases();
-  if (is_simulated(device))
-    for (Phase& phase : experiment.build_trajectory(*scenario)->phases()) phases.push_back(std::move(phase));
+  if (is_simulated(depth)) add(scenario->without_faults().phases());
+  if (is_simulated(device)) {
+    add(experiment.build_trajectory(*scenario)->phases());
+    add(experiment.operator_phases());
+  }
   return phases;
 }
 

@@ -10,8 +10,9 @@
 
 namespace remote_touch {
 
-// Returns the phases of the motions that the program generates in a live session: those of the scene if the
-// sensor is simulated (depth "sim:..."), and those of the hand if the device is simulated (device "sim:...").
+// Returns the phases of a live session: those of Experiment::phases(); those of the scene if the sensor is
+// simulated (depth "sim:..."); and those of the hand and the operator if the device is simulated (device
+// "sim:...").
 std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
                                     const std::string& depth, const Kernels& kernels);
 

@@ -22,6 +22,12 @@ std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
                         : std::numeric_limits<std::int64_t>::max();
 }
 
+// A run whose time is over may have read files that have changed meanwhile.
+std::string with_refusal(const std::string& ended, const std::string& refused) {
+  if (refused.empty() || ended.find(refused) != std::string::npos) return ended;
+  return ended + (ended.empty() ? "" : "; ") + refused;
+}
+
 }  // namespace
 
 std::size_t expected_points(const SensorView& view) {
@@ -38,6 +44,7 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       renderer_(experiment.build_renderer(*options.kernels, switches_)),
       device_(std::move(device)),
       rows_(kRows),
+      contact_(experiment),
       phases_(simulated_phases(experiment, options.device, options.depth, *options.kernels)) {
   require_rate();
   const SensorView& view = source->view();
@@ -49,15 +56,23 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
         const std::lock_guard lock(told_mutex_);
         told_.push_back(line);
       });
-  logger_ = std::make_unique<LiveLogger>(
-      rows_, rate_hz_, recorder(experiment, view, registration * view.X_WC), options.on_tick);
+  const auto on_tick = [this](const LiveTick& tick) {
+    contact_.add(tick, static_cast<double>(tick.number) / rate_hz_);
+    if (options_.on_tick) options_.on_tick(tick);
+  };
+  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_,
+                                         recorder(experiment, view, registration * view.X_WC), on_tick);
   const auto sink = [this](const SensorFrame& sensed, const Frame& frame, std::uint64_t off) {
     return logger_->record(sensed, frame.captured_s, off);
+  };
+  const auto on_frame = [this](const Frame& frame) {
+    contact_.add(frame);
+    if (options_.on_frame) options_.on_frame(frame);
   };
   const std::int64_t start_ns = clock_.now_ns();
   ends_ns_ = end_ns(start_ns, options.duration_s);
   camera_ = std::make_unique<CameraFeed>(std::move(source), std::move(processing), *renderer_, registration,
-                                         clock_, start_ns, frames_, sink, options.on_frame);
+                                         clock_, start_ns, frames_, sink, on_frame);
   force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
@@ -93,6 +108,7 @@ void LiveParts::run_loop() noexcept {
   try {
     device_->run(*servo_);
   } catch (...) {
+    loop_failure_ = std::current_exception();
     loop_failed_ = true;
   }
   device_->release();
@@ -102,16 +118,18 @@ void LiveParts::run_loop() noexcept {
 LiveResult LiveParts::finish() {
   LiveResult result;
   is_over();  // a loop that has ended by itself may be ahead of the last look
+  result.refused = why_refused();
+  const std::string ended = with_refusal(ended_, result.refused);
   logger_->finish([&](const LiveLog& log) {
     result.report = report(log);
-    TextAttributes attributes{{"ended", ended_.empty() ? "an error ended the program" : ended_}};
+    TextAttributes attributes{{"ended", ended.empty() ? "an error ended the program" : ended}};
     add_report(attributes, result.report);
     return attributes;
   });
   report_told();
   result.device = device_->traits().name;
   result.force_scale = force_scale_;
-  result.ended = logger_->failure().empty() ? ended_ : logger_->failure();
+  result.ended = logger_->failure().empty() ? ended : logger_->failure();
   result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() || loop_failed_ ||
                   ended_ == kLoopEnded;
   result.lost = why_lost();
@@ -126,13 +144,36 @@ std::string LiveParts::why_lost() const {
   return camera_->ended() == CameraFeed::kNoMemory ? "out of memory for frames" : std::string();
 }
 
+std::string LiveParts::why_refused() const {
+  if (const std::string why = unusable_frame_of_hand(); !why.empty()) return why;
+  return camera_->has_refused() ? camera_->ended() : changed_input();
+}
+
+std::string LiveParts::changed_input() const try {
+  if (options_.check_inputs) options_.check_inputs();
+  return {};
+} catch (const InputError& error) {
+  return error.what();
+}
+
+std::string LiveParts::unusable_frame_of_hand() const try {
+  if (loop_failure_) std::rethrow_exception(loop_failure_);
+  return {};
+} catch (const InputError& error) {
+  return error.what();
+} catch (...) {
+  return {};
+}
+
 LiveCounts LiveParts::counts() const {
   return {camera_->counts(), servo_->heartbeat().stalls(), servo_->rows_lost()};
 }
 
 RunReport LiveParts::report(const LiveLog& log) const {
-  return report_of(
+  RunReport report = report_of(
       {options_.depth, camera_->view(), camera_->sensed(), camera_->counts(), log, rate_hz_, phases_});
+  for (Note& note : contact_.notes(*options_.kernels)) report.notes.push_back(std::move(note));
+  return report;
 }
 
 std::string LiveParts::camera_failure() const {
@@ -149,6 +190,7 @@ std::string LiveParts::why_over() const {
   if (options_.stop && *options_.stop) return "stopped by a signal";
   if (servo_->has_failed()) return std::string("the device failed: ") + servo_->trouble();
   if (loop_failed_) return "the device's loop failed";
+  if (camera_->has_refused()) return camera_->ended();
   if (const std::string why = logger_->failure(); !why.empty()) return why;
   if (clock_.now_ns() >= ends_ns_) return "its duration is over";
   // The adapter has left its loop although no tick told it to.
@@ -178,6 +220,7 @@ void LiveParts::report_force_scale() const {
 }
 
 std::string LiveParts::camera_trouble() const {
+  if (camera_->has_refused()) return {};  // the run ends, and why is said then
   const char* const held = camera_->has_sent() ? "the last cloud stays" : "there is nothing to touch";
   if (const std::string why = camera_->ended(); !why.empty()) return "no more frames (" + why + "): " + held;
   if (clock_.now_s() - camera_->newest_s() <= LiveLog::kStaleFrame_s) return {};

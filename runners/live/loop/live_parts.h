@@ -3,12 +3,14 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "runners/live/loop/camera_feed.h"
+#include "runners/live/loop/live_contact.h"
 #include "runners/live/loop/live_logger.h"
 #include "runners/live/loop/live_run.h"
 
@@ -54,6 +56,9 @@ class LiveParts {
   std::string camera_failure() const;
   std::string why_over() const;
   std::string why_lost() const;
+  std::string why_refused() const;
+  std::string unusable_frame_of_hand() const;
+  std::string changed_input() const;
   void report_line(const std::string& line) const;
   void report_told();
   void report_force_scale() const;
@@ -67,6 +72,7 @@ class LiveParts {
   std::int64_t ends_ns_ = 0;
   double force_scale_ = 1;
   std::atomic<bool> stop_ = false, loop_failed_ = false, loop_ended_ = false;
+  std::exception_ptr loop_failure_;  // of the loop's thread, for finish()
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;
@@ -77,6 +83,7 @@ class LiveParts {
   std::unique_ptr<LiveLogger> logger_;
   std::unique_ptr<CameraFeed> camera_;
   std::unique_ptr<Servo> servo_;
+  LiveContact contact_;
   const std::vector<Phase> phases_;  // see simulated_phases()
   std::string ended_;                // why
   LiveTrouble reported_;

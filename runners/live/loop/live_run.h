@@ -30,6 +30,9 @@ struct LiveOptions {
   std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: re-arms after a latch; reset
   std::function<void(const std::string&)> report_line;  // lines to the user while it runs
   std::function<void()> on_start;                       // device and sensor are open, and the loop begins
+  // Called after the loop, before the recording is finished. It throws InputError if a file that the run has
+  // read has changed meanwhile. Empty: no check.
+  std::function<void()> check_inputs;
   // Report of the run so far, called from the thread that writes the recording, so that no other thread uses
   // HDF5.
   std::function<void(const LiveReport&)> on_report;
@@ -53,6 +56,10 @@ struct LiveResult {
   double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness
   std::string ended;       // why it ended
   bool failed = false;     // device, sensor or renderer failed, or the gate was latched at the end
+  // The frame or the file that cannot be used, an input error in one line: a frame that does not fit the view
+  // of its sensor, that the renderer or the simulated hand cannot use, or an input that has changed. Empty:
+  // none.
+  std::string refused;
   std::string lost;  // why the recording or the log is not whole, or there was no memory; empty: neither
 };
 

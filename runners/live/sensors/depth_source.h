@@ -17,7 +17,9 @@ class DepthSource {
   virtual ~DepthSource() = default;
 
   virtual const SensorView& view() const = 0;
-  // Waits for the next frame, timeout_s at most. Reuses the memory of the given frame.
+  // Waits for the next frame, timeout_s at most. Reuses the memory of the given frame. Throws InputError,
+  // which names the frame, for one that cannot be used: the run then ends. A camera that was lost has
+  // `failed` instead: its last frame remains in use.
   virtual SensorState next(SensorFrame& frame, double timeout_s) = 0;
   // Why it failed, in one line.
   virtual std::string failure() const { return {}; }

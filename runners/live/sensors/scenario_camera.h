@@ -4,26 +4,26 @@
 #include <memory>
 
 #include "runners/live/sensors/depth_source.h"
+#include "runners/live/sensors/frame_encoder.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 
 // Gives the scenario's frame at the time since the first next(), at the scenario's frame rate; frames for
-// which there was no time are skipped. Depths are rounded to kUnit_m, as a sensor does. A scene at rest is
-// repeated.
+// which there was no time are skipped. Depths are rounded, as a sensor does, see FrameEncoder. A scene at
+// rest is repeated.
 class ScenarioCamera final : public DepthSource {
  public:
-  static constexpr double kUnit_m = 1e-4;  // 16 bits, so depths up to 6.5 m
+  ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock,
+                 const FrameEncoder::Settings& settings = {});
 
-  // A scenario whose frames are no depth images is seen by a sensor that sends clouds, in the world frame.
-  ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock);
-
-  const SensorView& view() const override { return view_; }
+  const SensorView& view() const override { return encoder_.view(); }
+  // Throws InputError, which names the frame, if it cannot be read or does not fit the view.
   SensorState next(SensorFrame& frame, double timeout_s) override;
 
  private:
   std::unique_ptr<const Scenario> scenario_;
-  SensorView view_;
+  FrameEncoder encoder_;
   Clock& clock_;
   double start_s_ = -1;  // of the clock; -1: not started
   int next_ = 0;

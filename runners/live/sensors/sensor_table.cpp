@@ -1,5 +1,8 @@
 #include "runners/live/sensors/sensor_table.h"
 
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "runners/live/devices/uri.h"
@@ -19,28 +22,54 @@ Availability always(const char* what) {
   return {true, true, what};
 }
 
+// The depths of a recorded session keep their unit.
+double session_unit_m(const std::string& path) {
+  return SessionReader(find_recording(path)).view().metres_per_unit;
+}
+
+// Rules are checked with the scenario's own frames: a sensor with colours sends them in every frame.
+std::function<void(const PointCloud&)> rules_of(const Experiment& experiment) {
+  const auto fixtures = std::make_shared<const FixtureAssignment>(experiment.build_fixtures());
+  return [fixtures](const PointCloud& cloud) { fixtures->require(cloud); };
+}
+
+FrameEncoder::Settings settings_of(const Experiment& experiment) {
+  FrameEncoder::Settings settings;
+  settings.require = rules_of(experiment);
+  if (experiment.value_at_start("scenario.name") == "live-session")
+    settings.unit_m = session_unit_m(experiment.value_at_start("scenario.path").get<std::string>());
+  if (const auto max_m = experiment.value_at_start("scenario.max_depth_m"); max_m.is_number())
+    settings.max_depth_m = max_m.get<double>();
+  return settings;
+}
+
 std::unique_ptr<DepthSource> open_simulated(const std::string& address, SensorContext context) {
   if (!address.empty())
     throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
   if (!context.scenario) context.scenario = context.experiment.build_scenario(context.kernels);
-  return std::make_unique<ScenarioCamera>(std::move(context.scenario), context.clock);
+  context.experiment.check_needs(*context.scenario);
+  return std::make_unique<ScenarioCamera>(std::move(context.scenario), context.clock,
+                                          settings_of(context.experiment));
 }
 
-// Played at the rate of the recording, over and over, there and back.
+// Played at the times of the recording, over and over, there and back.
 std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorContext context) {
   RecordedScene::Settings settings;
   settings.path = address;
   settings.playback = RecordedScene::Playback::ping_pong;
+  auto scene = std::make_unique<RecordedScene>(settings, context.experiment.settings().key, context.kernels);
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<RecordedScene>(settings, context.experiment.settings().key, context.kernels),
-      context.clock);
+      std::move(scene), context.clock,
+      FrameEncoder::Settings{
+          .name = address, .max_depth_m = settings.max_depth_m, .require = rules_of(context.experiment)});
 }
 
 std::unique_ptr<DepthSource> open_session(const std::string& address, SensorContext context) {
+  auto session = std::make_unique<SessionScene>(SessionScene::Settings{address},
+                                                context.experiment.settings().key, context.kernels);
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<SessionScene>(SessionScene::Settings{address}, context.experiment.settings().key,
-                                     context.kernels),
-      context.clock);
+      std::move(session), context.clock,
+      FrameEncoder::Settings{.name = address, .unit_m = session_unit_m(address)});
 }
 
 template <std::unique_ptr<DepthSource> (*open)(const std::string&, Clock&)>
@@ -62,19 +91,25 @@ constexpr SensorEntry kSensors[] = {
     {"realsense", "realsense:SERIAL", "Intel RealSense, by librealsense 2", open_at<open_realsense>,
      realsense_availability},
     {"dir", "dir:FOLDER", "a folder of depth images or organised clouds", open_recording,
-     [] { return always("reads files"); }},
+     [] { return always("reads files"); }, true},
     {"tum", "tum:FOLDER", "a folder in the layout of the TUM RGB-D benchmark", open_recording,
-     [] { return always("reads files"); }},
+     [] { return always("reads files"); }, true},
     {"pcd", "pcd:FILE", "an organised PCD file, or a folder of them", open_recording,
-     [] { return always("reads files"); }},
+     [] { return always("reads files"); }, true},
     {"replay", "replay:FILE", "the frames of a recorded live session, in real time", open_session,
-     [] { return always("reads files"); }},
+     [] { return always("reads files"); }, true},
 };
 
 }  // namespace
 
 std::span<const SensorEntry> sensors() {
   return kSensors;
+}
+
+std::vector<RecordingPart> sensor_inputs(const std::string& text) {
+  const Uri uri = parse_uri("--depth", text);
+  if (!find_scheme(sensors(), "--depth", uri).reads_recording || uri.address.empty()) return {};
+  return {{uri.address}};
 }
 
 std::unique_ptr<DepthSource> open_sensor(const std::string& text, SensorContext context) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "runners/experiment/experiment.h"
 #include "runners/live/devices/availability.h"
@@ -25,11 +26,17 @@ struct SensorEntry {
   const char* summary;
   std::unique_ptr<DepthSource> (*open)(const std::string& address, SensorContext context);
   Availability (*availability)();
+  bool reads_recording = false;  // the address is the path of a recording
 };
 
 std::span<const SensorEntry> sensors();
 
-// Throws InputError when the sensor cannot be opened.
+// Returns the recording that the sensor reads: nothing for cameras, and for sim:, which shows the scenario of
+// the experiment.
+std::vector<RecordingPart> sensor_inputs(const std::string& uri);
+
+// Throws InputError when the sensor cannot be opened; for sim: also when the frames of the scenario lack what
+// the experiment needs, see Experiment::check_needs().
 std::unique_ptr<DepthSource> open_sensor(const std::string& uri, SensorContext context);
 
 }  // namespace remote_touch

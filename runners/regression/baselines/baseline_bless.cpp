@@ -21,6 +21,7 @@
 #include "runners/regression/baselines/program_run.h"
 #include "runners/regression/baselines/scratch_folder.h"
 #include "runners/regression/baselines/spread.h"
+#include "runners/settings/configuration_difference.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/sweep/sweep.h"
 
@@ -127,7 +128,8 @@ std::vector<Column> old_columns(const std::filesystem::path& file, const Baselin
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return {};
   try {
-    if (attribute_of(file, "config") != attribute_of(made, "config")) return {};
+    if (!configuration_differences(attribute_of(file, "config"), attribute_of(made, "config")).empty())
+      return {};
     return judged_columns(file, baseline.command);
   } catch (const InputError&) {
     return {};  // damaged: there are no old bits to keep

@@ -124,7 +124,7 @@ std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder
     // A live session needs a recording of one: its tests make one and compare what it gives again.
     const bool is_tested_elsewhere = part.ends_with(" live-session");
     if (!parts.contains(part) && !is_tested_elsewhere)
-      missing.push_back({part, State::changed, "has no baseline"});
+      missing.push_back({part, State::missing, "has no baseline"});
   };
   for (const EmbeddedText& experiment : embedded_experiments())
     require(std::string("experiment ") + experiment.name);

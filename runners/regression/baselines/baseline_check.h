@@ -12,7 +12,8 @@ namespace remote_touch {
 struct BaselineCheck {
   enum class State {
     same,
-    changed,         // numbers outside the spread, another experiment, or a required baseline is missing
+    changed,         // numbers outside the spread, or another experiment
+    missing,         // a required baseline; fails a check as a change does
     not_comparable,  // the stored file is damaged, or what it runs cannot be run any more
     not_run          // a recording that it needs is not on this machine
   };
@@ -26,7 +27,7 @@ struct BaselineCheck {
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
                              const Kernels& kernels, const std::atomic<bool>* stop);
 
-// An entry `changed` for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
+// An entry `missing` for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
 // runs, except rules that read a file of the user; none if the manifest need not be complete.
 std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder, const Manifest& manifest);
 

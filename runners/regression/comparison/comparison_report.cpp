@@ -154,6 +154,7 @@ Json json_of(const ResultComparison& comparison) {
   }
   for (const ValueComparison& measure : comparison.measures)
     json["measures"].push_back(measure_json(measure));
+  json["no_measures"] = comparison.no_measures, json["not_judged"] = comparison.not_judged;
   if (comparison.sweep) json["sweep"] = sweep_json(*comparison.sweep, comparison.paired);
   if (comparison.hashes)
     json["hashes"] = {{"compared", comparison.hashes->compared},

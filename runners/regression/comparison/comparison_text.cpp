@@ -1,5 +1,6 @@
 #include "runners/regression/comparison/comparison_text.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 
@@ -99,14 +100,15 @@ const char* word_for(Judgement judgement) {
   return "undecided";
 }
 
-// "equal", "WORSE (smaller is better): 3 runs better, 40 worse"
+// "equal", "WORSE (smaller is better): 3 runs better, 40 worse, 2 not judged (another outcome, or NaN)"
 std::string verdict_text(const MeasureComparison& measure, Judgement judgement) {
   std::string all = word_for(judgement);
   if (judgement != Judgement::equal) all += std::string(" (") + text_of(measure.better) + ")";
-  if (measure.got_better + measure.got_worse > 0)
-    all += ": " + std::to_string(measure.got_better) + " runs better, " + std::to_string(measure.got_worse) +
-           " worse";
-  return all;
+  if (measure.outside == 0 || measure.better == Better::neither) return all;
+  all += ": " + std::to_string(measure.got_better) + " runs better, " + std::to_string(measure.got_worse) +
+         " worse";
+  const std::int64_t others = measure.outside - measure.got_better - measure.got_worse;
+  return others == 0 ? all : all + ", " + std::to_string(others) + " not judged (another outcome, or NaN)";
 }
 
 void print_measures(const SweepComparison& sweep, bool paired, std::FILE* out) {
@@ -123,7 +125,8 @@ void print_measures(const SweepComparison& sweep, bool paired, std::FILE* out) {
 }
 
 // Prints the measures of two traces that are not equal.
-void print_measures(const std::vector<ValueComparison>& measures, std::FILE* out) {
+void print_measures(const std::vector<ValueComparison>& measures, const std::string& not_judged,
+                    std::FILE* out) {
   if (measures.empty()) return;
   std::size_t equal = 0;
   std::fprintf(out, "  %-23s %-6s %13s %13s %11s  %s\n", "measure", "units", "baseline", "candidate",
@@ -137,6 +140,7 @@ void print_measures(const std::vector<ValueComparison>& measures, std::FILE* out
                    measure.candidate - measure.baseline, word_for(measure.judgement),
                    text_of(measure.better));
   std::fprintf(out, "  %zu of %zu measures are equal\n", equal, measures.size());
+  if (!not_judged.empty()) std::fprintf(out, "  %s\n", not_judged.c_str());
   std::string left_out;
   for (const Measure& measure : remote_touch::measures())
     if (needs_true_contact(measure)) left_out += (left_out.empty() ? "" : ", ") + measure.name;
@@ -149,14 +153,22 @@ bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t m
   return region == 0 || sweep.measures[measure].event || is_change(sweep.at(region, measure).judgement);
 }
 
+// The smaller p of the tests of a region, as it is and adjusted.
+std::string p_text(const RegionComparison& region) {
+  return text("p %.3g, adjusted %.3g", std::min(region.sign_p, region.symmetry_p), region.adjusted_p);
+}
+
 // Shares with their intervals, the flips both ways, and what the paired test says.
 void print_regions(const SweepComparison& sweep, std::FILE* out) {
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     if (sweep.measures[m].outside == 0) continue;
     const bool event = sweep.measures[m].event;
     std::fprintf(
-        out, "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p\n",
-        sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference");
+        out,
+        "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p of %s, and "
+        "adjusted for all tests (Holm)\n",
+        sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference",
+        event ? "McNemar's test" : "the sign or symmetry test");
     for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
       if (!is_reported(sweep, r, m)) continue;
       const RegionComparison& region = sweep.at(r, m);
@@ -167,10 +179,10 @@ void print_regions(const SweepComparison& sweep, std::FILE* out) {
                        region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
                        region.candidate_fraction.first, region.candidate_fraction.second)
                 : text("%.4g (%.4g to %.4g)", region.mean.mean, region.mean.low, region.mean.high);
-      std::fprintf(out, "    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  p %.3g  %s  %s\n",
+      std::fprintf(out, "    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  %s  %s  %s\n",
                    static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),
                    static_cast<long long>(region.down), region.difference.first, region.difference.second,
-                   region.adjusted_p, word_for(region.judgement), sweep.regions[r].label.c_str());
+                   p_text(region).c_str(), word_for(region.judgement), sweep.regions[r].label.c_str());
     }
   }
 }
@@ -229,7 +241,7 @@ void print_comparison(const ResultComparison& comparison, std::FILE* out) {
     print_columns(*comparison.columns, out);
     if (comparison.columns->divergence) print_divergence(*comparison.columns->divergence, out);
   }
-  print_measures(comparison.measures, out);
+  print_measures(comparison.measures, comparison.not_judged, out);
   if (comparison.sweep) print_sweep(*comparison.sweep, comparison.paired, out);
   std::fprintf(out, "%s: %s\n", word_for(comparison.outcome), comparison.verdict.c_str());
 }

@@ -240,9 +240,13 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
   if (!result.columns->is_same()) {
-    if (auto measures = compare_measures(baseline, candidate, rules.tolerances))
-      result.measures = std::move(*measures);
-    else
+    result.no_measures = tick_difference(baseline, candidate);
+    auto measures = result.no_measures.empty() ? compare_measures(baseline, baseline_attributes, candidate,
+                                                                  candidate_attributes, rules.tolerances)
+                                               : std::nullopt;
+    if (measures)
+      result.measures = std::move(*measures), result.not_judged = outcome_difference(result.measures);
+    else if (result.no_measures.empty())
       result.no_measures = "a column is missing, or the runs are not of one length";
   }
   judge_columns(result);
@@ -255,9 +259,12 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
   ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
   result.paired = rules.paired;
   result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions());
-  for (const std::string& difference : result.configuration)
+  for (const std::string& difference : result.configuration) {
     if (difference.starts_with("experiment.seed "))
       result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");
+    if (difference.starts_with("experiment.duration_s "))
+      result.sweep->problems.push_back(difference + ": measures of another duration cannot be compared");
+  }
   if (!result.sweep->problems.empty())
     conclude(result, Outcome::not_comparable, result.sweep->problems.front());
   else

@@ -32,6 +32,7 @@ struct ResultComparison {
   std::optional<TraceComparison> columns = {};  // of traces and figures
   std::vector<ValueComparison> measures = {};   // of traces that differ, see compare_measures()
   std::string no_measures = {};                 // why there are none where the traces differ
+  std::string not_judged = {};                  // why only some of them are judged; see outcome_difference()
   std::optional<SweepComparison> sweep = {};
   bool paired = false;  // how the sweep was judged
   std::optional<HashComparison> hashes = {};

@@ -7,6 +7,7 @@
 #include "scenarios/recordings/bags/joined_bags.h"
 #include "scenarios/recordings/bags/mcap_file.h"
 #include "scenarios/recordings/bags/ros1_bag.h"
+#include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 
 namespace remote_touch {
@@ -46,10 +47,6 @@ void BagFile::sort_places() {
 
 namespace {
 
-bool has_ending(const fs::path& file, const char* ending) {
-  return file.extension() == ending;
-}
-
 bool is_bag_file(const fs::path& file) {
   return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
 }
@@ -60,7 +57,8 @@ std::vector<fs::path> parts_of(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code refused;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
-    if (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")) parts.push_back(entry.path());
+    if (!is_hidden(entry.path()) && (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")))
+      parts.push_back(entry.path());
   sort_by_name(parts);
   return parts;
 }

@@ -71,24 +71,96 @@ bool bends_by_coefficients_only(const std::string& model) {
   return std::find(kModels.begin(), kModels.end(), model) != kModels.end();
 }
 
+// 0 means 1.
+std::uint32_t binning(std::uint32_t stored) {
+  return std::max<std::uint32_t>(1, stored);
+}
+
+// Along one axis: the pixels of the sensor that the image shows. A region without a size is the whole sensor,
+// if it has no offset.
+struct Extent {
+  std::uint32_t offset = 0, size = 0;
+};
+Extent extent(std::uint32_t sensor, Extent region, const std::string& axis, const std::string& subject) {
+  if (region.offset == 0 && region.size == 0) return {0, sensor};
+  const std::uint64_t end = std::uint64_t{region.offset} + region.size;
+  if (region.size == 0 || end > sensor)
+    throw InputError(subject, "roi has pixels " + std::to_string(region.offset) + " to " +
+                                  std::to_string(end) + " along " + axis + ": expected some of the " +
+                                  std::to_string(sensor) + " that the camera has, or roi all 0");
+  return region;
+}
+Extent extent_x(const CameraInfoMessage& info, const std::string& subject) {
+  return extent(info.width, {info.region.x_offset, info.region.width}, "x", subject);
+}
+Extent extent_y(const CameraInfoMessage& info, const std::string& subject) {
+  return extent(info.height, {info.region.y_offset, info.region.height}, "y", subject);
+}
+
+// Focal length and centre along one axis.
+struct Axis {
+  double f = 0, c = 0;
+};
+Axis binned(const Axis& sensor, std::uint32_t offset, std::uint32_t pixels) {
+  const double b = pixels;
+  return {sensor.f / b, (sensor.c - offset - 0.5 * (b - 1)) / b};
+}
+
+// The matrix is (fx 0 cx; 0 fy cy; 0 0 1), for P with a fourth column of 0. Some drivers leave out the 1.
+void require_pinhole(const double* matrix, std::size_t columns, const char* name,
+                     const std::string& subject) {
+  for (std::size_t i = 0; i < 3 * columns; ++i) {
+    const std::size_t row = i / columns, column = i % columns;
+    if (column == row ? row < 2 : column == 2) continue;  // fx, fy, cx, cy
+    const double expected = row == 2 && column == 2 ? 1 : 0;
+    if (matrix[i] == expected || (expected == 1 && matrix[i] == 0)) continue;
+    throw InputError(subject,
+                     std::string(name) + "[" + std::to_string(i) + "] = " + std::to_string(matrix[i]) +
+                         ": expected " + (expected == 1 ? "1" : "0") +
+                         (column == 3 ? ", the camera of the image itself and not the second of a pair"
+                          : row < 2   ? ", a camera without skew"
+                                      : ""));
+  }
+}
+
 }  // namespace
+
+ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) {
+  const std::uint32_t bx = binning(info.binning_x), by = binning(info.binning_y);
+  const ImageSize size = {extent_x(info, subject).size / bx, extent_y(info, subject).size / by};
+  if (info.width > 0 && info.height > 0 && (size.width == 0 || size.height == 0))
+    throw InputError(subject, "binning = " + std::to_string(bx) + " x " + std::to_string(by) +
+                                  ": expected no more than the pixels that the camera has");
+  return size;
+}
 
 ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
   constexpr std::uint64_t kMaxPixels = 1u << 26;
-  const std::uint64_t pixels = std::uint64_t{info.width} * info.height;
+  const ImageSize size = image_size(info, subject);
+  const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
   if (pixels == 0 || pixels > kMaxPixels)
-    throw InputError(subject, "has " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+    throw InputError(subject, "has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
                                   " pixels: expected 1 to " + std::to_string(kMaxPixels));
   const auto& K = info.K;
   const auto& P = info.P;
   const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
   const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
   const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite
-  if (!sound(fx) || !sound(fy) || !(std::abs(cx) < 1e6) || !(std::abs(cy) < 1e6))
+  const Axis x = binned({fx, cx}, info.region.x_offset, binning(info.binning_x));
+  const Axis y = binned({fy, cy}, info.region.y_offset, binning(info.binning_y));
+  if (!sound(x.f) || !sound(y.f) || !(std::abs(x.c) < 1e6) || !(std::abs(y.c) < 1e6))
     throw InputError(subject, std::string(rectified ? "P" : "K") + " has fx = " + std::to_string(fx) +
                                   ", fy = " + std::to_string(fy) + ", cx = " + std::to_string(cx) +
                                   ", cy = " + std::to_string(cy) + ": expected a calibrated camera");
-  camera_ = {static_cast<int>(info.width), static_cast<int>(info.height), fx, fy, cx, cy};
+  if (rectified)
+    require_pinhole(P.data(), 4, "P", subject);
+  else
+    require_pinhole(K.data(), 3, "K", subject);
+  if (rectified && info.region.do_rectify)
+    throw InputError(subject,
+                     "roi.do_rectify = true: expected false, for the region of the rectified image is "
+                     "not told");
+  camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
   const auto& d = info.distortion;
   if (rectified) return;
   const bool straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0; });

@@ -74,6 +74,11 @@ CameraInfoMessage read_camera_info(MessageCursor from) {
   for (double& k : camera.K) k = from.f64();
   for (int i = 0; i < 9; ++i) from.f64();  // R: the rectified image is taken as it is
   for (double& p : camera.P) p = from.f64();
+  camera.binning_x = from.u32(), camera.binning_y = from.u32();
+  for (std::uint32_t* part :
+       {&camera.region.x_offset, &camera.region.y_offset, &camera.region.height, &camera.region.width})
+    *part = from.u32();
+  camera.region.do_rectify = from.u8() != 0;
   return camera;
 }
 

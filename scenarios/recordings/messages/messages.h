@@ -50,14 +50,24 @@ struct CompressedImageMessage {
   std::string_view data;
 };
 
+// sensor_msgs/RegionOfInterest: the part of the sensor that the image shows, in pixels without binning. All
+// 0: the whole sensor.
+struct RegionMessage {
+  std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
+  bool do_rectify = false;  // the rectified image shows another region, which is not told
+  bool operator==(const RegionMessage&) const = default;
+};
+
 // sensor_msgs/CameraInfo.
 struct CameraInfoMessage {
   MessageHeader header;
-  std::uint32_t height = 0, width = 0;
+  std::uint32_t height = 0, width = 0;  // of the sensor, without binning
   std::string distortion_model;
   std::vector<double> distortion;
-  std::array<double, 9> K{};   // intrinsics of the image as measured, row by row
-  std::array<double, 12> P{};  // projection of the rectified image
+  std::array<double, 9> K{};                   // intrinsics of the whole sensor, row by row
+  std::array<double, 12> P{};                  // projection of the rectified image of the whole sensor
+  std::uint32_t binning_x = 0, binning_y = 0;  // pixels of the sensor that make one of the image; 0: one
+  RegionMessage region;
 };
 
 // One transform of tf2_msgs/TFMessage: p_parent = X * p_child.

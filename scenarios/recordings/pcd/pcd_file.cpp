@@ -218,14 +218,26 @@ bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   return false;
 }
 
+// The camera looks along the z axis of the file or against it, with its rows along x: as programs disagree
+// about these signs, such a rotation says nothing about an image that is seen from the origin along z.
+bool keeps_axes(const RigidTransform& X_FV) {
+  constexpr double kRounding = 1e-4;  // of quaternions that are written with few digits
+  return X_FV.translation().isZero(0) && X_FV.linear().cwiseAbs().isIdentity(kRounding);
+}
+
 void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
-  if (file.height > 1) file.cloud.grid_columns = file.width;
-  if (X_FV && file.height > 1) {
+  const bool is_organised = file.height > 1;
+  if (is_organised) file.cloud.grid_columns = file.width;
+  if (is_organised && X_FV && keeps_axes(*X_FV)) {  // first as it is: the points keep their bits
+    file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
+    if (file.cloud.image) return;
+  }
+  if (X_FV && is_organised) {
     const RigidTransform about_face(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()));
     if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
   }
   if (X_FV) file.remark = "its VIEWPOINT is not used: seen from there its points are no image";
-  if (file.height > 1) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
+  if (is_organised) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
 }
 
 }  // namespace

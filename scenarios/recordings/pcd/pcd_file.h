@@ -28,9 +28,10 @@ struct PcdCloud {
 // An organised cloud gets cloud.image if a pinhole camera explains it: u = fx x/z + cx and v = fy y/z + cy,
 // fitted by least squares, leave every point less than 0.5 px off its pixel. pixel_slack is then the largest
 // residual plus 1e-6 px. The camera is at the origin, or at VIEWPOINT if an image can be seen from there:
-// then the cloud is in its frame, and X_FC leads back. Programs disagree whether a VIEWPOINT looks along its
-// z or against it, and which row and column come first: the image may be turned round, its last row or column
-// first. Without an image at VIEWPOINT, a remark says that it is not used.
+// then the cloud is in its frame, and X_FC leads back. A VIEWPOINT at the origin may turn the camera.
+// Programs disagree whether a VIEWPOINT looks along its z or against it, and which row and column come first:
+// the image may be turned round, its last row or column first. Without an image at VIEWPOINT, a remark says
+// that it is not used.
 //
 // Throws InputError if the header or the data cannot be used. Memory is allocated only in proportion to the
 // bytes in the file, whatever the header claims. Bytes behind the last point of binary data (padding) are

@@ -129,7 +129,7 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
                    "POINTS = " + shown(points) + ": expected WIDTH * HEIGHT = " + std::to_string(product));
 }
 
-// tx ty tz qw qx qy qz.
+// tx ty tz qw qx qy qz. Some programs write zeros for "unknown": at the origin that is no rotation.
 std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entries& entries) {
   if (!entries.contains("VIEWPOINT")) return std::nullopt;
   std::array<double, 7> value{};
@@ -141,8 +141,8 @@ std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entr
       throw InputError(file, "VIEWPOINT has " + shown(word) + ": expected numbers");
   }
   const Vec3 position(value[0], value[1], value[2]);
-  if (position.isZero(0)) return std::nullopt;
   const Eigen::Quaterniond turn(value[3], value[4], value[5], value[6]);
+  if (position.isZero(0) && turn.vec().isZero(0)) return std::nullopt;
   if (!(std::abs(turn.norm() - 1) < 1e-3))
     throw InputError(
         file, "VIEWPOINT ends with a quaternion of length " + std::to_string(turn.norm()) + ": expected 1");

@@ -40,8 +40,8 @@ struct PcdHeader {
   std::string_view encoding;       // ascii, binary or binary_compressed
   PcdField x, y, z;                // TYPE F, SIZE 4 or 8, COUNT 1
   std::optional<PcdField> colour;  // rgb or rgba: SIZE 4, COUNT 1
-  // VIEWPOINT: where the sensor was in the coordinates of the points, and how it was turned. None where it
-  // was at the origin, however turned.
+  // VIEWPOINT: where the sensor was in the coordinates of the points, and how it was turned. None if it was
+  // at the origin and not turned, which is what files without a VIEWPOINT mean.
   std::optional<RigidTransform> X_FV;
 };
 

@@ -45,7 +45,27 @@ TEST(JudgedRunByRun, WhereAllRunsWentOneWay) {
   depth(a)[1] = 1, depth(b)[1] = kNaN;
   EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kSmaller), 1, false), Judgement::changed);
   depth(b)[3] = 2;
-  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kSmaller), 1, false), Judgement::worse);
+  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kSmaller), 1, false), Judgement::undecided);
+  EXPECT_EQ(judgement_of(compare(b, a, {}, {}, kSmaller), 1, false), Judgement::undecided);
+}
+
+// 16 runs popped through and 1 does now: the other measures of 15 runs say nothing, and that of one is worse
+// or better. It decides nothing in either direction.
+TEST(JudgedRunByRun, OneRunBesideManyWithAnotherOutcomeDecidesNothing) {
+  SweepResult a = row(16), b = a;
+  for (SweepResult* one : {&a, &b}) one->measures[0].name = "popped_through", one->measures[1].name = "noise";
+  for (std::size_t run = 0; run < 16; ++run)
+    event(a)[run] = 1, event(b)[run] = run == 0 ? 1 : 0, depth(b)[run] = -1;
+  const Directions directions = {{"popped_through", Better::smaller}, {"noise", Better::smaller}};
+  for (const double value : {1.0, -1.0}) {
+    depth(b)[0] = value;
+    const SweepComparison c = compare(a, b, {}, {}, directions);
+    EXPECT_EQ(c.measures[1].got_worse, value > 0 ? 1 : 0);
+    EXPECT_EQ(c.measures[1].got_better, value > 0 ? 0 : 1);
+    EXPECT_EQ(c.measures[1].outside, 16);
+    EXPECT_EQ(judgement_of(c, 0, false), Judgement::better);
+    EXPECT_EQ(judgement_of(c, 1, false), Judgement::undecided);
+  }
 }
 
 // 60 runs hold that did not, and 4 are lost: better. As many each way: undecided.

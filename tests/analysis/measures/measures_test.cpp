@@ -47,6 +47,16 @@ TEST(Measures, PopThroughIsJudgedAtTheEnd) {
   EXPECT_TRUE(std::isnan(max_penetration_m(trace_of({{unknown}, {unknown}}))));
 }
 
+TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
+  Trace resting = trace_of({{0.01}, {-2.37e-16}, {0.0001}, {-0.0004}});
+  EXPECT_EQ(popped_through(resting), 1) << "a ball's centre";
+  EXPECT_EQ(wrong_side_fraction(resting), 0.5);
+  resting.held_depth_m = 0.0025;
+  EXPECT_EQ(popped_through(resting), 0);
+  EXPECT_EQ(wrong_side_fraction(resting), 0);
+  EXPECT_EQ(max_penetration_m(resting), 0.0004) << "a depth is a depth";
+}
+
 TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);

@@ -47,6 +47,22 @@ TEST(Printable, ShortensWordsWithoutEnd) {
   EXPECT_EQ(printable(shorter), shorter);
 }
 
+TEST(Printable, ShortensLinesOfManyWords) {
+  std::string words;
+  for (int i = 0; i < 1'000'000; ++i) words += "word ";
+  const std::string shorter = printable("scenario.topic = " + words + ": expected /points");
+  EXPECT_LE(shorter.size(), 1000u);
+  EXPECT_EQ(shorter.find("scenario.topic = word word"), 0u);
+  EXPECT_NE(shorter.find("wor...d word"), std::string::npos) << shorter;
+  EXPECT_TRUE(shorter.ends_with(": expected /points"));
+  EXPECT_EQ(printable(shorter), shorter);
+  std::string limit = words.substr(0, 1000);
+  EXPECT_EQ(printable(limit), limit);
+  std::string euros;
+  for (int i = 0; i < 1000; ++i) euros += "€ ";
+  EXPECT_EQ(printable(euros).find("\\x"), std::string::npos);  // no character is cut
+}
+
 // A message is C's: a zero would end it.
 TEST(InputErrorTest, KeepsItsWholeMessage) {
   EXPECT_STREQ(InputError(std::string("a\0b", 3), "expected c").what(), "a\\x00b: expected c");

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "analysis/storage/atomic_file.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::outputs_test {
@@ -57,6 +58,25 @@ TEST_F(Outputs, AnInputOrAPlugInIsNoOutput) {
   const std::string input = folder_.write("in.h5", "a result").string();
   for (const std::string& read : {input, line.plugins.front()})
     EXPECT_HAS(refusal([&] { require_report(line, read, {input}, kJsonReport); }), "is the input file");
+}
+
+// A run takes minutes: its output is checked before it and again after it.
+TEST_F(Outputs, AFileThatAppearsMeanwhileIsKeptUnlessForced) {
+  CommandLine line;
+  for (const bool force : {false, true}) {
+    line.force = force;
+    const std::string output = file(force ? "forced.h5" : "late.h5");
+    const FileLock lock = lock_output(line, output, {});
+    folder_.write(fs::path(output).filename(), "precious notes");
+    const std::string problem = refusal([&] { write_file_atomically(output, "new", 3); });
+    EXPECT_EQ(bytes_of(output), force ? "new" : "precious notes");
+    EXPECT_HAS(problem, force ? kNone : "late.h5: was written by another program");
+  }
+  const std::string report = file("report.json");
+  require_report(CommandLine{}, report, {}, kJsonReport);
+  folder_.write("report.json", "");  // by a shell that redirects to it
+  EXPECT_EQ(refusal([&] { write_file_atomically(report, "new", 3); }), kNone);
+  EXPECT_EQ(bytes_of(report), "new");
 }
 
 }  // namespace

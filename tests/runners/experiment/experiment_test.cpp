@@ -155,8 +155,12 @@ TEST(Experiments, RefuseFixturesThatAreNone) {
   };
   for (const char* list : {"3", "{}", "{\"name\": \"everywhere\"}", "everywhere"})
     EXPECT_HAS(why(list), "fixtures: expected a list of {") << list;
-  for (const char* list : {"[3]", "[{}]", "[[]]", "[{\"radius_m\": 1}]"})
+  for (const char* list : {"[{}]", "[null]", "[{\"radius_m\": 1}]"})
     EXPECT_HAS(why(list), "fixtures.0: missing: expected {\"name\"") << list;
+  EXPECT_HAS(why("[3]"), "fixtures.0 = 3: not an object: expected {\"name\"");
+  EXPECT_HAS(why("[[]]"), "fixtures.0 = []: not an object: expected {\"name\"");
+  EXPECT_HAS(why("[\"everywhere\"]"),
+             "fixtures.0 = \"everywhere\": not an object: expected {\"name\": \"everywhere\"}");
   const std::string one = R"([{"name": "everywhere"}])";
   EXPECT_HAS(
       why(one, "fixtures.0.name=moon"),
@@ -220,6 +224,10 @@ TEST(Experiments, RefuseTextThatIsNoExperiment) {
     EXPECT_HAS(why(text), "file.json: not an object") << text;
   EXPECT_HAS(why(std::string(100000, '[')), "file.json: nested too deep");
   EXPECT_HAS(why("{}"), "scenario: missing");
+  EXPECT_EQ(
+      why(R"({"scenario": "flat-grid"})"),
+      "scenario = \"flat-grid\": not an object: expected {\"name\": \"flat-grid\"}, with parameters beside "
+      "the name");
   EXPECT_HAS(why(R"({"scenario": {"columns": 3}})"), "scenario: missing");
   EXPECT_HAS(why(R"({"scenario": {"name": "moon"}})"), "scenario.name = \"moon\": expected flat-grid, ");
   EXPECT_HAS(why(R"({"scenario": {"name": "flat-grid"}})"), "renderer: missing");

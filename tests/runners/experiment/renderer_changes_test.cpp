@@ -70,6 +70,23 @@ TEST(RendererChanges, ThoseOfOneTimeAreCheckedTogether) {
   EXPECT_EQ(lift("[" + r1 + ", " + r2 + "]").changes().size(), 2u);
 }
 
+// At 1000 Hz the first tick at or after 0.1001 s is that of 0.101 s, which makes both changes.
+TEST(RendererChanges, RefusesTwoOfOneParameterInOneTick) {
+  const auto two = [](const char* first_s, const char* second_s, const char* parameter) {
+    return "[" + change(first_s, "renderer.stiffness_N_per_m", "100") + ", " +
+           change("0.1001", "renderer.r3_m", "0.02") + ", " + change(second_s, parameter, "0.02") + "]";
+  };
+  constexpr const char* kStiffness = "renderer.stiffness_N_per_m";
+  EXPECT_EQ(
+      why(two("0.1001", "0.1001", kStiffness)),
+      "changes.2.parameter = renderer.stiffness_N_per_m: changes.0 sets it in the same tick: expected one "
+      "of them");
+  EXPECT_HAS(why(two("0.1001", "0.101", kStiffness)), "changes.0 sets it in the same tick");
+  EXPECT_HAS(why(two("0.1001", "0.101", "renderer.r3_m")), "changes.1 sets it in the same tick");
+  EXPECT_EQ(why(two("0.1", "0.1001", kStiffness)), "no InputError");
+  EXPECT_EQ(why(two("0.1001", "0.1011", kStiffness)), "no InputError");
+}
+
 TEST(RendererChanges, SurviveWritingAndReading) {
   const Experiment experiment = lift("[" + change("0.25", "renderer.velocity_estimate", "0") + "]");
   EXPECT_EQ(Experiment::from_json(experiment.to_json(), "again").to_json(), experiment.to_json());

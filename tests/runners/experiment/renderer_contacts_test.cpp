@@ -88,6 +88,15 @@ TEST(RendererContacts, EveryRendererOfThreeDegreesOfFreedomIsPressed) {
   }
 }
 
+// A ball is held until its centre is behind the surface, a position on the surface until it has sunk 2.5 mm.
+TEST(RendererContacts, HowFarBehindTheSurfaceAPositionIsHeld) {
+  EXPECT_EQ(held_depth_m({0.005}), 0);
+  EXPECT_EQ(held_depth_m({0.0025}), 0);
+  EXPECT_DOUBLE_EQ(held_depth_m({0.001}), 0.0015);
+  EXPECT_EQ(held_depth_m({0}), 0.0025);
+  EXPECT_EQ(held_depth_m({std::nan("")}), 0) << "a tool";
+}
+
 // How deep a hand sinks into a spring is no error of the surface, and a spring that lets it through is.
 TEST(RendererContacts, APenaltyForceIsJudgedWhereItWouldEnd) {
   for (const double depth_m : {-0.004, -0.001})

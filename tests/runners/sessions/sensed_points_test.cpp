@@ -28,7 +28,7 @@ TEST(SensedPoints, OfCloudsAreTheirFinitePoints) {
                   1, 1, 0.75f,  0, 0, 1, 1,   INFINITY, 9,   0, 0, 1};
   SensedPoints points;
   points.add(frame, view);
-  EXPECT_EQ(points.text(), "50 % of 4 points measured, depth -0.25 to 0.75 m, without colours");
+  EXPECT_EQ(points.text(), "50 % of 4 points measured, z -0.25 to 0.75 m, without colours");
   EXPECT_EQ(layout_text(view), "clouds of points");
 }
 

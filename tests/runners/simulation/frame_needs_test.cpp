@@ -169,12 +169,19 @@ TEST_F(FrameNeeds, ALaterFrameOfAnotherKindIsRefused) {
   write_pcd("mixed/0.pcd", true, true), write_pcd("mixed/1.pcd", false, false);
   const std::string scenario = R"({"name": "recording", "path": ")" + (folder_ / "mixed").string() + "\"}";
   const Kind mixed{scenario, kForward, -Vec3::UnitZ()};
-  EXPECT_HAS(refusal([&] { run(press_on(mixed, R"({"name": "god-object"})")); }),
-             "renderer.name = \"god-object\": needs organised points, and those of frame 1 have no rows");
+  EXPECT_HAS(refusal([&] { run(press_on(mixed, R"({"name": "proxy"})")); }),
+             "mixed/1.pcd: has points in no order: expected an organised cloud");
+  write_pcd("mixed/1.pcd", true, false);
   EXPECT_HAS(refusal([&] {
                run(press_on(mixed, R"({"name": "proxy"})", R"(, "fixtures": [{"name": "hue-range"}])"));
              }),
-             "fixtures.0: hue-range: the frame has no colours");
+             "frame 1: fixtures.0: hue-range: the frame has no colours");
+  PointCloud unorganised;
+  unorganised.append(Vec3::Zero());
+  Frame later;
+  later.index = 1, later.points = make_search(unorganised);
+  EXPECT_HAS(refusal([&] { RendererNeeds("god-object", {FrameNeed::organised}).check(later); }),
+             "renderer.name = \"god-object\": needs organised points, and those of frame 1 have no rows");
 }
 
 TEST_F(FrameNeeds, APipelineThatLeavesNoNormalIsRefused) {

@@ -4,13 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "core/search/neighbour_search.h"
 #include "runners/simulation/simulation.h"
-#include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::run_report_test {
@@ -52,8 +46,11 @@ TEST(RunReport, ReportsAPressThatWasNotReached) {
   const RunReport report = report_of_run(kPlane, kPress, R"("duration_s": 0.1)");
   EXPECT_EQ(kinds_of(report), (Kinds{"phase not reached", "no contact"}));
   EXPECT_EQ(report.notes[0].text, "the run ends at 0.1 s, before the press begins at 0.1 s");
-  EXPECT_HAS(text_of(report), "  note: the run ends at 0.1 s");
-  EXPECT_HAS(refusal([&] { refuse_notes(report); }), "--strict: the run ends at 0.1 s");
+  EXPECT_HAS(text_of(report), "  note (phase not reached): the run ends at 0.1 s");
+  EXPECT_EQ(refusal([&] { refuse_notes(report); }),
+            "--strict: phase not reached: the run ends at 0.1 s, before the press begins at 0.1 s; "
+            "no contact: no point was touched, and no force was felt")
+      << "all notes";
 }
 
 TEST(RunReport, ReportsAMotionOfTheSceneThatWasNotReached) {
@@ -90,58 +87,66 @@ TEST(RunReport, ReportsPointsThatAreTooFarApart) {
   EXPECT_EQ(kinds_of(report_of_run(plane("0.0069"), kPress)), Kinds{});
   const RunReport report = report_of_run(plane("0.0072"), kPress);
   EXPECT_EQ(kinds_of(report), Kinds{"wide spacing"});
-  EXPECT_HAS(report.notes[0].text, "are 7.2 mm apart");
-  EXPECT_HAS(report.notes[0].text, "farther apart than 7.07 mm");
+  // The centre of a square is 7.2 mm / sqrt(2) from its corners.
+  EXPECT_HAS(report.notes[0].text, "a gap of radius 5.09 mm at the first contact");
+  EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
 }
 
-// A scene of given points, at rest.
-class GivenPoints final : public Scenario {
- public:
-  explicit GivenPoints(PointCloud cloud) : cloud_(std::move(cloud)) {}
-  double frame_rate_hz() const override { return 30; }
-  int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int) const override { return make_search(cloud_); }
-  PointCloud cloud(int) const override { return cloud_; }
-  double signed_distance(const Vec3&, double) const override { return 0; }
-
- private:
-  const PointCloud cloud_;
-};
-
-// The median distance to the nearest neighbour of the points within a ball around the origin, from its
-// definition.
-double median_spacing_m(const PointCloud& cloud, double radius_m) {
-  std::vector<double> nearest_m;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.point(i).norm() > radius_m) continue;
-    double least_m = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < cloud.size(); ++j)
-      if (j != i && cloud.point(j).norm() <= radius_m)
-        least_m = std::min(least_m, (cloud.point(i) - cloud.point(j)).norm());
-    nearest_m.push_back(least_m);
+// A rule that never begins, a change, a press of a button, ...: each that the run does not reach is named
+// once.
+TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
+  const std::string still = R"({"name": "waypoints", "waypoints": [[0, 0.003, 0, 0], [0, 0.003, 0, 0.1]]})";
+  const std::string plates = R"({"name": "plates", "plates": [[0, 0, 0, 0.2, 0.2, 0.1, 0, 2, 3],
+      [0, -0.1, 0, 0.2, 0.2, 0, 0, 4, 5], [0, -0.1, 0, 0.2, 0.2, 0.1, 0, 5, 5]]})";
+  const std::string change = R"({"parameter": "renderer.stiffness_N_per_m", "value": 100, "time_s": )";
+  const std::string step = R"({"action": "wait", "not_before_s": 3})";
+  const struct {
+    std::string scenario, rest;
+    std::vector<std::string> begins;
+  } runs[] = {
+      {kPlane,
+       R"("changes": [)" + change + "0.1}, " + change + "5}, " + change + "6}]",
+       {"the change of renderer.stiffness_N_per_m begins at 5 s"}},
+      {kPlane,
+       R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [7, 1], [8, 0]]}])",
+       {"the change of the strength of fixtures.0 begins at 7 s"}},
+      {kPlane, R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [8, 0]]}])", {}},
+      {kPlane,
+       R"("operator": {"presses": [[0.1, 0, 0.1], [3, 1, 0.2]], "grip": [[0, 1], [2, 1], [3, 0]]})",
+       {"the press of button 1 begins at 3 s", "the change of operator.grip begins at 2 s"}},
+      {kPlane, R"("sequence": [{"action": "wait"}, )" + step + "]", {"sequence.1 (wait) begins at 3 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 2})",
+       R"("seed": 1)",
+       {"the vanishing of the surface begins at 2 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 0.2})", R"("seed": 1)", {}},
+      {R"({"name": "moving-shape", "empty_frame_at_s": 2})",
+       R"("seed": 1)",
+       {"the empty frame begins at 2 s"}},
+      {plates, R"("seed": 1)", {"the motion of plate 1 begins at 2 s"}},
+      {R"({"name": "wedge"})",
+       R"("seed": 1)",
+       {"the closing of the walls begins at 1 s", "the opening of the walls begins at 3 s"}},
+      {R"({"name": "wedge", "closed_gap_m": 0.05})", R"("seed": 1)", {}},
+      {R"({"name": "wedge", "close_start_s": 4, "close_end_s": 4, "open_start_s": 4, "open_end_s": 4})",
+       R"("seed": 1)",
+       {}},
+  };
+  for (const auto& run : runs) {
+    const bool has_duration = run.rest.find("duration_s") != std::string::npos;
+    const RunReport report =
+        report_of_run(run.scenario, still, has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest);
+    std::vector<std::string> begins;
+    for (const Note& note : report.notes)
+      if (note.kind == "phase not reached") begins.push_back(note.text.substr(note.text.find("before ") + 7));
+    EXPECT_EQ(begins, run.begins) << run.scenario << run.rest;
   }
-  std::sort(nearest_m.begin(), nearest_m.end());
-  return nearest_m.empty() ? std::numeric_limits<double>::infinity() : nearest_m[nearest_m.size() / 2];
 }
 
-TEST(RunReport, TheSpacingIsTheMedianDistanceToTheNearestNeighbour) {
-  constexpr double kContactRadius_m = 0.005;
-  Trace trace;
-  RenderOutput out;
-  out.contact_count = 1, out.frame_index = 0;
-  trace.append(0, {}, out, {});
-  int wide = 0;
-  for (unsigned seed = 1; seed <= 300; ++seed) {
-    // A cube of 4 cm has 2 to 60 points, whose spacing is about that of the limit.
-    const GivenPoints scene(scenes::random_cloud(2 + static_cast<int>(seed % 59), 0.02, seed));
-    const bool is_wide =
-        median_spacing_m(scene.cloud(0), 3 * kContactRadius_m) > std::sqrt(2.0) * kContactRadius_m;
-    const auto notes = spacing_notes(scene, trace, kContactRadius_m, scenes::kernels());
-    EXPECT_EQ(!notes.empty(), is_wide) << seed;
-    wide += is_wide ? 1 : 0;
-  }
-  EXPECT_GT(wide, 50);
-  EXPECT_LT(wide, 250) << "both happen";
+// A motion that never happens is neither missed nor over.
+TEST(RunReport, SaysNothingOfAPlaneThatDoesNotRise) {
+  const std::string rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )";
+  EXPECT_EQ(kinds_of(report_of_run(rests + "5}", kPress)), Kinds{});
+  EXPECT_EQ(kinds_of(report_of_run(rests + "0}", kPress)), Kinds{});
 }
 
 TEST(RunReport, BecomesAttributesOfTheResult) {

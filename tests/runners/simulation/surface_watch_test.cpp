@@ -122,6 +122,30 @@ TEST(SurfaceWatch, IgnoresMotionsWithoutAPlan) {
   EXPECT_EQ(kinds(watched({0.5, 0.2}, std::nullopt, {0.1, 0, 0.51})), Kinds{});
 }
 
+// Steps of 30, 60 and 90 mm; 50 mm are planned. 0: no limit is stated.
+TEST(SurfaceWatch, ReportsAHandThatJumps) {
+  for (const double max_step_m : {0.05, 0.0}) {
+    const MovingPlane scene({0.5});
+    const Hand hand(SurfacePlan{false, -1, 1, 0.004, max_step_m});
+    SurfaceWatch watch(scene, hand);
+    double z = 0.3;
+    for (const double step_m : {0.0, 0.03, 0.06, -0.09}) {
+      z += step_m;
+      watch.add(in_world(0.1, 0, z), z);
+    }
+    const std::vector<Note> notes = watch.notes();
+    if (max_step_m == 0) {
+      EXPECT_EQ(kinds(notes), Kinds{});
+    } else {
+      ASSERT_EQ(kinds(notes), Kinds{"hand jumped"});
+      EXPECT_EQ(
+          notes[0].text,
+          "the hand jumped by 60 mm at 0.39 s, because its pixel then showed another place; it jumped 2 "
+          "times, by up to 90 mm");
+    }
+  }
+}
+
 // Frames that a camera recorded: depth in units of 0.1 mm, 320 x 240 pixels.
 void write_frame(const TestFolder& folder, int number, const std::function<double(double, double)>& depth_m) {
   std::vector<std::uint16_t> samples;
@@ -161,6 +185,28 @@ TEST(SurfaceWatch, ReportsAScanOfASceneThatMoves) {
   EXPECT_HAS(moved.notes[0].text, "by up to 60 mm; planned were 16 mm at most");
   EXPECT_EQ(kinds(report_of_run(folder.path().string(), R"({"name": "image-press"})", kHalf_s).notes),
             Kinds{"frames unused"});
+}
+
+// A box before a wall is taken away in frame 5: the pixel shows the wall, which is 0.4 m farther away. The
+// hand has nothing to lift off from, and jumps.
+TEST(SurfaceWatch, ReportsAPressWhosePixelShowsAnotherPlace) {
+  const TestFolder folder("box_taken_away");
+  folder.write("camera.json", R"({"width": 320, "height": 240, "fx": 300, "fy": 300, "cx": 159.5, "cy": 119.5,
+    "depth_scale_m": 0.0001, "frame_rate_hz": 30})");
+  for (int i = 0; i < 10; ++i)
+    write_frame(folder, i, [&](double x, double y) {
+      return i < 5 && std::max(std::abs(x), std::abs(y)) * 0.5 < 0.08 ? 0.5 : 0.9;
+    });
+  const RunReport report =
+      report_of_run(folder.path().string(), R"({"name": "image-press"})", R"(, "duration_s": 0.31)");
+  ASSERT_EQ(kinds(report.notes), Kinds{"hand jumped"});
+  EXPECT_HAS(report.notes[0].text, "jumped by 400 mm at 0.167 s");
+  EXPECT_HAS(report.hand, "image-press, row ");
+  EXPECT_HAS(report.hand, " at depth 0.500 m");
+  EXPECT_HAS(text_of(report), "\n  hand: image-press, row ");
+  TextAttributes attributes;
+  add_report(attributes, report);
+  EXPECT_EQ(attribute(attributes, "hand"), report.hand);
 }
 
 // A mug as one cloud: organised it is scanned without a note, without order it is refused in one line.

@@ -32,7 +32,8 @@ TEST(SweepNotes, AreCountedByKind) {
       note_lines(result),
       (Lines{"2 of 5 runs: no contact: no point was touched and no force was felt (the first: --cell 1,1)",
              "1 of 5 runs: a kind of another program (the first: --cell 1,1)"}));
-  EXPECT_EQ(refusal([&] { refuse_notes(result); }), "--strict: " + note_lines(result).front());
+  EXPECT_EQ(refusal([&] { refuse_notes(result); }),
+            "--strict: " + note_lines(result)[0] + "; " + note_lines(result)[1]);
 }
 
 TEST(SweepNotes, NameTheReplicateWhereThereAreSeveral) {

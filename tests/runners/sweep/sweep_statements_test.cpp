@@ -103,6 +103,18 @@ TEST(OverwrittenValues, OfTheCommandLineAreRefused) {
              "mine.json: set.scenario.noise_sigma_m: is overwritten by the axis ");
 }
 
+// An object that --set gives would take a value with it that the user has set.
+TEST(OverwrittenValues, AreRefusedWhereTheObjectAroundThemIsReplaced) {
+  const std::string object = R"(scenario={"name": "moving-lift"})";
+  EXPECT_EQ(why({kAcceleration}, "{}", {"scenario.columns=50", object}),
+            "--set scenario.columns=50: is overwritten by --set scenario: expected one of them");
+  EXPECT_EQ(why({kAcceleration}, R"({"scenario.columns": 50})", {object}),
+            "mine.json: set.scenario.columns: is overwritten by --set scenario: expected one of them");
+  EXPECT_HAS(
+      why({kAcceleration}, "{}", {"axes.0.values=[2]", R"(axes=[{"parameter": "seed", "values": [1]}])"}),
+      "--set axes.0.values=[2]: is overwritten by --set axes: ");
+}
+
 // --set experiment.x changes the experiment before `set` and the axes do.
 TEST(OverwrittenValues, OfTheOwnExperimentAreRefused) {
   const auto why_with = [](const std::string& set, const Texts& overrides) {
@@ -126,7 +138,8 @@ TEST(OverwrittenValues, OthersAreAccepted) {
   expect_accepted({kNoise}, R"({"scenario": {"name": "moving-lift"}, "scenario.columns": 50})");
   expect_accepted({kNoise}, "{}", {R"(scenario={"name": "moving-lift"})", "scenario.columns=50"});
   expect_accepted({kNoise}, R"({"scenario.columns": 50})", {"scenario.columns=60"});
-  expect_accepted({kNoise}, R"({"scenario.columns": 50})", {R"(scenario={"name": "moving-lift"})"});
+  expect_accepted({kNoise}, R"({"scenario.columns": 50})",
+                  {R"(scenario={"name": "moving-lift", "columns": 50})"});
   expect_accepted({kNoise}, "{}", {"seed=3", "seed=4"});
   // A list cannot be given without the element that an axis changes.
   expect_accepted({kStart}, R"({"trajectory.start_m": [0.01, 0, 0]})");

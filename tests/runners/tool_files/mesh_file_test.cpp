@@ -5,6 +5,8 @@
 
 #include <array>
 #include <bit>
+#include <cctype>
+#include <cmath>
 
 #include "core/tool/mesh/mesh_check.h"
 #include "core/tool/voxels/voxel_tool.h"
@@ -130,7 +132,8 @@ TEST_F(MeshFileTest, FacetsOfStlWithAnotherNumberOfCornersAreRefused) {
     });
   };
   EXPECT_EQ(problem(facet(3) + facet(3)), "read");
-  EXPECT_HAS(problem(facet(4) + facet(3)), "q.stl: cannot be read (a facet has not three vertices)");
+  EXPECT_HAS(problem(facet(4) + facet(3)), "q.stl: cannot be read (line 7: a facet has not three vertices)");
+  EXPECT_HAS(problem(facet(2) + facet(3)), "q.stl: cannot be read (line 6: a facet has not three vertices)");
 }
 
 constexpr const char* kMark = "\xEF\xBB\xBF";
@@ -159,12 +162,138 @@ TEST_F(MeshFileTest, ObjVerticesMayHaveColours) {
   std::string cube = kCube;
   cube.replace(cube.find("v 1 1 0"), 7, "v 1 1 0 0.5 0.5 0.5 1  # with alpha");
   cube.replace(cube.find("v 0 0 1"), 7, "v 0 0 1 0.5 0.5 0.5");
-  cube.replace(cube.find("v 1 0 1"), 7, "v 2 0 2 2");
+  cube.replace(cube.find("v 1 0 1"), 7, "v 1 0 1 2");  // the weight of a rational curve
   const MeshCheck whole = check("cube.obj", cube);
   EXPECT_TRUE(whole.closed());
   EXPECT_NEAR(whole.volume_m3, 1, 1e-9);
   const fs::path flat = folder_.write("flat.obj", "v 1 2\n" + kCube);
-  EXPECT_HAS(refusal([&] { read_mesh(flat); }), "flat.obj: cannot be read (a vertex has fewer than three");
+  EXPECT_HAS(refusal([&] { read_mesh(flat); }),
+             "flat.obj: cannot be read (line 1: a vertex has fewer than three");
+}
+
+TEST_F(MeshFileTest, ObjFacesMayHaveAComment) {
+  std::string cube = kCube;
+  cube.replace(cube.find("f 1 3 4 2"), 9, "f 1 3 +4 002 # face 1 / 2");
+  EXPECT_TRUE(check("cube.obj", cube).closed());
+}
+
+// The refusal of a cube or a tetrahedron in which one text is replaced by another. Without the refusal the
+// library reads another shape: the beginning of a word for a number, or the next line for what is missing.
+class ChangedMeshTest : public MeshFileTest {
+ protected:
+  std::string problem(const std::string& name, std::string text, const std::string& old,
+                      const std::string& changed) const {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    const fs::path file = folder_.write(name, text.replace(at, old.size(), changed));
+    return refusal([&] { read_mesh(file); });
+  }
+};
+
+constexpr const char* kRead = "no InputError";
+
+TEST_F(ChangedMeshTest, ObjNumbersAreWholeWords) {
+  const auto vertex = [&](const std::string& line) { return problem("x.obj", kCube, "v 1 1 0", line); };
+  for (const char* number : {"0x1", "1D0", "1.0.9", "1,0", "1mm", "one", "1e", "--1", "+-1", "1e999"})
+    EXPECT_HAS(vertex(std::string("v 1 ") + number + " 0"),
+               std::string("x.obj: cannot be read (line 4: '") + number)
+        << number;
+  for (const char* number : {"1.", "+1", "1e0", "0.1E+01", "1.0000", "01"})
+    EXPECT_EQ(vertex(std::string("v 1 ") + number + " 0"), kRead) << number;
+  EXPECT_HAS(vertex("v 1 1 0 1 1"), "line 4: a vertex has 5 numbers: expected x y z, then w, or a colour");
+  EXPECT_HAS(vertex("v 1 1 0 0 0 0 0 0"), "line 4: a vertex has 8 numbers");
+  const auto face = [&](const std::string& line) { return problem("x.obj", kCube, "f 1 3 4 2", line); };
+  for (const char* corner : {"4.7", "0", "4a", "0x4", "/4", "-9", "1e0"})
+    EXPECT_HAS(face(std::string("f 1 3 ") + corner + " 2"), std::string("line 9: corner '") + corner)
+        << corner;
+  EXPECT_HAS(face("f 1 3 4 99"), "line 9: vertex 99: expected 1 to 8");
+}
+
+const std::string kPlyText =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+    "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+TEST_F(ChangedMeshTest, PlyRowsHaveWhatTheHeaderSays) {
+  const auto row = [&](const std::string& old, const std::string& line) {
+    return problem("x.ply", kPlyText, old + "\n", line + "\n");
+  };
+  EXPECT_HAS(row("1 0 0", "1 0"), "x.ply: cannot be read (line 11: an element 'vertex' has only 2 values)");
+  EXPECT_HAS(row("1 0 0", "1 0 0 0"), "line 11: an element 'vertex' has 4 values: expected 3");
+  EXPECT_HAS(row("1 0 0", "1 0x9 0"), "line 11: '0x9': expected a number of type float");
+  EXPECT_HAS(row("3 0 1 3", "4 0 1 3"), "line 15: an element 'face' has only 4 values");
+  EXPECT_HAS(row("3 0 1 3", "3 0 1 3 2"), "line 15: an element 'face' has 5 values: expected 4");
+  EXPECT_HAS(row("3 0 1 3", "3 0 1.7 3"), "line 15: '1.7': expected a number of type int");
+  EXPECT_HAS(row("3 0 1 3", "-1 0 1 3"), "line 15: a list has -1 values");
+  EXPECT_HAS(row("3 2 0 3", "3 2 0 3\n3 0 1 2"), "line 18: more than the elements that the header counts");
+  EXPECT_HAS(row("3 2 0 3", ""), "it ends after 3 of 4 elements 'face'");
+  EXPECT_EQ(row("1 0 0", "\n\t1.0 0 0 \r"), kRead);
+  EXPECT_EQ(row("3 2 0 3", "3 2 0 3\n\n "), kRead);
+  EXPECT_HAS(row("property float y", "property real y"), "property 'y' of element 'vertex' has a type");
+  EXPECT_HAS(row("format ascii 1.0", "format text 1.0"), "format 'text': expected ascii or a binary one");
+}
+
+TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
+  const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 4\ncomment of faces\nproperty list uchar int vertex_indices\n";
+  const std::string other = "element edge 1\nproperty uchar vertex1\nproperty uchar vertex2\n";
+  const std::string corners = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", points = "0 0 0\n1 0 0\n0 1 0\n0 0 1";
+  const MeshCheck text =
+      check("t.ply", "ply\nformat ascii 1.0\n" + faces + vertices + "end_header\n" + corners + points);
+  EXPECT_TRUE(text.closed());
+  EXPECT_NEAR(text.volume_m3, 1.0 / 6, 1e-9);
+  std::string data;
+  for (const auto& face : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    data += '\3';
+    for (const int corner : face) data += raw(corner);
+  }
+  data += std::string("\0\1", 2);
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) data += raw(value);
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\n" + faces + other + vertices + "end_header\n";
+  const MeshCheck binary = check("b.ply", header + data);
+  EXPECT_TRUE(binary.closed());
+  EXPECT_NEAR(binary.volume_m3, 1.0 / 6, 1e-9);
+  const auto error = [&](const std::string& bytes) {
+    return refusal([&] { read_mesh(folder_.write("b.ply", header + bytes)); });
+  };
+  EXPECT_HAS(error(data + "face"), "b.ply: cannot be read (it has 4 bytes after the last element)");
+  data[4 * 13 - 13] = '\7';  // a list that takes the bytes of the next elements
+  EXPECT_HAS(error(data), "b.ply: cannot be read (it ends after ");
+}
+
+const std::string kStlText =
+    "solid a facet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
+    "facet normal nan nan -nan(ind)\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
+    "facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
+    "facet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 0 0 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid a\n";
+
+TEST_F(ChangedMeshTest, StlWordsAreThoseOfTheFormat) {
+  const auto line = [&](const std::string& old, const std::string& changed) {
+    return problem("x.stl", kStlText, old + "\n", changed + "\n");
+  };
+  for (const char* number : {"0x9", "9D-1", "1.O4", "0.0.9", "1,5"})
+    EXPECT_HAS(line("vertex 0 1 0", std::string("vertex 0 ") + number + " 0"),
+               std::string("x.stl: cannot be read (line 5: '") + number);
+  EXPECT_HAS(line("vertex 0 1 0", "vertex 0 1"), "line 6: 'vertex' in a vertex: expected a number");
+  EXPECT_HAS(line("vertex 0 1 0", "vertex 0 1 0 0"), "line 5: '0': expected vertex");
+  EXPECT_HAS(line("endsolid a", ""), "the file ends: expected endsolid");
+  EXPECT_HAS(line("endsolid a", "endsolid a\nmore"), "line 31: 'more': expected solid");
+  EXPECT_EQ(line("endsolid a", "endsolid\n\n"), kRead);
+}
+
+TEST_F(MeshFileTest, StlTextMayBeInCapitalsAndHaveManySolids) {
+  std::string capitals = kStlText;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (const std::string& text :
+       {kStlText, capitals, "  " + capitals, "solid gr\xc3\xbcn" + kStlText.substr(5)}) {
+    const MeshCheck solid = check("x.stl", text);
+    EXPECT_TRUE(solid.closed());
+    EXPECT_NEAR(std::abs(solid.volume_m3), 1.0 / 6, 1e-9);
+  }
+  const std::size_t half = kStlText.find("facet normal", 100);
+  EXPECT_TRUE(
+      check("x.stl", kStlText.substr(0, half) + "endsolid\nsolid b\n" + kStlText.substr(half)).closed());
 }
 
 // The library takes a line feed there for the end of the header.

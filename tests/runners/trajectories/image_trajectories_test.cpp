@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -331,6 +333,122 @@ TEST(ImagePress, ChoosesATouchablePixelOnlyWhereNoneIsGiven) {
   EXPECT_EQ(hand.row(), 240);
   // The margin of 1 cm is 10 pixels; the ring begins 52.5 pixels from the middle.
   EXPECT_NEAR(std::abs(hand.column() - 319.5), 52.5 + 10 + 1.5, 2.5);
+}
+
+// A box at 0.6 m whose pixels join diagonally only, so that no patch of it fills 1 % of the image, and a cube
+// of 4 cm that is too small.
+double see_through(double x, double y, int u, int v) {
+  const bool is_box = std::abs(0.6 * x) < 0.1 && std::abs(0.6 * y) < 0.08 && (u + v) % 3 != 0;
+  return is_box ? 0.6 : 1;
+}
+double small_cube(double x, double y, int, int) {
+  return std::abs(0.5 * x) < 0.02 && std::abs(0.5 * y) < 0.02 ? 0.5 : 0.9;
+}
+
+DepthImage photographed_by_pixel(double (*depth_m)(double x, double y, int u, int v)) {
+  DepthImage image{kCamera.width, kCamera.height, {}};
+  for (int v = 0; v < kCamera.height; ++v)
+    for (int u = 0; u < kCamera.width; ++u) {
+      const Vec3 ray = scenes::ray(kCamera, u, v);
+      image.z_m.push_back(depth_m(ray.x(), ray.y(), u, v));
+    }
+  return image;
+}
+
+TEST(ImagePress, NotesThatSomethingNearerIsNotPressed) {
+  const Views box({photographed_by_pixel(see_through)});
+  const ImagePress on_wall({}, box);
+  EXPECT_NEAR(on_wall.at(5).position_W.z(), 1.01, 1e-9) << "the hand presses the wall";
+  ASSERT_EQ(kinds(on_wall), Kinds{"object not pressed"});
+  EXPECT_HAS(on_wall.notes()[0].text, "is nearer, at 600 mm");
+  // 4 cm are 42 pixels: 0.6 % of the image. The hand presses the middle of the wall, beside a cube that is
+  // not in the middle.
+  const Views cube(
+      {photographed_by_pixel([](double x, double y, int u, int v) { return small_cube(x - 0.2, y, u, v); })});
+  const ImagePress beside({}, cube);
+  EXPECT_NEAR(beside.at(5).position_W.z(), 0.91, 1e-9);
+  ASSERT_EQ(kinds(beside), Kinds{"object not pressed"});
+  EXPECT_HAS(beside.notes()[0].text, "an object at row 240, column 425 is nearer, at 500 mm");
+  const ImageScan scan({}, cube);
+  EXPECT_EQ(kinds(scan), Kinds{"object not scanned"});
+  EXPECT_HAS(scan.notes()[0].text, "is scanned, but an object at row 240, column 425 is nearer, at 500 mm");
+}
+
+// The near part of a tilted table is nearer than its middle, and belongs to what is touched. Single pixels
+// that are wrong are no object. A pixel that the user gives is what the user means.
+TEST(ImagePress, HasNoNoteIfTheNearestObjectIsPressed) {
+  const auto table = [](double, double y) { return 0.8 / (1 + 0.8 * y); };
+  const Views alone({photographed(table, everywhere)});
+  EXPECT_EQ(kinds(ImagePress({}, alone)), Kinds{});
+  EXPECT_EQ(kinds(ImageScan({}, alone)), Kinds{});
+  DepthImage flying = photographed(table, everywhere);
+  std::mt19937 random(11);
+  for (double& z : flying.z_m)
+    if (random() % 1000 == 0) z -= 0.2;
+  const Views noisy({flying});
+  EXPECT_EQ(kinds(ImagePress({.margin_m = 0.003}, noisy)), Kinds{});
+  const Views mug({photographed(mug_before_wall, everywhere)});
+  EXPECT_EQ(kinds(ImagePress({}, mug)), Kinds{});
+  const Views box({photographed_by_pixel(see_through)});
+  EXPECT_EQ(kinds(ImagePress({.row = 240, .column = 100}, box)), Kinds{});
+}
+
+// A ring before a wall: in the given row of its middle the ring is touched, in a row above it the wall.
+TEST(ImagePress, NotesThatTheObjectHasNoPixelInTheGivenRow) {
+  const Surface ring = [](double x, double y) {
+    const double r = std::hypot(0.5 * x, 0.5 * y);
+    return nearer(r > 0.05 && r < 0.1 ? 0.5 : kNaN, wall(0.75));
+  };
+  const Views scene({photographed(ring, everywhere)});
+  EXPECT_EQ(kinds(ImagePress({.row = 240}, scene)), Kinds{});
+  const ImagePress above({.row = 60}, scene);
+  EXPECT_NEAR(above.at(5).position_W.z(), 0.76, 1e-9);
+  ASSERT_EQ(kinds(above), Kinds{"object not pressed"});
+  EXPECT_HAS(above.notes()[0].text, "row 60, column 3");
+}
+
+// Columns of the plates, from their edges: (0.02, 0.12) m at 0.5 m are columns 340.5 to 445.5, and 1 cm is 10
+// pixels. Each pixel of the square is compared with the one to its left.
+TEST(ImageTrajectories, ReportWhichPixelsTheyFollow) {
+  const Surface plates = [](double x, double y) {
+    return nearer(plate(x, y, 0.5, -0.12, -0.02, 0.1), plate(x, y, 0.6, 0.024, 0.144, 0.1));
+  };
+  const Views scene({photographed(plates, everywhere)});
+  ImageScan::Settings s;
+  s.row = 240;
+  EXPECT_EQ(
+      ImageScan(s, scene).aim(),
+      "image-scan, row 240, columns 205 to 288 at depth 0.500 to 0.500 m, columns 350 to 437 at depth 0.600 "
+      "to 0.600 m");
+  EXPECT_EQ(ImagePress({.row = 240, .column = 250}, scene).aim(),
+            "image-press, row 240, column 250 at depth 0.500 m");
+  const ImagePress chosen({}, scene);
+  EXPECT_HAS(chosen.aim(),
+             "row " + std::to_string(chosen.row()) + ", column " + std::to_string(chosen.column()));
+}
+
+// What the message proposes can be used: the pixel, and -1 for both.
+TEST(ImagePress, ProposesAPixelThatCanBeTouched) {
+  const Surface ring = [](double x, double y) {
+    const double r = std::hypot(0.5 * x, 0.5 * y);
+    return r > 0.05 && r < 0.1 ? 0.5 : kNaN;
+  };
+  const Views scene({photographed(ring, everywhere)});
+  ImagePress::Settings s;
+  s.row = 240, s.column = 320;
+  const std::string message = refusal([&] { ImagePress(s, scene); });
+  EXPECT_HAS(message,
+             "expected -1 for both (the nearest object), the nearest pixel that can be touched, row ");
+  const char* const found = std::strstr(message.c_str(), "touched, row ");
+  ASSERT_NE(found, nullptr);
+  ASSERT_EQ(std::sscanf(found, "touched, row %d, column %d", &s.row, &s.column), 2);
+  EXPECT_EQ(refusal([&] { ImagePress(s, scene); }), "no InputError");
+  EXPECT_EQ(refusal([&] { ImagePress({}, scene); }), "no InputError");
+  s.margin_m = 0.04, s.row = 240, s.column = 320;  // the ring is 5 cm wide
+  EXPECT_HAS(refusal([&] { ImagePress(s, scene); }), "expected a smaller margin_m or a larger bridge_m");
+  ImageScan::Settings scan;
+  scan.row = 10;
+  EXPECT_HAS(refusal([&] { ImageScan(scan, scene); }), "expected -1 (the nearest object: row ");
 }
 
 // bridged() against a plain search of all measured pixels for each hole.

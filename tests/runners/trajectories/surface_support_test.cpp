@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace remote_touch::surface_support_test {
@@ -67,6 +68,43 @@ TEST(SurfaceSupport, IsTheMedianOfASquareWithoutHolesEdgesAndBorders) {
         }
       EXPECT_GT(supported, 100);
     }
+}
+
+TEST(SurfaceSupport, HasNoDepthOutsideTheImageAndAtTheLens) {
+  DepthImage image{9, 9, std::vector<double>(9 * 9, 1.0)};
+  for (const auto& [u, v] : {std::pair(-1, 4), {9, 4}, {4, -1}, {4, 9}})
+    EXPECT_TRUE(std::isnan(supported_depth(image, u, v, kFocal_px, {}))) << u << ", " << v;
+  for (const double z_m : {1e-300, 0.0, -1.0}) {  // the margin would be more pixels than an int holds
+    image.z_m[pixel(image, 4, 4)] = z_m;
+    EXPECT_TRUE(std::isnan(supported_depth(image, 4, 4, kFocal_px, {0.01, 0.01}))) << z_m;
+  }
+}
+
+TEST(SurfaceSupport, ALengthReachesOnePixelAtLeastAndTheImageAtMost) {
+  const DepthImage image{40, 31, {}};
+  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 0.4), 6);
+  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 5), 1);
+  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 1e-300), 40);
+  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, kNaN), 1);
+}
+
+// Against the distances of all pixels that the plain loop supports.
+TEST(SurfaceSupport, FindsTheNearestPixelThatCanBeTouched) {
+  const DepthImage image = uneven(1);
+  for (const ImagePixel& to : {ImagePixel{15, 9}, {15, 24}, {0, 0}, {30, 39}, {14, 30}}) {
+    const auto squared = [&](int u, int v) {
+      return (u - to.column) * (u - to.column) + (v - to.row) * (v - to.row);
+    };
+    int least = std::numeric_limits<int>::max();
+    for (int v = 0; v < image.height; ++v)
+      for (int u = 0; u < image.width; ++u)
+        if (std::isfinite(plain_depth(image, u, v, 2, 0.006))) least = std::min(least, squared(u, v));
+    const auto found = nearest_supported(image, to, kFocal_px, {0.006, 0.01});
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(std::isfinite(plain_depth(image, found->column, found->row, 2, 0.006)));
+    EXPECT_EQ(squared(found->column, found->row), least) << to.row << ", " << to.column;
+  }
+  EXPECT_FALSE(nearest_supported(image, {15, 9}, kFocal_px, {0.006, 0.1})) << "25 pixels in every direction";
 }
 
 // A whole image in memory, followed by rows that are not its own.

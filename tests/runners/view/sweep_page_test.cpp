@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "analysis/sweeps/sweep_file.h"
@@ -48,6 +49,7 @@ TEST_F(SweepPageTest, HasTheMapAndTheRunsOfTheNamedCells) {
   EXPECT_EQ(map["runs"], (std::vector<int>{0, 5}));
   EXPECT_EQ(map["axes"][0]["values"], (std::vector<double>{0, 0.003}));
   EXPECT_EQ(map["axes"][1]["name"], "acceleration_m_per_s2");
+  EXPECT_EQ(map["done"], (std::vector<int>(6, 1)));
   EXPECT_EQ(read.numbers<double>(map["measures"][1]["numbers"]), stored_.measure("max_penetration"));
   ASSERT_EQ(read.json["runs"].size(), 2u);
   const Trace again = simulate(sweep_.experiment(5, 0));
@@ -60,6 +62,15 @@ TEST_F(SweepPageTest, ShowsFailuresWhereNoneAreNamed) {
   const ReadPage read = page({});
   ASSERT_FALSE(read.json["sweep"]["runs"].empty());
   for (const std::size_t run : read.json["sweep"]["runs"]) EXPECT_EQ(failed[run], 1) << run;
+}
+
+// So that a mean can say how many of them have no value.
+TEST_F(SweepPageTest, HasTheNumberOfFinishedRunsOfEachCell) {
+  SweepResult failed = stored_;
+  failed.state[2] = RunState::failed, failed.error[2] = "no memory";
+  for (Column& measure : failed.measures) std::get<std::vector<double>>(measure.values)[2] = std::nan("");
+  write(failed);
+  EXPECT_EQ(page({"0,0"}).json["sweep"]["done"], (std::vector<int>{1, 1, 0, 1, 1, 1}));
 }
 
 TEST_F(SweepPageTest, SaysWhereARunIsNotTheOneThatIsStored) {

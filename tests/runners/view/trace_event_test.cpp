@@ -29,6 +29,14 @@ TEST(TraceEvents, APopThroughIsWhereTheProxyGetsBelowTheTrueSurface) {
             (Texts{"2 pop-through", "5 pop-through"}));
 }
 
+TEST(TraceEvents, AProxyThatRestsOnTheSurfaceDoesNotPopThroughIt) {
+  const ColumnsInMemory resting(
+      std::vector<Column>{column("signed_distance", Doubles{0.01, -1e-9, 1e-9, -1e-4, -0.003})});
+  EXPECT_EQ(trace_events(resting).size(), 2u);
+  ASSERT_EQ(trace_events(resting, {}, 0.0025).size(), 1u);
+  EXPECT_EQ(trace_events(resting, {}, 0.0025)[0].tick, 4u);
+}
+
 TEST(TraceEvents, TheLargestForceJump) {
   EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 1, 0, 0, 1, 0, 3, 4, 0, 3, 4, 1}, 3)}),
             (Texts{"3 force jump"}));

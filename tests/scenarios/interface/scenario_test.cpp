@@ -10,6 +10,7 @@
 
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/synthetic/flat_grid.h"
+#include "scenarios/synthetic/listed_points.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
@@ -186,7 +187,7 @@ TEST(TriangleWave, SignedDistanceIsToTheStraightFlanks) {
   const PointCloud at = scenes::random_cloud(200, 1, 1);
   int below = 0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const Vec3 p(0.22 * at.x[i], 0.025 * at.y[i], 0.1 * at.z[i]);
+    const Vec3 p(0.22 * at.x[i], 0.025 * at.y[i], 0.07 * at.z[i]);
     double squared = std::numeric_limits<double>::infinity();
     for (double x = -end; x <= end; x += spacing)
       squared = std::min(squared, std::pow(x - p.x(), 2) + std::pow(wave_height(x) - p.y(), 2));
@@ -199,6 +200,25 @@ TEST(TriangleWave, SignedDistanceIsToTheStraightFlanks) {
     below += got < 0;
   }
   EXPECT_GT(below, 50);
+  EXPECT_TRUE(std::isnan(wave.signed_distance({0, -0.05, 0.08}, 0))) << "beside the cloud, along z";
+  EXPECT_TRUE(std::isnan(wave.signed_distance({end + 1, -0.05, 0}, 0))) << "and along x";
+  EXPECT_GT(wave.signed_distance({end + 0.01, 0.05, 0.08}, 0), 0);
+}
+
+// Below the plane but beside the cloud nothing was passed through, and single points have no sides.
+TEST(Scenario, HasNoBackBesideItsPoints) {
+  const FlatGrid flat = made<FlatGrid>();  // 100 x 100 points, 1.5 mm apart
+  const double border = 49.5 * 0.0015;
+  for (const Vec3& p : {Vec3(border, -0.01, 0), Vec3(0, -0.01, -border)})
+    EXPECT_EQ(flat.signed_distance(p, 0), -0.01);
+  for (const Vec3& p : {Vec3(border + 1e-6, -0.01, 0), Vec3(0, -0.01, -border - 1e-6)})
+    EXPECT_TRUE(std::isnan(flat.signed_distance(p, 0)));
+  EXPECT_EQ(flat.signed_distance({1, 0.01, 1}, 0), 0.01);
+  const MovingLift lift = made<MovingLift>();  // 200 x 200 points
+  EXPECT_TRUE(std::isnan(lift.signed_distance({99.5 * 0.0015 + 1e-6, -1, 0}, 0)));
+  EXPECT_LT(lift.signed_distance({99.5 * 0.0015, -1, 0}, 0), -0.9);
+  const ListedPoints points = made<ListedPoints>();
+  for (const double y : {0.01, 0.0, -0.01}) EXPECT_TRUE(std::isnan(points.signed_distance({0, y, 0}, 0)));
 }
 
 // Depth along the optical axis. The camera looks from (0.3, 0.6) to (0, 0.02) in the (x, y) plane.

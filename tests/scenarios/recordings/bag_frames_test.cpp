@@ -245,6 +245,21 @@ TEST_F(Frames, ThatAreDamagedAreNamed) {
   EXPECT_HAS(error({cloud(0, 0), cut}), "/points: ends after 7 bytes");
 }
 
+// Messages of two sizes, and an empty one, which is an image without a measurement.
+TEST_F(Frames, OfAnotherSizeAreRefusedByTheirMessage) {
+  BagMessage smaller = cloud(1, 1), empty = cloud(2, 2);
+  smaller.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 3, 2, 1);
+  empty.bytes = cloud_message(Format::cdr, kStart_ns + 2 * kStep_ns, 0, 1, 1);
+  folder_.write("x.mcap", mcap_file({cloud(0, 0), smaller, empty}));
+  RecordedScene::Settings settings;
+  settings.path = (folder_ / "x.mcap").string();
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_HAS(refusal([&] { scene.points(1); }),
+             "x.mcap: /points, message 1: has 3 x 2 points: expected 4 x 3 points, as the first frame");
+  ASSERT_TRUE(scene.cloud(2).image);
+  EXPECT_TRUE(std::isnan(scene.cloud(2).z[11]));
+}
+
 // The whole way: a bag of ROS 1 as a scenario, from a RealSense with units of half a millimetre.
 TEST_F(Frames, AreAScenario) {
   const std::string sensor = "/device_0/sensor_0/";
@@ -259,6 +274,8 @@ TEST_F(Frames, AreAScenario) {
   info.header(0, "0").add(3).add(4).text("None").add(0);
   for (const double k : {10.0, 0.0, 1.5, 0.0, 10.0, 1.0, 0.0, 0.0, 1.0}) info.add(k);
   for (int i = 0; i < 21; ++i) info.add(0.0);
+  for (int i = 0; i < 6; ++i) info.add(std::uint32_t{0});  // binning, region of interest
+  info.add(std::uint8_t{0});
   folder_.write("x.bag",
                 ros1_file({{sensor + "option/Depth Units/value", "std_msgs/msg/Float32", 1, raw(0.0005f)},
                            {sensor + "Depth_0/info/camera_info", kCamera, 1, info.done()},

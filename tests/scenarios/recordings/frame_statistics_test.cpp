@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A wall of 1 m x 1 m, points 1 cm apart, whose left border is at x.
+// The image of a wall of 1 m x 1 m, points 1 cm apart, whose left border is at x.
 PointCloud wall(double x, double z) {
   PointCloud cloud;
+  cloud.image = ImageLayout{};  // it is a camera's, whichever
   for (int row = 0; row < 100; ++row)
     for (int column = 0; column < 100; ++column) cloud.append({x + 0.01 * column, 0.01 * row, z});
   return cloud;
@@ -46,6 +47,40 @@ TEST(FrameStatistics, NotesPointsWithoutColour) {
   EXPECT_HAS(statistics.notes(3)[0].text, "2.5 % of the measured points have no colour (NaN)");
 }
 
+// A camera's image fails to come for one frame.
+TEST(FrameStatistics, NotesFramesWithoutColours) {
+  FrameStatistics statistics(4);
+  PointCloud coloured = wall(0, 1), nothing = wall(0, 1);
+  coloured.colour.assign(coloured.size(), 0xFF0000);
+  nothing.x.assign(nothing.size(), kNan);
+  statistics.add(0, coloured, 3);
+  statistics.add(1, nothing, 3);  // no point of it misses a colour
+  EXPECT_TRUE(statistics.notes(3).empty());
+  statistics.add(3, wall(0, 1), 3);
+  statistics.add(2, wall(0, 1), 3);
+  ASSERT_EQ(statistics.notes(3).size(), 1u);
+  EXPECT_EQ(statistics.notes(3)[0].kind, "colours missing");
+  EXPECT_EQ(statistics.notes(3)[0].text, "2 of 3 frames have no colours, the first is frame 2");
+}
+
+TEST(FrameStatistics, RecordingsWithoutColoursMissNone) {
+  FrameStatistics statistics(1);
+  statistics.add(0, wall(0, 1), 3);
+  EXPECT_TRUE(statistics.notes(3).empty());
+}
+
+// Points of a lidar, x forward: z is no depth, and max_depth_m does not apply.
+TEST(FrameStatistics, CloudsWithoutACameraHaveCoordinatesInsteadOfADepth) {
+  FrameStatistics statistics(1);
+  PointCloud cloud;
+  for (const double x : {2.0, 30.0}) cloud.append({x, -1, x == 2 ? -1.5 : -0.25});
+  statistics.add(0, cloud, 0.1);
+  EXPECT_EQ(
+      statistics.text(),
+      "1 read: 100 % of 2 points measured, x 2 to 30 m, y -1 to -1 m, z -1.5 to -0.25 m, without colours");
+  EXPECT_TRUE(statistics.notes(0.1).empty());
+}
+
 TEST(FrameStatistics, HasNoDepthRangeWithoutAMeasurement) {
   FrameStatistics statistics(1);
   PointCloud nothing;
@@ -62,11 +97,12 @@ TEST(FrameStatistics, NotesPointsBeyondTheLimitAboveATenth) {
     statistics.add(0, cloud, 3);
     const std::vector<Note> notes = statistics.notes(3);
     ASSERT_EQ(notes.size(), beyond > 1000 ? 1u : 0u);
-    for (const Note& note : notes) EXPECT_HAS(note.text, "beyond scenario.max_depth_m = 3");
+    for (const Note& note : notes)
+      EXPECT_HAS(note.text, "beyond scenario.max_depth_m = 3 along the camera's axis");
   }
 }
 
-// A third of the wall remains in view when the camera moves by two thirds of it, then less.
+// Half of the wall remains in view when the camera moves by half of it, then a tenth.
 TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
   for (const double step : {0.5, 0.9}) {
     FrameStatistics statistics(3);
@@ -78,6 +114,35 @@ TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
       EXPECT_HAS(note.text,
                  "2 pair(s) of successive frames show different places, the first is frames 0 and 1");
   }
+}
+
+// A wall that moves to and fro by d, from 1.2 mm to a cell, where the borders of the cells are (multiples of
+// 50 mm) or between them: it is the same wall. When it moves by more than two cells it is another place.
+TEST(FrameStatistics, TakesASurfaceThatMovesALittleForTheSamePlace) {
+  const auto notes = [](double at_m, double move_m) {
+    FrameStatistics statistics(4);
+    for (std::size_t frame = 0; frame < 4; ++frame)
+      statistics.add(frame, wall(0, at_m + (frame % 2 == 0 ? -0.5 : 0.5) * move_m), 3);
+    return statistics.notes(3);
+  };
+  for (const double move_m : {0.0012, 0.003, 0.01, 0.049})
+    for (const double at_m : {0.5, 0.51, 0.525})
+      EXPECT_TRUE(notes(at_m, move_m).empty()) << move_m << " at " << at_m;
+  ASSERT_EQ(notes(0.5, 0.151).size(), 1u);
+  EXPECT_EQ(notes(0.5, 0.151)[0].kind, "frames apart");
+}
+
+// All of the first frame is near the second, but little of the second is near the first.
+TEST(FrameStatistics, NotesAFrameThatShowsMuchThatTheOtherDoesNot) {
+  FrameStatistics statistics(2);
+  PointCloud part = wall(0, 1);
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (i % 100 >= 30) part.x[i] = part.y[i] = part.z[i] = kNan;
+  statistics.add(0, part, 3);
+  statistics.add(1, wall(0, 1), 3);
+  ASSERT_EQ(statistics.notes(3).size(), 1u);
+  // The part has 6 of the 20 columns of cells, and one more is next to them.
+  EXPECT_HAS(statistics.notes(3)[0].text, "only 35 % of the space that a frame shows");
 }
 
 // Frames that do not follow each other may differ: a run reads the first frame for its path.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/geometry/rotation.h"
@@ -110,7 +111,8 @@ TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
                      pcd_header("x y z", "4 4 4", "F F F", "1 1 1", width, height, "4", "ascii") + rows)
               .string();
       EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-                 "x.pcd: its first frame has no point within scenario.max_depth_m = 3")
+                 std::string(value) == "1e30" ? "x.pcd: frame 0 has all its points farther than 1000 m"
+                                              : "x.pcd: its first frame has no point within 10000")
           << value;
     }
   }
@@ -119,7 +121,7 @@ TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
                                         "depth_scale_m": 0.001, "frame_rate_hz": 20})");
   settings.path = (folder / "empty").string();
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-             "its first frame has no point");
+             "its first frame has no point within scenario.max_depth_m = 3");
 }
 
 // A cloud in the coordinates of a map is refused. A single far point is not.
@@ -140,6 +142,167 @@ TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
   EXPECT_EQ(problem("0 0 1\n" + far.substr(far.find('\n') + 1)), "read");
   settings.camera_position_m = Vec3(-2, 0, 0);  // the limit is for the cloud in its own coordinates, too
   EXPECT_HAS(problem(far), "farther than 1000 m");
+}
+
+// --- from frame to frame ---
+
+// A plane 0.5 m away in columns x rows pixels of a camera with a focal length of 100 px; one row: in no
+// order.
+void write_plane(const TestFolder& folder, const std::string& name, int columns, int rows) {
+  const std::string count = std::to_string(columns * rows);
+  std::string pcd = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", std::to_string(columns),
+                               std::to_string(rows), count, "ascii");
+  for (int i = 0; i < columns * rows; ++i)
+    pcd += std::to_string((i % columns - 2) * 0.005) + " " + std::to_string((i / columns - 2) * 0.005) +
+           " 0.5\n";
+  folder.write(name, pcd);
+}
+
+RecordedScene::Settings recording_in(const TestFolder& folder) {
+  RecordedScene::Settings settings;
+  settings.path = folder.path().string();
+  return settings;
+}
+
+TEST(RecordedSceneTest, AFrameOfAnotherSizeIsRefusedByItsName) {
+  const TestFolder folder("recorded_scene_test");
+  write_plane(folder, "1.pcd", 8, 6), write_plane(folder, "2.pcd", 4, 3), write_plane(folder, "3.pcd", 48, 1);
+  RecordedScene::Settings settings = recording_in(folder);
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_EQ(refusal([&] { scene.cloud(1); }),
+            (folder / "2.pcd").string() +
+                ": has 4 x 3 points: expected 8 x 6 points, as the first frame "
+                "that is used has");
+  EXPECT_HAS(refusal([&] { scene.points(2); }), (folder / "3.pcd").string() + ": has points in no order");
+  settings.first_frame = 1, settings.last_frame = 1;
+  EXPECT_TRUE(RecordedScene(settings, {}, scenes::kernels()).cloud(0).image) << "alone it can be used";
+}
+
+TEST(RecordedSceneTest, CloudsInNoOrderMayDifferInSize) {
+  const TestFolder folder("recorded_scene_test");
+  write_plane(folder, "1.pcd", 48, 1), write_plane(folder, "2.pcd", 30, 1);
+  const RecordedScene scene(recording_in(folder), {}, scenes::kernels());
+  EXPECT_EQ(scene.cloud(0).size(), 48u);
+  EXPECT_EQ(scene.cloud(1).size(), 30u);
+}
+
+// A frame in which nothing was measured is an image of holes, not a cloud without a camera.
+TEST(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
+  const TestFolder folder("recorded_scene_test");
+  write_plane(folder, "1.pcd", 4, 3);
+  std::string empty = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
+  for (int i = 0; i < 12; ++i) empty += "nan nan nan\n";
+  folder.write("2.pcd", empty);
+  const RecordedScene scene(recording_in(folder), {}, scenes::kernels());
+  const PointCloud cloud = scene.cloud(1);
+  ASSERT_TRUE(cloud.image);
+  EXPECT_NEAR(cloud.image->camera.fx, 100, 1e-3);
+  EXPECT_FALSE(cloud.is_measured(0));
+}
+
+// --- the limit of the depth ---
+
+// Lidar axes, x forward and z up: nothing may be lost above 3 m, and a limit that was set cannot apply.
+TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
+  const TestFolder folder("recorded_scene_test");
+  folder.write("1.pcd", xyz_header("3", "ascii") + "2 0 -1\n2 0 3.5\n2 0 -0.5\n");
+  RecordedScene::Settings settings = recording_in(folder);
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_EQ(scene.cloud(0).z[1], 3.5);
+  EXPECT_EQ(scene.points(0)->size(), 3u);
+  EXPECT_HAS(scene.input(),
+             "z -1 to 3.5 m, without colours; no camera, so that scenario.max_depth_m does not apply");
+  EXPECT_TRUE(scene.input_notes().empty());
+  settings.max_depth_m = 1;
+  EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
+             "no image of a camera and have no depth: expected scenario.max_depth_m = 3");
+}
+
+// --- rates ---
+
+// The same image at each of these times.
+void write_stamped(const TestFolder& folder, const std::vector<std::string>& stamps) {
+  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                             "depth_scale_m": 0.001, "frame_rate_hz": 30})");
+  std::string list;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    folder.write_depth("depth/" + std::to_string(i) + ".png", 1000);
+    list += stamps[i] + " depth/" + std::to_string(i) + ".png\n";
+  }
+  folder.write("depth.txt", list);
+}
+
+std::vector<std::string> note_kinds_of(const RecordedScene& scene) {
+  for (int i = 0; i < 4; ++i) scene.cloud(i);
+  std::vector<std::string> kinds;
+  for (const Note& note : scene.input_notes()) kinds.push_back(note.kind);
+  return kinds;
+}
+
+TEST(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
+  const TestFolder folder("recorded_scene_test");
+  RecordedScene::Settings settings = recording_in(folder);
+  const auto scene = [&] { return RecordedScene(settings, {}, scenes::kernels()); };
+  write_stamped(folder, {"0", "33", "66", "100"});
+  EXPECT_EQ(note_kinds_of(scene()), std::vector<std::string>{"unusual rate"});
+  EXPECT_HAS(scene().input_notes().back().text,
+             "0.0303 Hz: stamps are read as seconds, these may be milliseconds");
+  EXPECT_HAS(scene().input(), " at 0.03 Hz, 3 x 2 pixels");
+  settings.frame_rate_hz = 30;
+  EXPECT_TRUE(note_kinds_of(scene()).empty());
+  EXPECT_HAS(scene().input(), " at 30 Hz (recorded at 0.03 Hz), 3 x 2 pixels");
+  settings.frame_rate_hz = 0;
+  write_stamped(folder, {"0", "0.033", "0.066", "100"});
+  EXPECT_TRUE(note_kinds_of(scene()).empty()) << "one long pause";
+  EXPECT_HAS(scene().input(), " at 30.303 Hz with pauses of up to 99.934 s (0.03 Hz on average)");
+}
+
+// camera.json says its rate in hertz; nothing is taken for stamps.
+TEST(RecordedSceneTest, ARateThatIsGivenIsNotDoubted) {
+  const TestFolder folder("recorded_scene_test");
+  for (const char* rate : {"0.5", "1200", "1e-9"}) {
+    folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                                    "depth_scale_m": 0.001, "frame_rate_hz": )" +
+                                    std::string(rate) + "}");
+    folder.write_depth("depth/0.png", 1000);
+    EXPECT_TRUE(note_kinds_of(RecordedScene(recording_in(folder), {}, scenes::kernels())).empty()) << rate;
+  }
+}
+
+TEST(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
+  const TestFolder folder("recorded_scene_test");
+  write_stamped(folder, {"0", "0.1", "0.2", "0.3"});
+  RecordedScene::Settings settings = recording_in(folder);
+  const auto text_after = [&](const std::vector<int>& used) {
+    const RecordedScene scene(settings, {}, scenes::kernels());
+    for (const int frame : used) scene.cloud(frame);
+    const std::vector<Note> notes = scene.input_notes();
+    return notes.empty() ? std::string() : notes.front().text.substr(notes.front().text.find(": ") + 2);
+  };
+  for (const auto playback :
+       {RecordedScene::Playback::hold, RecordedScene::Playback::loop, RecordedScene::Playback::ping_pong}) {
+    settings.playback = playback;
+    EXPECT_EQ(text_after({0, 1}), "2 of 4 frames were not used: the run ends before");
+    EXPECT_EQ(text_after({0, 1, 2, 3}), "");
+    EXPECT_EQ(text_after({0, 3}), "2 of 4 frames were not used: newer ones replaced them, or they were lost");
+    EXPECT_EQ(
+        text_after({0, 2}),
+        "2 of 4 frames were not used: the run ends before 1 of them, newer ones replaced the others, or these "
+        "were lost");
+  }
+}
+
+// As recorded is as recorded, whatever comes after the last frame.
+TEST(RecordedSceneTest, ALoopHasTheStampsOfItsFrames) {
+  const TestFolder folder("recorded_scene_test");
+  write_stamped(folder, {"5", "5.25", "5.5", "6.5"});
+  RecordedScene::Settings settings = recording_in(folder);
+  settings.playback = RecordedScene::Playback::loop;
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_EQ(scene.newest_frame(1.4), 2);
+  EXPECT_EQ(scene.newest_frame(1.6), 3);
+  EXPECT_EQ(scene.newest_frame(2.1), 4) << "the first frame again, one mean period of 0.5 s after the last";
+  EXPECT_HAS(scene.input(), " at 4 Hz with pauses of up to 1 s (2 Hz on average)");
 }
 
 }  // namespace

@@ -69,8 +69,9 @@ TEST_F(Recording, IndexesAndReadsAFolder) {
   ASSERT_EQ(index.frames.size(), 2u);
   EXPECT_EQ(index.frames[0].captured_s, 0);
   EXPECT_EQ(index.frames[1].captured_s, 1 / 20.0);
-  EXPECT_EQ(index.description,
-            folder_.path().filename().string() + ": 2 frame(s) from depth PNG at 20 Hz, 3 x 2 pixels");
+  EXPECT_EQ(description(index, "5 Hz"),
+            folder_.path().filename().string() + ": 2 frame(s) from depth PNG at 5 Hz, 3 x 2 pixels");
+  EXPECT_EQ(frame_name(index, 1), (folder_ / "depth/0001.png").string());
 
   const PointCloud cloud = read_frame(index, 1, 2.0045);
   ASSERT_EQ(cloud.size(), 6u);
@@ -104,6 +105,32 @@ TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
   for (std::size_t j = 0; j < names.size(); ++j) EXPECT_EQ(index.frames[j].depth.filename(), names[j]);
   for (const char* name : {"clouds/a_10.pcd", "clouds/a_9.pcd"}) write_pcd(name, "1");
   EXPECT_EQ(index_recording(folder_ / "clouds").frames[0].depth.filename(), "a_9.pcd");
+}
+
+TEST_F(Recording, HasTheNameOfTheCurrentFolder) {
+  write_recording();
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  const std::string name = index_recording(".").name, below = index_recording("depth/..").name;
+  fs::current_path(before);
+  EXPECT_EQ(name, folder_.path().filename().string());
+  EXPECT_EQ(below, name);
+}
+
+TEST_F(Recording, HasFilesWithEndingsInCapitalLettersButNoHiddenOnes) {
+  folder_.write("camera.json", kCamera);
+  folder_.write_depth("depth/0000.PNG", 1000), folder_.write_depth("depth/0001.png", 1000);
+  folder_.write_colour("rgb/0000.png", 0x11), folder_.write_colour("rgb/0001.png", 0x22);
+  for (const char* name : {"depth/._0001.png", "depth/.old.png", "rgb/._0001.png"})
+    folder_.write(name, "no image");
+  const RecordingIndex index = index_recording(folder_.path());
+  ASSERT_EQ(index.frames.size(), 2u);
+  EXPECT_EQ(index.frames[0].depth.filename(), "0000.PNG");
+  EXPECT_EQ(index.frames[0].colour.filename(), "0000.png");
+  EXPECT_EQ(index.frames[1].colour.filename(), "0001.png");
+  write_pcd("clouds/A.PCD", "1"), folder_.write("clouds/.b.pcd", "no cloud");
+  EXPECT_EQ(index_recording(folder_ / "clouds").frames.size(), 1u);
+  EXPECT_EQ(index_recording(folder_ / "clouds/A.PCD").frames.size(), 1u);
 }
 
 TEST_F(Recording, RefusesIncompleteFolders) {

@@ -50,6 +50,11 @@ TEST(OpenBox, HasItsSizeAndSpacing) {
   // Above the opening: the nearest place is a rim.
   EXPECT_NEAR(box.signed_distance({0.015, 0.05, 0}, 0), 0.05, 1e-15);
   EXPECT_GT(box.signed_distance({0, 1, 0}, 0), 0.9);
+  // Behind walls and floor, up to the rim; beside the box, beyond its rim, it has no back.
+  EXPECT_NEAR(box.signed_distance({0.059, -0.023, 0}, 0), -0.005, 1e-15);
+  EXPECT_NEAR(box.signed_distance({0.4, 0.019, 0}, 0), -0.345, 1e-15);
+  EXPECT_TRUE(std::isnan(box.signed_distance({0.4, 0.021, 0}, 0)));
+  EXPECT_TRUE(std::isnan(box.signed_distance({0.4, 0.021, 0.4}, 0)));
 }
 
 TEST(OpenBox, TheFloorCanBeLeftOut) {
@@ -90,6 +95,8 @@ TEST(Slot, CornersOfTheBarMeetTheWallsHalfWayBetweenColumns) {
   const Slot slot = made<Slot>();
   EXPECT_NEAR(slot.signed_distance({0.01, 0.01, 0.015}, 0), 0.005, 1e-15);
   EXPECT_NEAR(slot.signed_distance({0.01, 0.01, -0.026}, 0), -0.006, 1e-15);
+  EXPECT_TRUE(std::isnan(slot.signed_distance({0.061, 0.01, -0.026}, 0))) << "beyond the end of the wall";
+  EXPECT_TRUE(std::isnan(slot.signed_distance({0.01, 0.031, 0.026}, 0))) << "and above it";
 }
 
 TEST(Wedge, ClosesAndOpensEvenly) {
@@ -109,6 +116,9 @@ TEST(Wedge, ClosesAndOpensEvenly) {
   for (const double t : {0.0, 1.3, 1.31, 2.5, 3.7})
     EXPECT_NEAR(wedge.signed_distance(p, t), 0.03 * 0.5 + 0.5 * wedge.gap_m(t) * std::sqrt(0.75), 1e-15) << t;
   EXPECT_LT(wedge.signed_distance({0, 0, 0.03}, 0), 0);
+  // Below the closed walls is their back; below the open ones is the gap between them.
+  EXPECT_NEAR(wedge.signed_distance({0, -0.02, 0}, 2.5), -0.02, 1e-15);
+  EXPECT_TRUE(std::isnan(wedge.signed_distance({0, -0.1, 0.02}, 0)));
 }
 
 TEST(Wedge, CanStandAsideAskewAndParallel) {
@@ -168,7 +178,9 @@ TEST(MovingPlane, WaitsRisesAndRests) {
   EXPECT_NEAR(height(1 + end - 1e-9), 0.04, 1e-9);
   EXPECT_EQ(height(1 + end + 1e-12), -0.06 + 0.1);
   EXPECT_EQ(plane.frame_count(), 1 + static_cast<int>(std::ceil((1 + end) * 30)));
-  EXPECT_NEAR(plane.signed_distance({1, -0.05, 2}, 1.1), -0.05 + 0.047, 1e-15);
+  EXPECT_NEAR(plane.signed_distance({0.09, -0.05, 0.02}, 1.1), -0.05 + 0.047, 1e-15);
+  EXPECT_NEAR(plane.signed_distance({1, -0.04, 2}, 1.1), -0.04 + 0.047, 1e-15);
+  EXPECT_TRUE(std::isnan(plane.signed_distance({1, -0.05, 2}, 1.1))) << "beside the cloud";
   for (const int frame : {0, 31, 40, plane.frame_count() - 1}) {
     expect_on_surface(plane, frame);
     EXPECT_EQ(plane.cloud(frame).ny[7], 1);

@@ -76,6 +76,8 @@ TEST(Plates, TheFirstPlateIsTheTruth) {
   EXPECT_NEAR(made(s).signed_distance(p, 0.09), 0.03 - 0.3 * 0.09, 1e-15);
   EXPECT_NEAR(made(s).signed_distance({0.05 + 0.018 + 0.3, 0.01 + 0.027 + 0.4, 0}, 0.09), 0.5, 1e-12)
       << "beyond the border, to the border";
+  EXPECT_TRUE(std::isnan(made(s).signed_distance({0.05 + 0.018 + 0.3, 0.01 + 0.027 - 0.4, 0}, 0.09)))
+      << "below its plane, beside it";
 }
 
 TEST(Plates, HaveFramesForAsLongAsSomethingChanges) {

@@ -175,6 +175,7 @@ export function differenceOf(runs: Run[], name: string): Column | null {
 
 interface StoredSweep {
   file: string; title: string; replicates: number; judged: string; threshold: number; runs: number[];
+  done: number[]; // runs of each cell that are done
   notes: string[]; // how many runs have each kind of note
   axes: { name: string; unit: string; values: (number | string)[] }[];
   measures: { name: string; unit: string; meaning: string; numbers: Packed }[];
@@ -189,10 +190,20 @@ export class Sweep {
     if (!found) throw new Error(`the sweep has no measure ${name}`);
     return unpacked(this.buffer, found.numbers);
   }
-  // Of the replicates that have a number; NaN without any.
+  private finite(numbers: Numbers, cell: number): number[] {
+    const { replicates } = this.stored;
+    return [...numbers.subarray(cell * replicates, (cell + 1) * replicates)].filter(Number.isFinite);
+  }
+  // The mean of the replicates that have a number; NaN if none has.
   mean(numbers: Numbers, cell: number): number {
-    const { replicates } = this.stored, values = [...numbers.subarray(cell * replicates, (cell + 1) * replicates)].filter(Number.isFinite);
+    const values = this.finite(numbers, cell);
     return values.length > 0 ? values.reduce((sum, value) => sum + value, 0) / values.length : Number.NaN;
+  }
+  // ", mean of 4 of 5 runs": those that have a number, and those that are done. Empty for a single run with a number.
+  meanOf(numbers: Numbers, cell: number): string {
+    const known = this.finite(numbers, cell).length, done = this.stored.done[cell];
+    if (done === known) return done > 1 ? `, mean of ${done} runs` : "";
+    return known > 0 ? `, mean of ${known} of ${done} runs` : "";
   }
   cellOf(shown: number): number {
     return Math.floor(this.stored.runs[shown] / this.stored.replicates);

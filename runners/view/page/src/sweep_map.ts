@@ -116,9 +116,9 @@ export class SweepMap {
   }
   private describe(cell: number): void {
     if (cell < 0) return;
-    const mean = this.sweep.mean(this.numbers, cell), { replicates } = this.sweep.stored;
+    const mean = this.sweep.mean(this.numbers, cell);
     const value = Number.isFinite(mean) ? `${digits(mean)}${this.unit()}` : "no value";
-    this.caption.textContent = `${this.choice.value} ${value} at ${this.sweep.text(cell)}${replicates > 1 ? `, mean of up to ${replicates} runs` : ""}`;
+    this.caption.textContent = `${this.choice.value} ${value} at ${this.sweep.text(cell)}${this.sweep.meanOf(this.numbers, cell)}`;
   }
   private tellAbsent(cell: number): void {
     if (cell >= 0) this.caption.textContent = `${this.sweep.text(cell)}: not on this page. Click a framed cell, or make a page with --cells.`;

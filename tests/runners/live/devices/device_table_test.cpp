@@ -48,6 +48,39 @@ TEST_F(DeviceTable, TheSimulatedHandFollowsATrajectoryThatLooksAtFrames) {
     EXPECT_EQ(positions.list[i], script_->at(static_cast<double>(i + 1) / 1000).position_W) << "tick " << i;
 }
 
+// The fourth image has another size. read() does not throw: that would end the program.
+TEST_F(DeviceTable, ATrajectoryThatCannotUseAFrameIsAFault) {
+  const TestFolder folder("size_changes");
+  folder.write("camera.json", R"({"width": 160, "height": 120, "fx": 150, "fy": 150, "cx": 79.5, "cy": 59.5,
+    "depth_scale_m": 0.001, "frame_rate_hz": 30})");
+  for (int i = 0; i < 6; ++i) {
+    const int width = i == 3 ? 80 : 160;
+    const std::vector<std::uint16_t> samples(static_cast<std::size_t>(width) * 120, 500);
+    folder.write_png("depth/" + std::to_string(i) + ".png", width, 120, PNG_FORMAT_LINEAR_Y, samples.data());
+  }
+  const Experiment press = Experiment::from_json(
+      R"({"scenario": {"name": "recording", "path": ")" + folder.path().string() +
+          R"("}, "renderer": {"name": "proxy"}, "trajectory": {"name": "image-press"}, "duration_s": 0.2})",
+      "a test");
+  const auto device = open_device("sim:", {press, scenes::kernels(), clock_, nullptr});
+  struct UntilFault final : DeviceCycle {
+    bool tick() noexcept override {
+      DeviceReading reading;
+      fault = device->read(reading);
+      ++ticks;
+      return !fault && ticks < 1000;
+    }
+    HapticDevice* device = nullptr;
+    DeviceFault fault;
+    int ticks = 0;
+  } cycle;
+  cycle.device = device.get();
+  EXPECT_HAS(refusal([&] { device->run(cycle); }), "depth/3.png");
+  EXPECT_EQ(cycle.ticks, 100) << "the first tick is 1 ms, and frame 3 is captured at 0.1 s";
+  ASSERT_TRUE(cycle.fault);
+  EXPECT_HAS(cycle.fault.what, "80 x 120 pixels");
+}
+
 TEST_F(DeviceTable, TheMouseBeginsWhereTheExperimentDoes) {
   DeviceReading reading;
   open("browser:", std::make_shared<HandPoses>())->read(reading);

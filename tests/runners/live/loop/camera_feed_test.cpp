@@ -128,11 +128,12 @@ TEST(CameraFeed, TellsHowItEnded) {
     EXPECT_TRUE(loop.camera->step(0));
     EXPECT_EQ(loop.camera->step(0), continues);
     EXPECT_EQ(loop.camera->ended(), why);
+    EXPECT_FALSE(loop.camera->has_refused()) << "a camera that was lost is no input error";
     EXPECT_EQ(loop.camera->step(0), continues);
   }
 }
 
-// A rule that wants colours of a sensor without any: there are no more frames, and nothing else happens.
+// A rule that needs colours gets a frame without any: there are no more frames, and the run is to end.
 TEST(CameraFeed, AFrameThatCannotBeProcessedEndsIt) {
   Loop loop(std::make_unique<ListedFrames>(std::vector{frame(1, 1)}, SensorState::waiting));
   std::vector<std::unique_ptr<const FixtureRule>> rules;
@@ -142,6 +143,7 @@ TEST(CameraFeed, AFrameThatCannotBeProcessedEndsIt) {
                     RigidTransform::Identity(), loop.clock, 0, loop.frames, {});
   EXPECT_FALSE(camera.step(0));
   EXPECT_NE(camera.ended().find("colour"), std::string::npos) << camera.ended();
+  EXPECT_TRUE(camera.has_refused()) << "an input error";
 }
 
 }  // namespace

@@ -64,13 +64,24 @@ TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
 TEST(LiveNotes, ASessionWithoutContactSaysSo) {
   const Session session = run(press(kAbove), 0.5);
   EXPECT_EQ(kinds_of(session.result.report), Kinds{"no contact"});
-  EXPECT_EQ(attribute(session.stored, "notes"), "no contact: no point was touched, and no force was felt");
+  EXPECT_EQ(attribute(session.stored, "notes"), "no point was touched, and no force was felt");
 }
 
 TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
   const Session session = run(press(kPress), 0.1);
   EXPECT_EQ(kinds_of(session.result.report), Kinds{"phase not reached"});
   EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
+}
+
+// With this focal length the pixels see points of the table 11 mm apart, so that a ball of radius 5 mm falls
+// between them.
+TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
+  std::string sparse = press(kPress);
+  sparse.insert(sparse.find("\"width\""), "\"focal_px\": 60, ");
+  const Session session = run(sparse, 0.5);
+  ASSERT_FALSE(session.result.report.notes.empty());
+  EXPECT_EQ(kinds_of(session.result.report).back(), "wide spacing");
+  EXPECT_HAS(attribute(session.stored, "notes"), "a proxy of contact radius 5 mm can fall through it");
 }
 
 // The device of another program moves as it likes: the experiment's hand and scene are not used.
@@ -80,6 +91,13 @@ TEST(LiveNotes, PhasesBelongToSimulatedPartsOnly) {
   EXPECT_TRUE(simulated_phases(experiment, "browser:", "sim:", scenes::kernels()).empty())
       << "a scene at rest";
   EXPECT_TRUE(simulated_phases(experiment, "fd:", "k4a:", scenes::kernels()).empty());
+  const std::string more =
+      R"(, "changes": [{"time_s": 1, "parameter": "renderer.stiffness_N_per_m", "value": 9}],
+      "operator": {"presses": [[2, 0, 0.1]]}})";
+  const std::string text = press(kPress);
+  const Experiment both = Experiment::from_json(text.substr(0, text.size() - 1) + more, "test");
+  EXPECT_EQ(simulated_phases(both, "fd:", "k4a:", scenes::kernels()).size(), 1u) << "the change";
+  EXPECT_EQ(simulated_phases(both, "sim:", "k4a:", scenes::kernels()).size(), 3u);
 }
 
 RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_ticks = 1, int taken = 1) {

@@ -135,7 +135,7 @@ Manifest with_runs_of(const std::vector<std::string>& subjects) {
 std::vector<std::string> missing(const fs::path& folder, const Manifest& manifest) {
   std::vector<std::string> names;
   for (const BaselineCheck& check : missing_baselines(folder, manifest)) {
-    EXPECT_EQ(check.state, State::changed);
+    EXPECT_EQ(check.state, State::missing);
     EXPECT_EQ(check.text, "has no baseline");
     EXPECT_FALSE(check.comparison);
     names.push_back(check.name);

@@ -57,6 +57,15 @@ class CompareSweepFiles : public Compare {
   }
 };
 
+TEST_F(CompareSweepFiles, RunsOfAnotherDurationAreNotComparable) {
+  write("a.h5");
+  write_sweep(folder_ / "short.h5", result(), attributes(quick({"duration_s=0.7"})));
+  const ResultComparison other = compare("a.h5", "short.h5");
+  EXPECT_EQ(other.outcome, Outcome::not_comparable);
+  EXPECT_HAS(other.verdict, "experiment.duration_s ");
+  EXPECT_HAS(other.verdict, ": measures of another duration cannot be compared");
+}
+
 TEST_F(CompareSweepFiles, RunByRun) {
   for (const char* name : {"a.h5", "b.h5"}) write(name, [](SweepResult& sweep) { event(sweep)[47] = 0; });
   write("other.h5", [](SweepResult& sweep) { event(sweep)[47] = 1; });

@@ -72,6 +72,46 @@ TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereOneRunPoppedThrough) {
   EXPECT_EQ(better.outcome, Outcome::changed);
   EXPECT_EQ(measure_in(better, "popped_through")["judgement"], "better");
   EXPECT_EQ(measure_in(better, "force_noise")["judgement"], "changed");
+  EXPECT_EQ(better.not_judged, "one run popped through: the other measures are not judged");
+  EXPECT_EQ(json_of(better)["not_judged"], better.not_judged);
+  calm.signed_distance_m.back() = 0.005;
+  write_trace(folder_ / "calm.h5", calm, {}, {});
+  EXPECT_EQ(compare("calm.h5", "held.h5").not_judged, "");
+}
+
+TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereAnOutcomeIsUnknown) {
+  write("unknown.h5", kNaN);
+  EXPECT_EQ(compare("held.h5", "unknown.h5").not_judged,
+            "popped_through is unknown in one run: the other measures are not judged");
+}
+
+// As many ticks, but of a run that lasted twice as long.
+TEST_F(CompareMeasuresOfTraces, AreNoneWhereTheTicksAreFartherApart) {
+  Trace slow = run();
+  for (double& time_s : slow.time_s) time_s *= 2;
+  slow.signed_distance_m.back() = -0.01;
+  write_trace(folder_ / "slow.h5", slow, {}, {});
+  const ResultComparison other = compare("held.h5", "slow.h5");
+  EXPECT_EQ(other.outcome, Outcome::changed);
+  EXPECT_TRUE(other.measures.empty());
+  EXPECT_EQ(other.no_measures, "the baseline has a tick every 1 ms, the candidate every 2 ms");
+  EXPECT_HAS(other.verdict, "; no measures: the baseline has a tick every 1 ms, the candidate every 2 ms");
+}
+
+// A proxy that rests on the surface ends a little in front of it or behind it: the configuration tells.
+TEST_F(CompareMeasuresOfTraces, ThatRestOnTheSurfaceDidNotPopThrough) {
+  Trace resting = run();
+  for (const char* renderer : {"surfels", "proxy"}) {
+    const Experiment experiment =
+        Experiment::load("fig4.12", {R"(renderer={"name": ")" + std::string(renderer) + "\"}"});
+    const TextAttributes attributes = {{"config", experiment.to_json()}};
+    resting.signed_distance_m.back() = 1e-6;
+    write_trace(folder_ / "front.h5", resting, attributes, {});
+    resting.signed_distance_m.back() = -1e-6;
+    write_trace(folder_ / "back.h5", resting, attributes, {});
+    EXPECT_EQ(measure_in(compare("front.h5", "back.h5"), "popped_through")["judgement"],
+              std::string(renderer) == "proxy" ? "worse" : "equal");
+  }
 }
 
 // Traces that are the same have the same measures, which are not computed.

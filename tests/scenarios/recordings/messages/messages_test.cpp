@@ -55,7 +55,7 @@ TEST(Messages, RefuseEveryShorterMessage) {
     }
   }
   const std::string camera = camera_message(4, 3, {0.1, 0, 0, 0, 0});
-  for (std::size_t size = 0; size + 8 < camera.size(); ++size)
+  for (std::size_t size = 0; size < camera.size(); ++size)
     EXPECT_HAS(refusal([&] { read_camera_info({camera.substr(0, size), WireFormat::cdr, "m"}); }), "m: ");
 }
 
@@ -273,6 +273,72 @@ TEST(Messages, RefuseWrongCameras) {
       << "a rectified image is that of a pinhole, whatever the lens was";
   EXPECT_HAS(error(info(3, 2, {0.1, 0, 0})), "with 3 coefficients");
   EXPECT_HAS(error(info(3, 2, {std::nan(""), 0, 0, 0})), "finite");
+}
+
+TEST(Messages, ReadBinningAndRegion) {
+  std::string bytes = camera_message(4, 3);
+  const std::size_t at = bytes.size() - 25;
+  for (std::uint32_t i = 0; i < 6; ++i) bytes.replace(at + 4 * i, 4, raw(10 + i));
+  bytes.back() = 1;
+  const CameraInfoMessage camera = read_camera_info({bytes, WireFormat::cdr, "m"});
+  EXPECT_EQ(camera.binning_x, 10u);
+  EXPECT_EQ(camera.binning_y, 11u);
+  EXPECT_EQ(camera.region, (RegionMessage{12, 13, 14, 15, true}));
+}
+
+// A pixel looks along the mean of the sensor's pixels that it is made of, which is computed pixel by pixel.
+TEST(Messages, UseBinningAndRegionOfACamera) {
+  CameraInfoMessage camera = info(16, 12, {});
+  camera.binning_x = 2, camera.binning_y = 3;
+  camera.region = {3, 2, 9, 8, false};
+  EXPECT_EQ(image_size(camera, "m").width, 4u);
+  EXPECT_EQ(image_size(camera, "m").height, 3u);
+  for (const bool rectified : {false, true}) {
+    const double f = rectified ? 20 : 10;
+    const PointCloud cloud = ImageRays(camera, rectified, "m").cloud({4, 3, std::vector<double>(12, 2.0)});
+    for (int i = 0; i < 12; ++i) {
+      double u = 0, v = 0;
+      for (int pixel = 0; pixel < 6; ++pixel) {
+        u += (3 + i % 4 * 2 + pixel % 2) / 6.0;
+        v += (2 + i / 4 * 3 + pixel / 2) / 6.0;
+      }
+      const Vec3 seen(2 * (u - 7.5) / f, 2 * (v - 5.5) / f, 2);
+      EXPECT_LT((cloud.point(static_cast<std::size_t>(i)) - seen).norm(), 1e-12) << i;
+    }
+  }
+  camera.region = {};
+  camera.binning_x = camera.binning_y = 1;
+  EXPECT_EQ(ImageRays(camera, false, "m").camera().cx, 7.5);
+  EXPECT_EQ(ImageRays(camera, false, "m").camera().width, 16);
+}
+
+TEST(Messages, RefuseCamerasWhoseImageIsNotClear) {
+  const auto error = [](auto change, bool rectified = false) {
+    CameraInfoMessage camera = info(6, 4, {});
+    change(camera);
+    return refusal([&] { ImageRays(camera, rectified, "m"); });
+  };
+  EXPECT_HAS(error([](auto& c) { c.K[1] = 20; }), "m: K[1] = 20.000000: expected 0, a camera without skew");
+  EXPECT_HAS(error([](auto& c) { c.K[3] = std::nan(""); }), "m: K[3] = nan: expected 0");
+  EXPECT_HAS(error([](auto& c) { c.K[8] = 2; }), "m: K[8] = 2.000000: expected 1");
+  EXPECT_EQ(error([](auto& c) { c.K[8] = 0; }), "no InputError");
+  EXPECT_HAS(error([](auto& c) { c.P[3] = -15; }, true),
+             "m: P[3] = -15.000000: expected 0, the camera of the");
+  EXPECT_HAS(error([](auto& c) { c.P[7] = 1; }, true), "m: P[7] = 1.000000: expected 0");
+  EXPECT_HAS(error([](auto& c) { c.P[1] = 1; }, true),
+             "m: P[1] = 1.000000: expected 0, a camera without skew");
+  EXPECT_EQ(error([](auto& c) { c.P[3] = -15, c.P[1] = 1; }), "no InputError")
+      << "the image has the camera K";
+  EXPECT_EQ(error([](auto& c) { c.K[1] = 20; }, true), "no InputError") << "the image has the camera P";
+  EXPECT_HAS(error([](auto& c) { c.region = {3, 0, 4, 4, false}; }), "m: roi has pixels 3 to 7 along x");
+  EXPECT_HAS(error([](auto& c) {
+               c.region = {0, 0xFFFFFFFF, 2, 6, false};
+             }),
+             "to 4294967297 along y: expected");
+  EXPECT_HAS(error([](auto& c) { c.region = {1, 0, 4, 0, false}; }), "m: roi has pixels 1 to 1 along x");
+  EXPECT_HAS(error([](auto& c) { c.binning_x = 7; }), "m: binning = 7 x 1: expected no more than");
+  EXPECT_HAS(error([](auto& c) { c.region = {1, 1, 2, 2, true}; }, true), "m: roi.do_rectify = true");
+  EXPECT_EQ(error([](auto& c) { c.region = {1, 1, 2, 2, true}; }), "no InputError");
 }
 
 // A lens that folds the image over has no points beyond the fold, and no time is lost on it.

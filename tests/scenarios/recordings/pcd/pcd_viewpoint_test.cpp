@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "tests/support/test_files.h"
@@ -77,6 +78,34 @@ TEST(PcdViewpoint, IsNotUsedWhereTheImageIsSeenFromTheOrigin) {
   EXPECT_EQ(turned.cloud.image->camera.fx, expected.cloud.image->camera.fx);
   EXPECT_HAS(read_text(seen_from(xyz_header("1", "ascii") + "1 2 3\n", "0 0 1 1 0 0 0")).remark,
              "is not used");
+}
+
+// A sensor whose axes are not those of the file: the points form an image along x, against z, and so on.
+TEST(PcdViewpoint, AtTheOriginTurnsTheCamera) {
+  const std::vector<std::pair<RigidTransform, std::string>> turns = {
+      {RigidTransform(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY())), "0.70710678 0 0.70710678 0"},
+      {RigidTransform(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX())), "0 1 0 0"}};
+  for (const auto& [X_FC, turn] : turns) {
+    const PcdCloud file = read_text(wall_before(X_FC, "0 0 0 " + turn, false));
+    ASSERT_TRUE(file.cloud.image) << turn;
+    EXPECT_EQ(file.remark, "");
+    EXPECT_TRUE(file.X_FC.isApprox(X_FC, 1e-6));
+    EXPECT_TRUE(file.cloud.point(6).isApprox(seen_by(2, 1), 1e-5));
+  }
+}
+
+// The image is seen along z, but the VIEWPOINT says that the camera looks elsewhere; points in no order are
+// no image at all.
+TEST(PcdViewpoint, AtTheOriginThatTurnsAwayIsReported) {
+  const CameraIntrinsics camera{16, 12, 20, 25, 7.25, 5.5};
+  const PcdCloud turned = read_text(seen_from(organised_pcd(camera, 0), "0 0 0 0.70710678 0 0.70710678 0"));
+  EXPECT_HAS(turned.remark, "its VIEWPOINT is not used");
+  EXPECT_TRUE(turned.X_FC.matrix().isIdentity(0));
+  EXPECT_TRUE(turned.cloud.image);
+  const std::string unorganised = xyz_header("1", "ascii") + "1 2 3\n";
+  EXPECT_HAS(read_text(seen_from(unorganised, "0 0 0 0 1 0 0")).remark, "its VIEWPOINT is not used");
+  EXPECT_EQ(read_text(seen_from(unorganised, "0 0 0 0 0 0 0")).remark, "") << "zeros for unknown";
+  EXPECT_EQ(read_text(seen_from(unorganised, "0 0 0 -1 0 0 0")).remark, "") << "no rotation, too";
 }
 
 TEST(PcdViewpoint, OfOtherThanSevenNumbersIsRefused) {

@@ -1,0 +1,31 @@
+#include "analysis/measures/surface_side.h"
+
+#include <cmath>
+
+#include "analysis/measures/no_value.h"
+
+namespace remote_touch {
+
+bool SurfaceSide::add(double signed_distance_m) {
+  is_known_ = !std::isnan(signed_distance_m);
+  if (!is_known_) {
+    has_gap_ = true;
+    return false;
+  }
+  if (signed_distance_m >= -held_depth_m_) {
+    side_ = Side::front, has_gap_ = false;
+    return false;
+  }
+  if (side_ == Side::back) return false;
+  const bool pops_through = side_ == Side::front && !has_gap_;
+  passed_ = has_gap_ ? kNoValue : (pops_through ? 1 : 0);
+  side_ = Side::back;
+  return pops_through;
+}
+
+double SurfaceSide::popped_through() const {
+  if (!is_known_) return kNoValue;
+  return side_ == Side::back ? passed_ : 0;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,37 @@
+// The side of the true surface on which a proxy is, tick after tick, and how it got there: the definition of
+// pop-through.
+//
+// The proxy is behind the surface if its signed distance d is less than -held_depth_m, and else in front of
+// it. The held depth (see held_depth_m() in rendered_contact.h) is 0 for a ball, whose centre stays in front.
+// A proxy that rests on the surface itself is a little behind it as often as in front.
+//
+// A proxy pops through if it gets from the front to the back from one tick to the next, while d is known.
+// A proxy that begins behind the surface has not passed through it. If d was unknown in between, the proxy
+// may have gone round a border of the surface, through a hole in the measurement, or through the surface:
+// then it is unknown how it got to the back.
+#pragma once
+
+namespace remote_touch {
+
+class SurfaceSide {
+ public:
+  explicit SurfaceSide(double held_depth_m) : held_depth_m_(held_depth_m) {}
+
+  // The next tick; NaN: the distance is unknown. Returns true if the proxy pops through in this tick.
+  bool add(double signed_distance_m);
+  // After the last tick: 1 if the proxy is behind the surface and popped through it, 0 if it is in front or
+  // has been behind since the first tick. NaN if its distance is unknown, if it is unknown how it got to the
+  // back, or without ticks.
+  double popped_through() const;
+
+ private:
+  enum class Side { unseen, front, back };
+
+  double held_depth_m_;
+  Side side_ = Side::unseen;  // in the last tick with a known distance
+  bool is_known_ = false;     // the distance in the last tick
+  bool has_gap_ = false;      // ticks with an unknown distance since the proxy was seen in front, or at all
+  double passed_ = 0;         // if the proxy is behind: 1, 0 or NaN as above
+};
+
+}  // namespace remote_touch

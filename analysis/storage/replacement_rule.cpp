@@ -1,0 +1,72 @@
+#include "analysis/storage/replacement_rule.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A live session also writes its report from another thread.
+std::mutex mutex_of_rules;
+
+std::map<std::filesystem::path, ReplacementRule>& rules() {
+  static std::map<std::filesystem::path, ReplacementRule> all;
+  return all;
+}
+
+std::filesystem::path key_of(const std::filesystem::path& target) {
+  std::error_code no_folder;
+  return std::filesystem::absolute(target, no_folder).lexically_normal();
+}
+
+ReplacementRule rule_of(const std::filesystem::path& target) {
+  const std::lock_guard lock(mutex_of_rules);
+  const auto found = rules().find(key_of(target));
+  return found == rules().end() ? nullptr : found->second;
+}
+
+}  // namespace
+
+void set_replacement_rule(const std::filesystem::path& target, ReplacementRule rule) {
+  const std::lock_guard lock(mutex_of_rules);
+  rules()[key_of(target)] = std::move(rule);
+}
+
+// Any failure of the first call, such as of a file system that does not know RENAME_NOREPLACE, is decided by
+// the second one.
+int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const std::filesystem::path place = resolved(target);
+  if (const ReplacementRule may_replace = rule_of(target)) {
+    if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, place.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    std::error_code unreachable;
+    if (std::filesystem::exists(std::filesystem::symlink_status(place, unreachable)) && !may_replace(place))
+      return EEXIST;
+  }
+  return ::rename(temporary.c_str(), place.c_str()) == 0 ? 0 : errno;
+}
+
+int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const int error = rename_by_rule(temporary, target);
+  if (error != EEXIST) return error;
+  // Another name than the temporary one, which the next command with this output would remove.
+  const std::string kept = resolved(target).string() + ".kept-" + std::to_string(::getpid());
+  if (::rename(temporary.c_str(), kept.c_str()) != 0) return errno;
+  flush_folder(kept);
+  throw InputError(target.string(),
+                   "was written by another program while this one computed, and is unchanged: "
+                   "the result is in " +
+                       kept + ", expected another file, or --force");
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+// Watches the first contact of a live session, for a note on points that are too far apart.
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <vector>
+
+#include "runners/experiment/experiment.h"
+#include "runners/live/loop/servo.h"
+#include "runners/simulation/contact_watch.h"
+
+namespace remote_touch {
+
+class LiveContact {
+ public:
+  // Watches nothing if the renderer is not a ball that single points hold (RenderedContact), or if fixtures
+  // add regions that are larger than the ball.
+  explicit LiveContact(const Experiment& experiment);
+
+  // Each frame that is sent to the renderer, from the camera's thread.
+  void add(const Frame& frame);
+  // Each tick in order, from another thread. A tick whose frame is no longer kept is skipped.
+  void add(const LiveTick& tick, double time_s);
+  // See ContactWatch::spacing_notes(). pre: no thread calls add() any more.
+  std::vector<Note> notes(const Kernels& kernels) const;
+
+ private:
+  // A tick is read within about one period of the logger after it was made, and few frames come meanwhile.
+  static constexpr std::size_t kKeptFrames = 8;
+  struct KeptFrame {
+    int index = -1;
+    ContactWatch::Points points;
+  };
+
+  const double ball_radius_m_;  // 0: watches nothing
+  std::mutex mutex_;            // of the frames
+  std::array<KeptFrame, kKeptFrames> frames_;
+  std::size_t next_ = 0;
+  bool is_over_ = false;  // the first contact is known: frames are no longer kept
+  ContactWatch watch_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,15 @@
+// The data of a PLY file, which the library that reads it does not compare with the header.
+#pragma once
+
+#include <string>
+
+namespace remote_touch {
+
+// Returns the file with the vertices first, as the library needs them, and without empty lines; other
+// elements stay in their order. pre: ply_problem() finds none. Throws std::runtime_error for a format or a
+// type that is unknown, for data that end before the last element, and for anything but blanks after it. In a
+// text each element is a line with all its values and no others, integers where the type is one; the message
+// has the number of the line.
+std::string with_vertices_first(const std::string& ply);
+
+}  // namespace remote_touch
