@@ -293,7 +293,7 @@ test("each page says who has the hand, and what is with the run and the connecti
   await ended;
   await says(watching, ".status", /^Nothing answers at 127\.0\.0\.1:\d+: the program was ended or killed.* Trying again.* \(attempt 2\)\.$/);
   assert.ok(await watching.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nothing is left to set");
-  await watching.route("**/state", (route) => route.fulfill({ status: 404 }));
+  await watching.route("**/state*", (route) => route.fulfill({ status: 404 }));
   await says(watching, ".status", /^Another run or program is at 127\.0\.0\.1:\d+ now/);
   assert.equal(await watching.evaluate(() => document.body.dataset.state), "other");
   assert.deepEqual(await watching.evaluate(() => {
