@@ -83,6 +83,17 @@ std::vector<GuidanceTarget> FixtureAssignment::targets(const PointCloud& cloud, 
   return all;
 }
 
+std::vector<std::size_t> FixtureAssignment::without_points(const PointCloud& cloud) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < rules_.size(); ++i)
+    about_rule(i, [&] {
+      const std::vector<double> weights = rules_[i]->weights(cloud);
+      if (std::none_of(weights.begin(), weights.end(), [](double weight) { return weight > 0; }))
+        numbers.push_back(i);
+    });
+  return numbers;
+}
+
 bool FixtureAssignment::changes_with_time() const {
   return switches_ || std::any_of(rules_.begin(), rules_.end(),
                                   [](const auto& rule) { return rule->changes_with_time(); });

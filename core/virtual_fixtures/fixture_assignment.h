@@ -1,6 +1,7 @@
 // From a frame to its columns of r_f and k_s, (5.2) and (5.3).
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -42,6 +43,9 @@ class FixtureAssignment {
   // The targets of all guidance rules in their order, each with the rule's strength; at strength 0 it is not
   // visible. Throws as assign().
   std::vector<GuidanceTarget> targets(const PointCloud& cloud, double captured_s) const;
+
+  // The numbers of the rules that select no point of the cloud: all its weights are 0. Throws as assign().
+  std::vector<std::size_t> without_points(const PointCloud& cloud) const;
 
   bool empty() const { return rules_.empty(); }
   // Two frames of the same cloud can get different values.

@@ -8,6 +8,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
+#include "runners/cli/outputs.h"
 #include "runners/provenance/provenance.h"
 
 namespace remote_touch {
@@ -69,6 +70,7 @@ FigureFolder::FigureFolder(const CommandLine& line, const std::string& folder,
       runs_(runs),
       claims_(make(folder_) / "claims.json", names_of_figures()),
       printed_(runs.size()) {
+  for (const FigureRun& run : runs) require_result(line, file_of(run.entry->name), {});
   write_progress({std::vector<JobProgress>(runs.size()), TimeLeft{std::vector<double>(runs.size()), 0}});
 }
 
@@ -84,7 +86,7 @@ void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure 
     leave_unjudged(figure, context, runs_[run].coarse);
     recipe.coarse = runs_[run].coarse;
   }
-  const fs::path file = folder_ / ("fig" + figure.name + ".h5");
+  const fs::path file = file_of(figure.name);
   write_figure(file, figure,
                provenance(context.configurations(), recipe, line_.kernels->isa, context.inputs()));
   claims_.replace(figure.name, figure.claims);

@@ -14,7 +14,8 @@ namespace remote_touch {
 
 class FigureFolder {
  public:
-  // The runs must outlive it.
+  // The runs must outlive it. Throws InputError if a file that it would write is there already and is no
+  // result of this program.
   FigureFolder(const CommandLine& line, const std::string& folder, const std::vector<FigureRun>& runs);
   ~FigureFolder();
 
@@ -28,6 +29,9 @@ class FigureFolder {
   int exit_code() const;
 
  private:
+  std::filesystem::path file_of(const std::string& figure) const {
+    return folder_ / ("fig" + figure + ".h5");
+  }
   std::filesystem::path progress_file() const { return folder_ / "progress.json"; }
   void write_progress(const FigureProgress& progress);
 

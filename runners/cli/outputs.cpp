@@ -60,8 +60,13 @@ IsOurs begins_with(const std::string& opening) {
 
 FileLock lock_output(const CommandLine& line, const std::string& output,
                      const std::vector<std::string>& inputs) {
-  require(line, output, inputs, has_result_header, "result");
+  require_result(line, output, inputs);
   return FileLock(output);
+}
+
+void require_result(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs) {
+  require(line, output, inputs, has_result_header, "result");
 }
 
 void require_report(const CommandLine& line, const std::string& output,

@@ -18,6 +18,11 @@ namespace remote_touch {
 // even with --force. The rule for existing files is checked again when the result is written.
 [[nodiscard]] FileLock lock_output(const CommandLine& line, const std::string& output,
                                    const std::vector<std::string>& inputs);
+
+// The same without a lock.
+void require_result(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs);
+
 // The same for a text report, without a lock: an existing file may be replaced if it begins with that
 // opening.
 void require_report(const CommandLine& line, const std::string& output,

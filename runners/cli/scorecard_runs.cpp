@@ -1,5 +1,6 @@
 #include "runners/cli/scorecard_runs.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -7,6 +8,8 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/progress.h"
 #include "runners/provenance/provenance.h"
+#include "runners/simulation/note_kinds.h"
+#include "runners/sweep/sweep_notes.h"
 #include "runners/view/trace_page.h"
 
 namespace remote_touch {
@@ -41,6 +44,31 @@ void make_failure_pages(const CommandLine& line, const std::string& folder, Scor
     failures[i]->page = page.string();
     progress.update(i + 1, failures.size(), 0, "pages");
   }
+}
+
+void report_notes(const std::vector<BenchmarkSweep>& sweeps) {
+  struct OfKind {
+    std::string name, first;
+    std::size_t runs;
+  };
+  std::vector<OfKind> kinds;
+  std::size_t done = 0;
+  for (const BenchmarkSweep& sweep : sweeps) {
+    const SweepResult result = read_sweep(sweep.file).result;
+    done += result.runs_in(RunState::done).size();
+    for (const NoteCount& count : note_counts(result)) {
+      const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                      [&](const OfKind& kind) { return kind.name == count.kind; });
+      if (found != kinds.end())
+        found->runs += count.runs;
+      else
+        kinds.push_back(
+            {count.kind, sweep.file.string() + " " + option_of_run(result, count.first), count.runs});
+    }
+  }
+  for (const OfKind& kind : kinds)
+    std::printf("note: %zu of %zu runs: %s (the first: replay %s)\n", kind.runs, done,
+                text_of_kind(kind.name).c_str(), printable(kind.first).c_str());
 }
 
 int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {

@@ -7,6 +7,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/sessions/sensor_cloud.h"
+#include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -71,19 +72,13 @@ std::string SessionScene::input() const {
 }
 
 std::vector<Note> SessionScene::input_notes() const {
-  std::size_t arrived = 0, unused = 0;
-  for (std::size_t frame = 0; frame < arrives_s_.size(); ++frame) {
-    if (!std::isfinite(arrives_s_[frame])) continue;
-    ++arrived;
-    unused += is_read_[frame] ? 0 : 1;
-  }
-  std::vector<Note> notes;
+  std::vector<bool> is_used;
+  for (std::size_t frame = 0; frame < arrives_s_.size(); ++frame)
+    if (std::isfinite(arrives_s_[frame])) is_used.push_back(is_read_[frame]);
+  std::vector<Note> notes = unused_frames(is_used);
+  for (Note& note : notes) note.text = path_ + ": " + note.text;
   if (session_.ended() == kInterruptedRecording)
     notes.push_back({"recording incomplete", path_ + ": the recording was interrupted"});
-  if (unused > 0)
-    notes.push_back({"frames unused", path_ + ": " + std::to_string(unused) + " of " +
-                                          std::to_string(arrived) +
-                                          " frames were not used: the run ends before"});
   return notes;
 }
 

@@ -42,6 +42,7 @@ const std::vector<NoteKind>& note_kinds() {
        "the surface passed the proxy before a third frame after the first contact"},
       {"object not pressed", "image-press presses another thing than the nearest object"},
       {"hand jumped", "the pixel that image-press follows suddenly showed another place"},
+      {"nothing selected", "a fixture rule selects no point, so that it has no effect"},
   };
   return kinds;
 }

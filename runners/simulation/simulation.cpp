@@ -8,6 +8,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/frame_stream.h"
 #include "runners/simulation/contact_watch.h"
+#include "runners/simulation/fixture_notes.h"
 #include "runners/simulation/surface_watch.h"
 
 namespace remote_touch {
@@ -79,6 +80,7 @@ class ObservedFrames final : public Renderer {
       : renderer_(renderer), duration_s_(options.frame_duration_s), observe_(options.on_frame) {}
   void on_frame(const Frame& frame) override {
     if (observe_) observe_(frame);
+    if (!first_points_) first_points_ = frame.points;
     if (!points_ || frame.captured_s > captured_s_) points_ = frame.points, captured_s_ = frame.captured_s;
     StopWatch watch;
     renderer_.on_frame(frame);
@@ -87,11 +89,13 @@ class ObservedFrames final : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) override {
     return renderer_.step(device, time_s);
   }
-  const ContactWatch::Points& newest_points() const { return points_; }  // null before the first frame
+  // Null before the first frame.
+  const ContactWatch::Points& first_points() const { return first_points_; }
+  const ContactWatch::Points& newest_points() const { return points_; }
 
  private:
   Renderer& renderer_;
-  ContactWatch::Points points_;
+  ContactWatch::Points first_points_, points_;
   double captured_s_ = 0;
   std::vector<double>* duration_s_;
   const std::function<void(const Frame&)>& observe_;
@@ -169,6 +173,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     std::vector<Note>& notes = options.report->notes;
     add_missed_phases(experiment.phases(), end_s, notes);
     add_missed_phases(experiment.operator_phases(), end_s, notes);
+    add(fixture_notes(experiment.build_fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
     if (!trace.has_tool())
       add(contact_notes(contacts, scenario->without_faults(), contact, has_fixtures, kernels), notes);

@@ -6,15 +6,18 @@
 
 namespace remote_touch {
 
+std::string option_of_run(const SweepResult& result, std::size_t run) {
+  std::string option = "--cell " + cell_text(result, result.cell_of(run));
+  if (result.replicates > 1) option += " --replicate " + std::to_string(result.replicate_of(run));
+  return option;
+}
+
 std::vector<std::string> note_lines(const SweepResult& result) {
   const std::string done = std::to_string(result.runs_in(RunState::done).size());
   std::vector<std::string> lines;
-  for (const NoteCount& count : note_counts(result)) {
-    std::string first = "--cell " + cell_text(result, result.cell_of(count.first));
-    if (result.replicates > 1) first += " --replicate " + std::to_string(result.replicate_of(count.first));
+  for (const NoteCount& count : note_counts(result))
     lines.push_back(std::to_string(count.runs) + " of " + done + " runs: " + text_of_kind(count.kind) +
-                    " (the first: " + first + ")");
-  }
+                    " (the first: " + option_of_run(result, count.first) + ")");
   return lines;
 }
 

@@ -8,9 +8,12 @@
 
 namespace remote_touch {
 
+// The options of `replay` for a run: "--cell 0,3", and "--replicate 2" if there are several replicates.
+std::string option_of_run(const SweepResult& result, std::size_t run);
+
 // Returns a line for each kind of note that a finished run has:
 //   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"
-// If there are several replicates, --replicate follows. Empty for a result that was stored without notes.
+// Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
 
 // For --strict: throws InputError with all these lines. Does nothing if there is none.

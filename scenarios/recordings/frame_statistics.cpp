@@ -165,4 +165,17 @@ std::vector<Note> FrameStatistics::notes(double max_depth_m) const {
   return notes;
 }
 
+std::vector<Note> unused_frames(const std::vector<bool>& is_used) {
+  const auto unused = std::count(is_used.begin(), is_used.end(), false);
+  if (unused == 0) return {};
+  const auto after = std::find(is_used.rbegin(), is_used.rend(), true) - is_used.rbegin();
+  const std::string reason = unused == after ? "the run ends before"
+                             : after == 0    ? "newer ones replaced them, or they were lost"
+                                             : "the run ends before " + std::to_string(after) +
+                                                " of them, newer ones replaced "
+                                                "the others, or these were lost";
+  return {{"frames unused", std::to_string(unused) + " of " + std::to_string(is_used.size()) +
+                                " frames were not used: " + reason}};
+}
+
 }  // namespace remote_touch

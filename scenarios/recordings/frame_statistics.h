@@ -50,4 +50,8 @@ class FrameStatistics {
   double least_overlap_ = 1;
 };
 
+// The note "frames unused", if a frame was not used, with the reason. is_used: of each frame, in the order of
+// arrival.
+std::vector<Note> unused_frames(const std::vector<bool>& is_used);
+
 }  // namespace remote_touch

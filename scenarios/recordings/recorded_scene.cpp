@@ -120,21 +120,6 @@ std::string RecordedScene::input() const {
          (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply");
 }
 
-std::vector<Note> RecordedScene::unused_frames() const {
-  int passed = 0, after = 0;
-  for (int i = times_.count() - 1; i >= 0; --i)
-    if (!statistics_.has(static_cast<std::size_t>(times_.first() + i)))
-      ++(after == times_.count() - 1 - i ? after : passed);
-  if (passed + after == 0) return {};
-  const std::string reason = passed == 0  ? "the run ends before"
-                             : after == 0 ? "newer ones replaced them, or they were lost"
-                                          : "the run ends before " + std::to_string(after) +
-                                                " of them, newer ones replaced "
-                                                "the others, or these were lost";
-  return {{"frames unused", std::to_string(passed + after) + " of " + std::to_string(times_.count()) +
-                                " frames were not used: " + reason}};
-}
-
 // A camera has a rate between these; otherwise the stamps are probably not in seconds. The stamps of bags
 // have a unit.
 std::vector<Note> RecordedScene::unusual_rate() const {
@@ -156,8 +141,15 @@ std::vector<Note> RecordedScene::input_notes() const {
     notes.push_back({"recording incomplete", recording_.bag->remark()});
   if (recording_.bag && !recording_.bag->camera_change().empty())
     notes.push_back({"camera changes", recording_.bag->camera_change()});
-  if (!recording_.remark.empty()) notes.push_back({"viewpoint unused", recording_.remark});
-  for (const std::vector<Note>& more : {unused_frames(), unusual_rate()})
+  if (unused_viewpoints_ > 0)
+    notes.push_back(
+        {"viewpoint unused", "the VIEWPOINT of " + std::to_string(unused_viewpoints_) + " of " +
+                                 std::to_string(statistics_.frames_read()) +
+                                 " files is not used: seen from there their points form no image"});
+  std::vector<bool> is_used;
+  for (int i = 0; i < times_.count(); ++i)
+    is_used.push_back(statistics_.has(static_cast<std::size_t>(times_.first() + i)));
+  for (const std::vector<Note>& more : {unused_frames(is_used), unusual_rate()})
     notes.insert(notes.end(), more.begin(), more.end());
   for (Note& note : notes) note.text = settings_.path + ": " + note.text;
   return notes;
@@ -166,11 +158,14 @@ std::vector<Note> RecordedScene::input_notes() const {
 // A frame of the layout in its camera's frame, or in its own coordinates if it has no camera. X_FC becomes
 // the camera in the coordinates of the file.
 PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) const {
-  PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &X_FC);
+  FrameCamera camera;
+  PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &camera);
+  X_FC = camera.X_FC;
   if (layout_)
     conform(*layout_, frame_name(recording_, source), cloud);
   else
     layout_ = layout_of(cloud);
+  if (camera.has_unused_viewpoint && !statistics_.has(source)) ++unused_viewpoints_;
   statistics_.add(source, cloud, settings_.max_depth_m);
   for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i)
     if (cloud.z[i] > settings_.max_depth_m)

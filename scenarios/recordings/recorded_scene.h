@@ -57,7 +57,6 @@ class RecordedScene final : public Scenario {
  private:
   void require_points() const;
   PointCloud as_recorded(std::size_t source, RigidTransform& X_FC) const;
-  std::vector<Note> unused_frames() const;
   std::vector<Note> unusual_rate() const;
   PointCloud registered(std::size_t source) const;
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
@@ -74,6 +73,7 @@ class RecordedScene final : public Scenario {
   };
   mutable std::vector<CachedFrame> cache_;
   mutable FrameStatistics statistics_;
+  mutable std::size_t unused_viewpoints_ = 0;  // files of those that were read
   mutable std::optional<FrameLayout> layout_;  // that of frame 0, which the constructor reads
 };
 

@@ -240,7 +240,6 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
   if (index.kind == RecordingIndex::Kind::pcd) {
     const PcdCloud first = read_pcd(index.frames.front().depth);
     if (first.cloud.image) index.camera = first.cloud.image->camera;
-    index.remark = first.remark;
   }
   if (index.bag && index.camera.width == 0) {
     const PointCloud first = index.bag->cloud(0, kNoLimit_m);
@@ -268,14 +267,14 @@ std::string frame_name(const RecordingIndex& index, std::size_t frame) {
 }
 
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
-                      RigidTransform* camera_pose) {
+                      FrameCamera* camera) {
   assert(frame < index.frames.size());
-  if (camera_pose) *camera_pose = RigidTransform::Identity();
+  if (camera) *camera = {};
   if (index.bag) return index.bag->cloud(frame, max_depth_m);
   const RecordedFrame& source = index.frames[frame];
   if (index.kind == RecordingIndex::Kind::pcd) {
     PcdCloud file = read_pcd(source.depth);
-    if (camera_pose) *camera_pose = file.X_FC;
+    if (camera) *camera = {file.X_FC, file.has_unused_viewpoint};
     PointCloud& cloud = file.cloud;
     for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
       if (!(cloud.z[i] > max_depth_m)) continue;

@@ -23,6 +23,14 @@ struct RecordedFrame {
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
+// Where the camera of a frame stood.
+struct FrameCamera {
+  // The camera in the coordinates of a PCD file: its VIEWPOINT where that is used, see read_pcd(); else the
+  // identity.
+  RigidTransform X_FC = RigidTransform::Identity();
+  bool has_unused_viewpoint = false;  // see PcdCloud
+};
+
 struct RecordingIndex {
   enum class Kind { depth_png, pcd, bag };
   Kind kind = Kind::depth_png;
@@ -38,8 +46,6 @@ struct RecordingIndex {
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // of kind bag
-  // For kind pcd: one line about a part of the first file that is not used, or empty.
-  std::string remark;
 };
 
 // The layout of path is the first of these that fits:
@@ -74,11 +80,10 @@ std::string frame_name(const RecordingIndex& index, std::size_t frame);
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
 // What is missing is NaN, and so are pixels whose depth is above max_depth_m. A PCD file or a bag may also
-// hold a cloud that is not organised, or no image: max_depth_m does not apply to it. camera_pose, if any,
-// becomes where the camera stood in the coordinates of a PCD file: its VIEWPOINT where that is used, see
-// read_pcd(); else the identity. Pre: frame < index.frames.size(). Throws InputError if a file is unusable or
-// not of the camera's size.
+// hold a cloud that is not organised, or no image: max_depth_m does not apply to it. camera, if any,
+// becomes that of the frame. Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not
+// of the camera's size.
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
-                      RigidTransform* camera_pose = nullptr);
+                      FrameCamera* camera = nullptr);
 
 }  // namespace remote_touch

@@ -236,7 +236,7 @@ void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
     const RigidTransform about_face(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()));
     if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
   }
-  if (X_FV) file.remark = "its VIEWPOINT is not used: seen from there its points are no image";
+  file.has_unused_viewpoint = X_FV.has_value();
   if (is_organised) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
 }
 

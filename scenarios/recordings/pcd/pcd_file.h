@@ -16,7 +16,7 @@ struct PcdCloud {
   int height = 0;  // 1: not organised
   // The camera in the coordinates of the file: the identity but where VIEWPOINT is used, see below.
   RigidTransform X_FC = RigidTransform::Identity();
-  std::string remark{};  // empty, or what of the file is not used, in one line
+  bool has_unused_viewpoint = false;  // seen from the file's VIEWPOINT, the points form no image
 };
 
 // Reads the fields x, y, z (floats of 4 or 8 bytes, metres) and rgb or rgba (4 bytes, 0xAARRGGBB; the alpha
@@ -30,8 +30,8 @@ struct PcdCloud {
 // residual plus 1e-6 px. The camera is at the origin, or at VIEWPOINT if an image can be seen from there:
 // then the cloud is in its frame, and X_FC leads back. A VIEWPOINT at the origin may turn the camera.
 // Programs disagree whether a VIEWPOINT looks along its z or against it, and which row and column come first:
-// the image may be turned round, its last row or column first. Without an image at VIEWPOINT, a remark says
-// that it is not used.
+// the image may be turned round, its last row or column first. Without an image at VIEWPOINT,
+// has_unused_viewpoint is set.
 //
 // Throws InputError if the header or the data cannot be used. Memory is allocated only in proportion to the
 // bytes in the file, whatever the header claims. Bytes behind the last point of binary data (padding) are

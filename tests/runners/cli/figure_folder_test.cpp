@@ -70,6 +70,16 @@ TEST(FigureFolder, EveryLineOfEveryFigureIsPrintedInTheirOrder) {
   EXPECT_EQ(all.code, kDone);
 }
 
+TEST(FigureFolder, AFileThatIsNoResultIsNotOverwritten) {
+  const TestFolder folder("figure_folder_test");
+  const std::filesystem::path file = folder.write("fig4.12.h5", "of someone else");
+  const CommandLine line;
+  EXPECT_EQ(refusal([&] { FigureFolder(line, folder.path(), kRuns); }),
+            file.string() +
+                ": is there already and is no result of this program: expected another file, or --force");
+  EXPECT_EQ(bytes_of(file), "of someone else");
+}
+
 TEST(FigureFolder, ALongClaimKeepsTheEndOfItsLine) {
   const TestFolder folder("figure_folder_test");
   Claim is_long = claim("4.11", true);

@@ -83,6 +83,14 @@ TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
   EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
 }
 
+TEST_F(SessionSceneTest, AFrameThatWasReplacedIsNotSaidToBeAfterTheEnd) {
+  const SessionScene scene = this->scene();
+  scene.points(2);
+  ASSERT_EQ(scene.input_notes().size(), 1u);
+  EXPECT_EQ(scene.input_notes()[0].text,
+            file_.string() + ": 1 of 2 frames were not used: newer ones replaced them, or they were lost");
+}
+
 TEST_F(SessionSceneTest, WithoutFramesItIsRefused) {
   session_.frames.clear(), session_.ticks.clear();
   EXPECT_EQ(refusal([this] { scene(); }), file_.string() + ": has no frames: expected a session with some");

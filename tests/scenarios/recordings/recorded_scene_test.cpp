@@ -96,6 +96,25 @@ TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
   EXPECT_LT(scene.signed_distance(cloud.point(6) - 0.01 * to_viewpoint, 0), -0.001);
 }
 
+TEST(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
+  const TestFolder folder("recorded_scene_test");
+  const std::string at_origin = organised_pcd({16, 12, 20, 25, 7.25, 5.5}, 0);
+  std::string elsewhere = at_origin;
+  const std::string viewpoint = "VIEWPOINT 0 0 0 1 0 0 0";
+  elsewhere.replace(elsewhere.find(viewpoint), viewpoint.size(), "VIEWPOINT 0 0.5 -2 1 0 0 0");
+  folder.write("r/0.pcd", at_origin), folder.write("r/1.pcd", elsewhere), folder.write("r/2.pcd", elsewhere);
+  RecordedScene::Settings settings;
+  settings.path = (folder / "r").string();
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  for (const int frame : {0, 1, 1, 2}) scene.cloud(frame);
+  const std::vector<Note> notes = scene.input_notes();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].kind, "viewpoint unused");
+  EXPECT_EQ(notes[0].text, settings.path +
+                               ": the VIEWPOINT of 2 of 3 files is not used: seen from there their points "
+                               "form no image");
+}
+
 // NaN, infinity and what is farther than any room: nothing to touch, which is said at once.
 TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
   const TestFolder folder("recorded_scene_test");
