@@ -5,7 +5,6 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/replaced_settings.h"
 #include "runners/regression/baselines/baseline_bless.h"
 #include "runners/regression/baselines/baseline_check.h"
 #include "runners/regression/comparison/comparison_report.h"

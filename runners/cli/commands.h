@@ -25,6 +25,11 @@ struct CommandLine {
   std::atomic<bool>* rearm = nullptr;
 };
 
+// Prints a line on standard error for each --set that a later --set replaces (changed_settings.h): the result
+// is that of the last one, and the user may have meant another parameter. To be called at the end of a
+// command, so that an error stays one line.
+void print_replaced(const std::vector<std::string>& overrides);
+
 struct ListRequest {};
 int command_list(const CommandLine& line, const ListRequest& request);
 

@@ -1,11 +1,14 @@
 // The options of the commands that list names, run experiments and show results.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "core/parameters/input_error.h"
 #include "runners/cli/other_kinds.h"
 #include "runners/cli/subcommands.h"
 #include "runners/export/export_formats.h"
+#include "runners/provenance/provenance.h"
 #include "runners/schedule/enough_threads.h"
+#include "runners/settings/changed_settings.h"
 
 namespace remote_touch {
 
@@ -134,6 +137,11 @@ void add_commands_of_experiments(Subcommands& commands) {
   add_sweep(commands);
   add_merge_and_replay(commands);
   add_figure(commands);
+}
+
+void print_replaced(const std::vector<std::string>& overrides) {
+  for (const std::string& line : replaced_settings(overrides))
+    std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(line).c_str());
 }
 
 }  // namespace remote_touch

@@ -18,7 +18,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
-#include "runners/cli/replaced_settings.h"
 #include "runners/live/loop/live_inputs.h"
 #include "runners/live/view/live_view.h"
 #include "runners/provenance/input_hashes.h"

@@ -8,7 +8,6 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/replaced_settings.h"
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/provenance/input_hashes.h"

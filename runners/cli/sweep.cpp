@@ -9,7 +9,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/replaced_settings.h"
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"

@@ -4,7 +4,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
-#include "runners/cli/replaced_settings.h"
 #include "runners/experiment/catalog.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/comparison/junit_report.h"

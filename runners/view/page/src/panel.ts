@@ -61,10 +61,10 @@ function settings(value: unknown, name = ""): Map<string, string> {
   return new Map(Object.entries(value).flatMap(([key, part]) => [...settings(part, name ? `${name}.${key}` : key)]));
 }
 
-// Of two runs: their files, and in what their configurations differ.
+// A list of two runs: the file of each, and the settings in which they differ. The titles say the same at greater length.
 export function whichIsWhich(runs: Run[]): HTMLElement {
   const most = 4, [a, b] = runs.map((run) => settings(run.stored.configuration));
-  const names = [...new Set([...a.keys(), ...b.keys()])].filter((name) => a.get(name) !== b.get(name));
+  const names = [...new Set([...a.keys(), ...b.keys()])].filter((name) => name !== "title" && a.get(name) !== b.get(name));
   const list = element("ul", "", "legend which");
   runs.forEach((run, i) => {
     const own = names.slice(0, most).map((name) => `${name} ${(i === 0 ? a : b).get(name) ?? "none"}`);
