@@ -1,4 +1,4 @@
-// How far a number may be from that of a baseline.
+// Allowed deviation of a number from the number of a baseline.
 #pragma once
 
 #include <map>
@@ -6,14 +6,15 @@
 
 namespace remote_touch {
 
-// At most absolute + relative * |baseline|. Zero and zero: exact.
+// The deviation |candidate - baseline| may be at most absolute + relative * |baseline|. If both are zero, the
+// numbers must be equal.
 struct Tolerance {
   double absolute = 0;
   double relative = 0;
   bool operator==(const Tolerance&) const = default;
 };
 
-// By name; "*" is for all other names. Exact if neither is there.
+// Tolerances by name; "*" is for all names that are not listed. Without either, numbers must be equal.
 using Tolerances = std::map<std::string, Tolerance>;
 Tolerance tolerance_of(const Tolerances& tolerances, const std::string& name);
 

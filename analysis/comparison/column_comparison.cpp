@@ -29,8 +29,8 @@ double deviation(double a, double b) {
   return std::isfinite(difference) ? difference : kNotANumber;
 }
 
-// Length of a row of differences or values, 0 only for zeros: where squares would over- or underflow, in
-// units of the largest.
+// Length of a row of differences or values; 0 only if all are 0. It is computed in units of the largest one
+// if the squares would over- or underflow.
 template <class Component>
 double length(std::size_t width, Component&& component) {
   if (width == 1) return std::abs(component(0));
@@ -57,7 +57,7 @@ bool has_deviations(const Column& column) {
          (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
 }
 
-// Hands row and deviation of the rows that both have to visit.
+// Calls visit(row, deviation) for every row that both columns have.
 template <class Visit>
 void for_rows(const Column& baseline, const Column& candidate, Visit&& visit) {
   if (baseline.values.index() != candidate.values.index() || baseline.width != candidate.width) return;
@@ -80,7 +80,7 @@ void for_rows(const Column& baseline, const Column& candidate, Visit&& visit) {
       baseline.values);
 }
 
-// Of a row of the baseline; 0 for what has no length.
+// Length of a row of the baseline; 0 for texts and hashes, which have no length.
 double length_of(const Column& column, std::size_t row) {
   const auto* numbers = std::get_if<std::vector<double>>(&column.values);
   const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values);

@@ -1,4 +1,4 @@
-// How far the values of one column are from those of another.
+// Deviations of the values of one column from those of another.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,10 @@ struct ColumnComparison {
   Tolerance tolerance;
   std::string problem = {};  // empty: none
   std::size_t baseline_rows = 0, candidate_rows = 0;
-  std::size_t rows = 0;         // compared
-  std::size_t outside = 0;      // of them
+  std::size_t rows = 0;         // rows compared
+  std::size_t outside = 0;      // rows outside the tolerance
   std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity
-  double max = 0, rms = 0;      // of the finite deviations, in units; 0 for names, texts and hashes
+  double max = 0, rms = 0;      // largest and rms finite deviation, in units; 0 for names, texts and hashes
   std::optional<std::size_t> first_difference = {}, first_outside = {};
 
   bool is_same() const { return problem.empty() && outside == 0; }

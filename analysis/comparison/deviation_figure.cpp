@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxPieces = 2000, kMaxPanels = 8;
 
-// Logarithm of the largest of each piece. What is equal or not counts as 1, NaN against a number as none.
+// Logarithm of the largest deviation in each piece. Values that are only equal or not deviate by 0 or 1. A
+// NaN against a number is left out.
 Table pieces(const std::string& column, const std::vector<double>& time,
              const std::vector<double>& deviation) {
   std::vector<double> when, max;

@@ -1,4 +1,4 @@
-// How far two traces are apart over time, as a figure.
+// Figure of the deviation between two traces over time.
 #pragma once
 
 #include "analysis/comparison/column_source.h"

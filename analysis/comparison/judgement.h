@@ -10,11 +10,11 @@ namespace remote_touch {
 
 enum class Judgement {
   equal,          // within the tolerance
-  within_margin,  // of a sweep: the intervals of the differences lie within the margins
+  within_margin,  // sweeps only: the intervals of the differences lie within the margins
   better,
   worse,
-  changed,   // without a direction: the measure has none, a number became none, or the outcomes differ
-  undecided  // of a sweep: too few runs, or both ways alike
+  changed,   // no direction: the measure has none, a number was or became NaN, or the outcomes differ
+  undecided  // sweeps only: too few runs, or both ways alike
 };
 bool is_change(Judgement judgement);  // better, worse or changed
 // "equal", "within_margin", "better", ...

@@ -14,7 +14,7 @@ struct Pairs {
   Tolerance tolerance;
   Better better = Better::neither;
   bool event = false;                   // then a candidate's value that is neither 0 nor 1 has no partner
-  std::vector<bool> same_outcome = {};  // of each run; another one is neither better nor worse. Empty: all
+  std::vector<bool> same_outcome = {};  // runs of equal outcome; only these get better or worse. Empty: all
 
   bool finite(std::size_t run) const;
   bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }

@@ -92,7 +92,8 @@ bool is_0_or_1(double value) {
   return value == 0 || value == 1 || !std::isfinite(value);
 }
 
-// What is 0 in all of the baseline may be an event that did not happen: then the candidate tells.
+// True if the measure is an event: the finite values of the baseline are 0 or 1. If none of them is 1, the
+// event may not have happened in the baseline; then those of the candidate must be 0 or 1, too.
 bool is_event(const std::vector<double>& baseline, const std::vector<double>& candidate, const Runs& runs) {
   bool any = false, happened = false, in_candidate = true;
   for (const std::size_t run : runs) {
@@ -164,7 +165,7 @@ void judge(const PairedRule& rule, SweepComparison& result) {
   }
 }
 
-// Of a refined sweep the first round: what was run later follows from what came out.
+// True for the first round of a refined sweep, and for all runs of any other: later rounds depend on results.
 bool is_planned(const SweepResult& sweep, std::size_t run) {
   return sweep.round.empty() || sweep.round[run] == 0;
 }

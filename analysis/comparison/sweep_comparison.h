@@ -30,7 +30,7 @@ struct MeasureComparison {
   // the fraction of 1 is a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
-  std::int64_t got_better = 0, got_worse = 0;     // of those outside
+  std::int64_t got_better = 0, got_worse = 0;     // runs outside that got better or worse
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
   std::optional<std::size_t> first_outside = {};  // a run
   // Run by run: better or worse where all runs outside went that way, or the paired tests show that it
@@ -42,7 +42,7 @@ struct MeasureComparison {
 // The first run, in the order of the arrays, that is done in one only or has a measure outside.
 struct FirstDifference {
   std::size_t run = 0, cell = 0;
-  std::vector<std::size_t> place;  // of the cell on each axis
+  std::vector<std::size_t> place;  // index of the cell on each axis
   int replicate = 0;
   std::string measure;  // the first outside; empty: done in one only
   double baseline = 0, candidate = 0;
@@ -54,10 +54,10 @@ struct RegionComparison {
   std::size_t region = 0, measure = 0;
   std::int64_t runs = 0;
   std::int64_t pairs = 0;     // finite in both
-  std::int64_t outside = 0;   // the tolerance
-  std::int64_t unpaired = 0;  // of those: not finite in one or both, or an event neither 0 nor 1
+  std::int64_t outside = 0;   // runs outside the tolerance
+  std::int64_t unpaired = 0;  // runs outside: not finite in one or both, or an event neither 0 nor 1
   std::int64_t up = 0, down = 0;
-  std::int64_t got_better = 0, got_worse = 0;      // of the pairs; 0 where the measure has no direction
+  std::int64_t got_better = 0, got_worse = 0;      // pairs that got better or worse; 0 without a direction
   std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
 
   // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
@@ -76,9 +76,9 @@ struct RegionComparison {
 };
 
 struct PairedRule {
-  double margin = 0.02;  // of a difference of two fractions of an event
-  // Of other measures: of the fraction of runs that got larger less the fraction that got smaller, and of the
-  // mean difference in units of the baseline's standard deviation.
+  double margin = 0.02;  // limit for the difference of two fractions of an event
+  // Limit for other measures: for the fraction of runs that got larger less the fraction that got smaller,
+  // and for the mean difference in units of the baseline's standard deviation.
   double shift_margin = 0.1;
   double alpha = 0.01;  // probability of a false "better", "worse" or "changed" anywhere
 };
@@ -89,29 +89,30 @@ enum class ExactVerdict {
   different  // some are not
 };
 
-// In this order, the first that holds; equal and within_margin are a pass.
+// The verdict is the first of these that holds, in this order; equal and within_margin are a pass.
 //
-// A measure in a region is changed where one direction prevails (adjusted p < alpha, whatever the margins) or
-// a number became NaN. Runs that differ in an outcome, see is_outcome(), are neither better nor worse by
-// other measures. It is worse where the sign test or the symmetry test, of the runs that got better and
-// worse, alone has p < alpha for worse; else better where one has it for better and no number became NaN.
+// A measure in a region is changed if one direction prevails (adjusted p < alpha, whatever the margins) or a
+// number became NaN. Runs that differ in an outcome, see is_outcome(), are neither better nor worse by other
+// measures. The measure is worse if the sign test or the symmetry test, of the runs that got better and
+// worse, alone has p < alpha for worse. Otherwise it is better if one of them has p < alpha for better and no
+// number became NaN.
 //
 // Any pass but equal must be demonstrated, not merely not refuted: over the whole, every measure that differs
 // anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
 // with one flip, and more runs with more flips; 4 runs of which one differs are undecided, 5396 with 30 flips
 // evenly both ways are known to +-0.2 %. It needs no correction for the number of measures, because all of
 // them must pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: this
-// finds a local change that the flips of the whole would hide. What a pass does not exclude in a part, the
-// part's interval shows. Measures that are not events are judged by the fraction of runs that got larger less
-// the fraction that got smaller (about 400 runs if all differ, both ways alike), and by the mean difference
-// in units of the standard deviation of the baseline's runs, so that a few runs that got much worse prevent a
-// pass. Differences within a tolerance do not count. A systematic change, however small, is "changed", and so
-// is a number that became NaN. Of a refined sweep only the first round is judged, because the later rounds
-// depend on the results.
+// finds a local change that the flips of the whole would hide. The interval of a part shows which differences
+// a pass does not exclude there. Measures that are not events are judged by the fraction of runs that got
+// larger less the fraction that got smaller (about 400 runs if all differ, both ways alike), and by the mean
+// difference in units of the standard deviation of the baseline's runs, so that a few runs that got much
+// worse prevent a pass. Differences within a tolerance do not count. A systematic change, however small, is
+// "changed", and so is a number that became NaN. In a refined sweep only the first round is judged, because
+// the later rounds depend on the results.
 enum class PairedVerdict {
   not_comparable,
   runs_missing,   // some runs of the first round are done in one sweep only
-  equal,          // as ExactVerdict
+  equal,          // same meaning as in ExactVerdict
   changed,        // some measure in some region: better, worse, or without a direction
   undecided,      // some measure over the whole
   within_margin,  // over the whole every measure is equal or within_margin
@@ -123,11 +124,11 @@ struct SweepComparison {
   std::vector<std::string> notes;  // differences without effect on the verdicts, a line each
   std::size_t done_in_both = 0;
   std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, rising
-  std::size_t newly_failed = 0;                            // of baseline_only: they failed in the candidate
-  std::vector<MeasureComparison> measures;                 // those of the baseline
+  std::size_t newly_failed = 0;                            // failed in the candidate, among baseline_only
+  std::vector<MeasureComparison> measures;                 // measures of the baseline
   std::optional<FirstDifference> first;
   std::vector<Region> regions;
-  std::vector<RegionComparison> by_region;  // for each region, for each measure
+  std::vector<RegionComparison> by_region;  // region after region, each with all measures
   ExactVerdict exact = ExactVerdict::not_comparable;
   PairedVerdict paired = PairedVerdict::not_comparable;
 

@@ -25,14 +25,14 @@ bool is_input(const std::string& column) {
   return false;
 }
 
-// Where the runs part, and the rows around it.
+// The tick at which the two runs part, and the rows around it.
 class PartingPlace {
  public:
   PartingPlace(const ColumnSource& baseline, const ColumnSource& candidate,
                const std::vector<ColumnComparison>& columns, std::size_t tick)
       : baseline_(baseline), candidate_(candidate), columns_(columns), tick_(tick) {}
 
-  // What kind of place it is, and the line that says why.
+  // Returns the situation at that tick, and a line that gives the reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
     if (!inputs.empty())
@@ -71,12 +71,13 @@ class PartingPlace {
     std::vector<std::string> inputs;
     for (const ColumnComparison& comparison : columns_)
       if (is_input(comparison.name) && differs(comparison.name)) inputs.push_back(comparison.name);
-    // Another distance to the truth at the same place: the truth is another.
+    // If the distance to the truth differs at the same proxy position, the truth itself differs.
     if (inputs.empty() && differs("signed_distance") && !differs("proxy_position"))
       inputs.emplace_back("signed_distance (the true surface)");
     return inputs;
   }
-  // None where one of the two has no such column, not that far, or of something else.
+  // Returns none if one of the traces has no such column, no row for that tick, or values that are no
+  // integers.
   std::optional<std::int32_t> integer(const ColumnSource& trace, const char* column, std::size_t tick) const {
     for (const ColumnComparison& comparison : columns_) {
       if (comparison.name != column || comparison.rows <= tick) continue;
@@ -118,7 +119,7 @@ double deviation_at(const ColumnSource& baseline, const ColumnSource& candidate,
   return deviations(baseline.rows(column, tick, 1), candidate.rows(column, tick, 1)).at(0);
 }
 
-// 0 where the trace does not tell it.
+// Returns 0 if the trace has no time at that tick.
 double time_of(const ColumnSource& trace, std::size_t tick) {
   if (!trace.has("time")) return 0;
   const Column time = trace.column("time");
@@ -192,7 +193,7 @@ TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource
     const Column ours = baseline.column(name);
     if (candidate.has(name)) {
       result.columns.push_back(compare_columns(ours, candidate.column(name), tolerance_of(tolerances, name)));
-      result.columns.back().name = name;  // of a figure, with its table
+      result.columns.back().name = name;  // a figure's column is named with its table
     } else {
       result.columns.push_back({name, ours.units, tolerance_of(tolerances, name)});
       result.columns.back().problem = "missing in the candidate";

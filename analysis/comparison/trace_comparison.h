@@ -14,7 +14,7 @@ namespace remote_touch {
 // two traces at the first tick at which any value differs, not the reason in the program.
 enum class Cause {
   configuration,  // the experiments are not the same
-  input,          // what the renderer was given: time, HIP, a frame (points, time of capture); or the truth
+  input,          // the renderer's inputs differ: time, HIP, a frame (points, time of capture), or the truth
   frame_update,   // inputs are the same, and a frame came in with this tick, or one run did not take it
   state_transition,  // no frame came, and the proxy's state differs, or changed with this tick
   drift              // none of these: within a steady state
@@ -24,24 +24,24 @@ const char* name_of(Cause cause);
 // The first divergent tick.
 struct Divergence {
   std::size_t tick = 0;                     // the first with a value outside its tolerance
-  double time_s = 0;                        // of the baseline; 0 where it has none
+  double time_s = 0;                        // time of the baseline; 0 if it has none
   std::string quantity;                     // the column, the first in the trace's order
   double deviation = 0;                     // there, in its units; NaN if one of the values is NaN
   std::size_t first_difference = 0;         // the first tick with any difference, inside or not; at most tick
   Cause cause = Cause::drift;               // configuration, where the experiments differ; else the situation
   std::string explanation;                  // one line
-  Cause situation = Cause::drift;           // at first_difference
+  Cause situation = Cause::drift;           // situation at first_difference
   std::string observation;                  // one line: what differs there
   std::string frame;                        // one line: the frames before and after
-  std::size_t first_row = 0;                // of the rows below: first_difference - 1, or 0
+  std::size_t first_row = 0;                // number of the first row below: first_difference - 1, or 0
   std::vector<Column> baseline, candidate;  // rows first_row .. first_difference of the common columns
 };
 
 struct TraceComparison {
-  std::vector<ColumnComparison> columns;  // of the baseline, in its order
+  std::vector<ColumnComparison> columns;  // columns of the baseline, in its order
   std::vector<std::string> added;         // columns that only the candidate has: not compared
-  std::optional<Divergence> divergence;   // set when a column has a row outside
-  bool is_same() const;                   // and something was compared
+  std::optional<Divergence> divergence;   // set if a column has a row outside
+  bool is_same() const;                   // false also if nothing was compared
 };
 
 // Compares the columns of two sources by name; does not search for a divergence.

@@ -18,8 +18,8 @@ enum class CurveStyle {
   circle,
   bars,
   squares,  // filled cells of a map; the side of a cell is the distance between samples
-  map,      // as squares, coloured by z
-  band,     // from y to z
+  map,      // filled cells like squares, coloured by z
+  band,     // area between y and z
   image,    // one pixel for every cell of a grid, of colour z = 0xRRGGBB
   surface,  // heights z over a grid of (x, y), in perspective; the only curve of its panel
   letters   // a dot at (x, y), labelled with the name of the value of z
@@ -29,7 +29,7 @@ struct Curve {
   std::string table, x, y;  // names of a table and two of its columns
   CurveStyle style = CurveStyle::line;
   std::string label = {};  // empty: not in the legend
-  double radius = 0;       // of circles, in data units
+  double radius = 0;       // radius of circles, in data units
   std::string z = {};      // a third column, for maps, bands, images, surfaces and letters
 };
 
@@ -45,7 +45,7 @@ struct Panel {
 // open: measured, but only on a part of the claim's range. differs: the paper prints something else than what
 // is measured here, and what is measured is as known.
 enum class Verdict { pass, fail, open, differs, not_run };
-const char* verdict_name(Verdict verdict);  // as in claims.json: "pass", "not run"
+const char* verdict_name(Verdict verdict);  // the name in claims.json: "pass", "not run"
 
 // One statement of the paper, or of this project, compared with a measurement. A claim that fails stays in
 // the list.
@@ -53,7 +53,7 @@ struct Claim {
   std::string figure, claim;
   std::string paper;  // the paper's value as text; "-" if it has none
   double measured = 0;
-  std::string criterion;  // in words, with numbers
+  std::string criterion;  // text, with numbers
   std::string unit;
   Verdict verdict = Verdict::not_run;
   bool of_map = false;  // about a whole map: not to be judged on a part of it

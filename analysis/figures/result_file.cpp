@@ -16,7 +16,7 @@ TextAttributes provenance_of(const TextAttributes& attributes) {
 }
 
 namespace {
-// In the order of the digest, which the file's own order of datasets is not.
+// Returns the names of the columns in the order of the digest. The file has its datasets in another order.
 std::string names(const std::vector<Column>& columns) {
   std::string list;
   for (const Column& column : columns) list += (list.empty() ? "" : ",") + column.name;

@@ -9,18 +9,18 @@
 
 namespace remote_touch {
 
-// What is drawn of a figure's tables. Positions are the columns x, y, z.
+// One part of the picture, drawn from a table of the figure. Positions are the columns x, y, z.
 struct ScenePart {
   // points: discs, coloured by a column colour (0xRRGGBB) and shaded by nx, ny, nz if the table has them;
-  // segments: from x, y, z to x_end, y_end, z_end; solid: vertices.
+  // segments: lines from x, y, z to x_end, y_end, z_end; solid: `table` has the vertices.
   enum class Kind { points, segments, solid };
   Kind kind = Kind::points;
   std::string table;
-  std::uint32_t colour = 0x808080;  // if the table has none
+  std::uint32_t colour = 0x808080;  // used if the table has no colours
   double size_m = 0.002;            // diameter of a point
   std::string label = {};           // empty: not in the legend
-  // Of a solid: table `triangles` has the numbers of the corners' vertices in columns a, b, c; row pose_row
-  // of table `poses` has its position x, y, z and orientation qw, qx, qy, qz.
+  // Only for a solid. Table `triangles` has the numbers of the corners' vertices in columns a, b, c. Row
+  // pose_row of table `poses` has its position x, y, z and orientation qw, qx, qy, qz.
   std::string triangles = {}, poses = {};
   int pose_row = 0;
   double opacity = 1;

@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// How far the rendered surface lies above the true one: the distance from the centre of the proxy to the true
-// surface less that to the nearest point, m, as mean and standard deviation over the ticks that end in
+// Height of the rendered surface above the true one, m: the distance from the centre of the proxy to the true
+// surface minus the distance to the nearest point. Mean and standard deviation over the ticks that end in
 // contact and have a known truth. NaN if there is no such tick.
 double mean_height_m(const Trace& trace);
 double height_sd_m(const Trace& trace);
@@ -20,7 +20,7 @@ double distance_sd_m(const Trace& trace);
 double end_distance_m(const Trace& trace);
 // Fraction of the ticks with a force.
 double force_fraction(const Trace& trace);
-// Time of the last tick with a force, s; NaN without any.
+// Time of the last tick with a force, s. NaN if no tick has a force.
 double last_force_time_s(const Trace& trace);
 
 }  // namespace remote_touch

@@ -1,19 +1,19 @@
-// How much the force on the hand changes from one tick to the next: at frame updates (jump) and between them
-// (noise). Compared are ticks of which at least one has a force, so a force that ends or begins counts as
-// well.
+// Change of the force on the hand from one tick to the next: at frame updates (jump) and between them
+// (noise). A change counts if at least one of its two ticks has a force, so the begin and the end of a force
+// count too.
 #pragma once
 
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
-// The force at ticks with a new frame: maximum and root mean square of its change, N. NaN without any.
+// Maximum and root mean square of the change of force at ticks with a new frame, N. NaN if no change counts.
 double max_force_jump_N(const Trace& trace);
 double rms_force_jump_N(const Trace& trace);
-// Root mean square change of the force at the other ticks, N. NaN without any.
+// Root mean square change of the force at the other ticks, N. NaN if no change counts.
 double force_noise_N(const Trace& trace);
 
-// The same of the torque about the HIP, N m. NaN without a tool.
+// The same measures for the torque about the HIP, N m. NaN without a tool.
 double max_torque_jump_Nm(const Trace& trace);
 double rms_torque_jump_Nm(const Trace& trace);
 double torque_noise_Nm(const Trace& trace);

@@ -30,7 +30,7 @@ double fraction(const Trace& trace, Condition&& holds) {
 using enum MeasuredRuns;
 using enum Better;
 
-// As Measure, but made by the compiler: nothing has to be ready before it.
+// Same data as Measure, but a compile-time constant: it needs no initialisation at program start.
 struct Row {
   const char *name, *unit, *meaning;
   MeasuredRuns runs;

@@ -25,9 +25,9 @@ double min_slave_distance_m(const Trace& trace);
 // Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface, by more than
 // Trace::held_depth_m; NaN without any.
 double wrong_side_fraction(const Trace& trace);
-// How far the rendered surface is from the true one: rms difference of the centre's distance to the true
-// surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without
-// any.
+// Error of the rendered surface: rms of the difference between the centre's distance to the true surface and
+// its distance to the nearest point, over the ticks that end in contact and have a known truth, m. NaN if
+// there is no such tick.
 double rms_surface_error_m(const Trace& trace);
 // Force dropouts: fraction without force of the ticks in which the surface holds the proxy back, see
 // pressing().
@@ -57,7 +57,7 @@ struct Measure {
   // The direction in which it gets better. It is the last member, so that a program may omit it.
   Better better = Better::neither;
 };
-// Those of this program, in the order in which summaries print them. A program may have more, see
+// The measures of this program, in the order in which summaries print them. A program may have more, see
 // runners/experiment/catalog.h.
 const std::vector<Measure>& built_in_measures();
 bool applies(const Measure& measure, const Trace& trace);

@@ -4,7 +4,8 @@
 
 namespace remote_touch {
 
-// What a measure gives where a run has nothing to measure. Not 0 / 0, whose sign is the machine's choice.
+// Value of a measure if a run has nothing to measure. It is not computed as 0 / 0, because the sign of that
+// NaN depends on the machine.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace remote_touch

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// From tick i until the next.
+// Work that the device does on the hand from tick i to tick i + 1.
 double work_J(const Trace& trace, std::size_t i) {
   const Vec3& force_N = trace.has_hand() ? trace.device_force_N[i] : trace.force_N[i];
   const double by_force = force_N.dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);

@@ -1,4 +1,4 @@
-// How well a mask of pixels agrees with the true class of each.
+// Score of the agreement of a pixel mask with the true class of each pixel.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@ namespace remote_touch {
 
 // Counts of pixels with depth; those without cannot be points of a fixture and are counted separately.
 struct SegmentationScore {
-  int right = 0;   // of the class, and selected
-  int missed = 0;  // of the class, not selected
-  int wrong = 0;   // selected, of another class
+  int right = 0;   // pixels of the class that are selected
+  int missed = 0;  // pixels of the class that are not selected
+  int wrong = 0;   // selected pixels of another class
   int of_class_without_depth = 0;
 
   SegmentationScore& operator+=(const SegmentationScore& other);

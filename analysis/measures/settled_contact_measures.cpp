@@ -37,7 +37,7 @@ double max_of_heights(const Trace& trace, Value&& value) {
   return max;
 }
 
-// Of the settled ticks, the fraction for which the condition on the tick's number holds.
+// Fraction of the settled ticks whose index satisfies the condition; NaN if no tick settled.
 template <class Condition>
 double settled_fraction(const Trace& trace, Condition&& holds) {
   double count = 0, all = 0;

@@ -19,18 +19,18 @@ class SurfaceSide {
 
   // The next tick; NaN: the distance is unknown. Returns true if the proxy pops through in this tick.
   bool add(double signed_distance_m);
-  // After the last tick: 1 if the proxy is behind the surface and popped through it, 0 if it is in front or
-  // has been behind since the first tick. NaN if its distance is unknown, if it is unknown how it got to the
-  // back, or without ticks.
+  // The result after the last tick: 1 if the proxy is behind the surface and popped through it, 0 if it is in
+  // front or has been behind since the first tick. NaN if its distance is unknown, if it is unknown how it
+  // got to the back, or if there were no ticks.
   double popped_through() const;
 
  private:
   enum class Side { unseen, front, back };
 
   double held_depth_m_;
-  Side side_ = Side::unseen;  // in the last tick with a known distance
-  bool is_known_ = false;     // the distance in the last tick
-  bool has_gap_ = false;      // ticks with an unknown distance since the proxy was seen in front, or at all
+  Side side_ = Side::unseen;  // side in the last tick with a known distance
+  bool is_known_ = false;     // true if the distance in the last tick is known
+  bool has_gap_ = false;      // true: unknown distance since the proxy was last in front, or since the start
   double passed_ = 0;         // if the proxy is behind: 1, 0 or NaN as above
 };
 

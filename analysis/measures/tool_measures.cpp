@@ -12,7 +12,7 @@ namespace remote_touch {
 
 namespace {
 
-// of(i) over the ticks of a run with a tool.
+// Mean of of(i) over the ticks of a run with a tool; NaN without a tool or without ticks.
 template <class Value>
 double mean(const Trace& trace, Value&& of) {
   if (!trace.has_tool() || trace.length() == 0) return kNoValue;

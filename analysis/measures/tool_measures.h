@@ -26,8 +26,8 @@ double mean_detections(const Trace& trace);
 double max_detections(const Trace& trace);
 // Fraction of the ticks that ended before the tool had converged.
 double exhausted_fraction(const Trace& trace);
-// How far the tool is behind the device: distance of the tool's centre of mass from the HIP, m, and angle
-// between their orientations, rad.
+// Lag of the tool behind the device: distance of the tool's centre of mass from the HIP, m, and angle between
+// their orientations, rad.
 double mean_tool_lag_m(const Trace& trace);
 double max_tool_lag_m(const Trace& trace);
 double mean_tool_lag_rad(const Trace& trace);
@@ -35,8 +35,9 @@ double max_tool_lag_rad(const Trace& trace);
 
 // Fraction of the ticks with an active guidance fixture whose target is visible.
 double guidance_fraction(const Trace& trace);
-// How far the tool, or the proxy, is from the goal of guidance at the last tick with active guidance, m, and
-// the angle between tool and goal, rad. NaN without any; the angle also without a tool.
+// Distance of the tool, or of the proxy, from the goal of guidance at the last tick with active guidance, m,
+// and angle between tool and goal, rad. NaN if no tick has active guidance; the angle is NaN also without a
+// tool.
 double guidance_error_m(const Trace& trace);
 double guidance_error_rad(const Trace& trace);
 

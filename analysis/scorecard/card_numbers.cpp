@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of a mean: rounding, and what no reader would call a change.
+// Fraction of a mean by which its interval is widened: for rounding, and for changes too small to matter.
 constexpr double kSlack = 1e-3;
 
 using Texts = std::vector<std::string>;
@@ -39,7 +39,7 @@ CardPlace place_in(const Table& table, std::size_t row) {
           values_of<Numbers>(table, "noise_sigma")[row]};
 }
 
-// Ordered; noise that is no number is the scene's own, which stands before all.
+// Key for sorting. A NaN noise is the scene's own, and comes before all others.
 std::tuple<std::string, std::string, double> key_of(const CardPlace& place) {
   return {place.scene, place.method, std::isnan(place.noise_m) ? -1 : place.noise_m};
 }
@@ -66,7 +66,7 @@ void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std:
 
 void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::vector<std::string>& list) {
   const MeanDifference &a = then.value, &b = now.value;
-  if (std::isnan(a.mean)) return;  // nothing was stored to compare with: the counts tell
+  if (std::isnan(a.mean)) return;  // no stored mean to compare with; the counts show it
   const std::string what = now.measure + (now.units == "1" ? "" : " in " + now.units);
   const double slack = kSlack * std::abs(a.mean);
   const double low = (std::isnan(a.low) ? a.mean : a.low) - slack;

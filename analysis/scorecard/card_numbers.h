@@ -1,5 +1,5 @@
-// What is kept of a scorecard: counts of successes and means of judged measures, each with its interval; and
-// whether a later card agrees with them.
+// The stored numbers of a scorecard: counts of successes and means of judged measures, each with its
+// interval. A later card is compared with them.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// Where in a card a number stands. noise_m: NaN for a scene's own noise.
+// The scene, method and noise level that a number of a card belongs to. noise_m: NaN for a scene's own noise.
 struct CardPlace {
   std::string scene, method;
   double noise_m = 0;
@@ -34,7 +34,8 @@ struct CardNumbers {
 enum class KeptMeasures { judged, all };
 CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept);
 
-// A column of that type, as long as the table's first. Throws std::out_of_range.
+// Returns the column of this type, which must be as long as the table's first. Throws std::out_of_range if
+// there is none.
 template <class List>
 const List& values_of(const Table& table, const std::string& name) {
   for (const Column& column : table.columns) {
@@ -46,17 +47,19 @@ const List& values_of(const Table& table, const std::string& name) {
   throw std::out_of_range("table " + table.name + " has no usable column " + name);
 }
 
-// As two tables, and back. Throws std::out_of_range for a table without one of the columns, or with one of
-// another type or length.
+// Conversion to two tables and back. numbers_in throws std::out_of_range if a table lacks one of the columns,
+// or has one of another type or length.
 Table counts_table(const CardNumbers& numbers);
 Table means_table(const CardNumbers& numbers);
 CardNumbers numbers_in(const Table& counts, const Table& means);
 
-// A sentence for each number of the new card that does not agree with the stored one: a fraction of successes
-// outside of the stored Wilson interval, a mean outside of the stored Student's interval (widened by a
-// thousandth of the mean; a single run has no interval but that), a mean that is missing, and a number that
-// is not stored at all. What is stored and not in the new card is not looked at. As the seeds are the same,
-// equal programs have equal numbers: no difference is chance.
+// Returns a sentence for each number of the new card that does not agree with the stored one:
+// - a fraction of successes outside the stored Wilson interval,
+// - a mean outside the stored Student's interval, widened by a thousandth of the mean (a single run has only
+//   the widening),
+// - a mean that is missing, and a number that is not stored at all.
+// Stored numbers that the new card lacks are not compared. As the seeds are the same, equal programs have
+// equal numbers: no difference is chance.
 std::vector<std::string> differences(const CardNumbers& stored, const CardNumbers& now);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// What a scorecard says of its methods over all scenes, and where one of them is behind others.
+// Summary of a scorecard's methods over all scenes, and a list of what a method is behind others in.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@ namespace remote_touch {
 enum class Mark { none, best, worst };
 Mark mark_of(const Ranking& ranking, std::size_t method);
 
-// A scene counts as held where more than this share of the runs are successes.
+// A scene counts as held if more than this fraction of the runs are successes.
 inline constexpr double kHeldFraction = 0.9;
 
-// Of one method over all scenes.
+// Results of one method over all scenes.
 struct MethodSummary {
-  int held = 0, best = 0, worst = 0;  // scenes
+  int held = 0, best = 0, worst = 0;  // numbers of scenes
   // Mean over the scenes of the fraction of successes, with an interval of the percentile bootstrap over
-  // scenes: as if they were drawn from all scenes that there could be. Of runs with noise, of those without,
-  // and of runs with noise by the rule before. `pairs` is the number of scenes.
+  // scenes, as if they were drawn from all possible scenes: for runs with noise, for runs without noise, and
+  // for runs with noise by the previous rule. `pairs` is the number of scenes.
   MeanDifference success, noise_free, old_success;
 };
 std::vector<MethodSummary> overview(const Scorecard& card);
@@ -31,17 +31,17 @@ inline constexpr const char* kOwnMethod = "tracked-sheet";
 struct Weakness {
   std::string scene, what, units;  // "success", "success without noise", or a measure
   std::string other;               // the first of those that are ahead of it
-  int ahead = 0;                   // how many are
+  int ahead = 0;                   // number of methods that are ahead
   double own_mean = 0, other_mean = 0;
   double p = 0;           // corrected for all comparisons of the card; NaN: not tested, as runs without noise
-  bool is_shown = false;  // by more than chance
+  bool is_shown = false;  // true if the difference is more than chance
 };
-// Everything in which others are better than the method by more than chance, then the scenes in which others
-// succeed more often, but not by more than chance, or without noise. Each by the order of scenes. Empty for a
-// method that the card does not have.
+// Returns everything in which others are better than the method by more than chance, then the scenes in which
+// others succeed more often, but not by more than chance, or without noise. Both parts are in the order of
+// the scenes. Empty for a method that the card does not have.
 std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method);
 
-// As tables of a result: "overview", a row for each method, and "behind", a row for each weakness of
+// Tables of a result: "overview", with a row for each method, and "behind", with a row for each weakness of
 // kOwnMethod.
 Table overview_table(const Scorecard& card);
 Table behind_table(const Scorecard& card);

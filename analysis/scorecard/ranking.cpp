@@ -11,7 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Of two methods, above 0 where a is worse; repeats: of both.
+// Returns the differences in badness of two methods, above 0 where a is worse, for the pairs in which both
+// have a number. repeats: levels at which both methods repeat one run.
 std::vector<double> differences(const PairedValues& a, const PairedValues& b, Better better,
                                 const Repeats& repeats) {
   PairedValues by_level(a.size());

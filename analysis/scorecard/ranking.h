@@ -11,25 +11,25 @@
 
 namespace remote_touch {
 
-// One method's values of a measure. values[i][k]: of noise level i and replicate k, which has the same noise
-// for every method; NaN if there is none.
+// One method's values of a measure. values[i][k] belongs to noise level i and replicate k, which has the same
+// noise for every method; NaN if there is none.
 using PairedValues = std::vector<std::vector<double>>;
 
-// For each noise level of one method: whether all its replicates are one and the same run, as without noise.
-// They then count once. Empty: at no level.
+// True for each noise level of one method whose replicates are all one and the same run, as without noise.
+// They then count once. An empty list means that no level repeats.
 using Repeats = std::vector<bool>;
 PairedValues distinct(const PairedValues& values, const Repeats& repeats);
 
-// With fewer pairs there is no verdict, and with fewer values of a measure no rank by it.
+// Minimum number of pairs for a verdict, and of values of a measure for a rank by it.
 inline constexpr std::int64_t kMinPairs = 12;
 // A difference is more than chance where the p value, corrected for all comparisons of the card, is below
 // this.
 inline constexpr double kSignificance = 0.05;
 
-// Of one method with another, over the pairs in which both have a number.
+// Comparison of one method with another, over the pairs in which both have a number.
 struct MethodComparison {
   double p = std::numeric_limits<double>::quiet_NaN();  // two-sided; NaN: fewer than kMinPairs
-  bool is_better = false;                               // the first one, in the mean of the pairs
+  bool is_better = false;                               // true: the first is better in the mean of the pairs
 
   bool shows_better() const { return is_better && p < kSignificance; }
 };
@@ -37,20 +37,20 @@ struct MethodComparison {
 struct Ranking {
   std::vector<std::size_t> order;    // methods, the best first by their own means; unranked ones last
   std::size_t ranked = 0;            // number of ranked methods: with kMinPairs values; of an event, any
-  std::vector<MeanDifference> mean;  // of each method, with its interval
+  std::vector<MeanDifference> mean;  // mean of each method, with its interval
   // [a][b]: of method a with b. Empty for a measure that is only reported.
   std::vector<std::vector<MethodComparison>> against = {};
-  // Whether the first is better than all other ranked methods, and all of them better than the last, each by
-  // more than chance.
+  // has_best: the first is better than all other ranked methods. has_worst: all of them are better than the
+  // last. Each difference must be more than chance.
   bool has_best = false, has_worst = false;
-  // The first, and those that it is not shown to be better than.
+  // The first, and the methods that it is not shown to be better than.
   std::vector<std::size_t> top_group = {};
 };
 
 // event: values are 0 and 1, and two methods are compared by the exact sign test of the pairs that differ;
-// other measures by mean_test() of the differences. Pairs are those in which both have a number: use NaN if a
-// run did not do what is measured. A level at which both methods repeat one run is one pair. near_zero
-// compares magnitudes. repeats: of each method; empty: of none.
+// other measures are compared by mean_test() of the differences. A pair counts if both methods have a number:
+// use NaN if a run did not do what is measured. A level at which both methods repeat one run is one pair.
+// near_zero compares magnitudes. repeats: one entry for each method; empty if no method repeats a run.
 Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event,
                 const std::vector<Repeats>& repeats = {});
 

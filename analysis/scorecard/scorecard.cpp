@@ -28,8 +28,8 @@ PairedValues by_level(const SweepResult& sweep, Value&& value) {
   return values;
 }
 
-// Of the levels without noise: are all replicates the same run, to the last bit of every measure? A scene's
-// own noise is not known to be none, its numbers tell.
+// True for each level without noise whose replicates are all the same run, to the last bit of every measure.
+// A scene's own noise level is NaN and may be zero, so its replicates are compared too.
 Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m) {
   Repeats repeats;
   const auto same = [&](std::size_t a, std::size_t b) {
@@ -82,11 +82,11 @@ std::string units_of(const SweepResult& sweep, const std::string& measure) {
   return "1";
 }
 
-// What the parts of a score have in common.
+// Data that all parts of a score share.
 struct Runs {
   const std::vector<SweepResult>& sweeps;
   std::vector<double> noise_m;
-  std::vector<Repeats> repeats = {};  // of each method, by level
+  std::vector<Repeats> repeats = {};  // repeats of each method, by level
 
   std::vector<Repeats> noisy_repeats() const {
     std::vector<Repeats> list;
@@ -116,7 +116,7 @@ std::vector<Successes> counts_of(const Runs& runs, const std::vector<PairedValue
   return list;
 }
 
-// Who loses the surface early has a short and quiet run: where a measure is judged, only successes count.
+// A method that loses the surface early has a short and quiet run. So judged measures count successes only.
 JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
                      const std::vector<PairedValues>& won) {
   JudgedMeasure measure{name, units_of(runs.sweeps.front(), name), better};

@@ -26,11 +26,11 @@ struct JudgedMeasure {
   // Over all levels with noise; the means have Student's intervals. Judged measures are those of successful
   // runs, and two methods are compared where both succeeded. Reported ones are those of all runs.
   Ranking ranking = {};
-  // Of each method at each noise level.
+  // Mean of each method at each noise level.
   std::vector<std::vector<MeanDifference>> at_level = {};
 };
 
-// How often a method succeeded, by one rule. Runs without noise are not mixed with the others: most of them
+// Number of successes of a method by one rule. Runs without noise are not mixed with the others: most of them
 // are one run, which says nothing about chance.
 struct Successes {
   std::vector<Proportion> at_level;
@@ -39,11 +39,11 @@ struct Successes {
 };
 
 struct SceneScore {
-  std::string name, title, meaning;    // of success
+  std::string name, title, meaning;    // meaning: the condition for success, in words
   std::vector<double> noise_m;         // one per level; a single NaN: the scene's own
-  std::vector<Successes> success;      // of each method
-  std::vector<Successes> old_success;  // by the rule before; empty where there is none
-  Ranking ranking;                     // by success, over all levels with noise
+  std::vector<Successes> success;      // one entry per method
+  std::vector<Successes> old_success;  // successes by the previous rule; empty without one
+  Ranking ranking;                     // ranking by success, over all levels with noise
   std::vector<JudgedMeasure> measures;
 };
 
@@ -56,7 +56,7 @@ struct SceneRules {
   std::string name, title, meaning;
   std::vector<Bound> success;
   std::vector<std::pair<std::string, Better>> measures;
-  std::vector<Bound> old_success = {};  // the rule before; empty: there was none
+  std::vector<Bound> old_success = {};  // the previous rule; empty without one
 };
 
 // Scores the finished sweeps of all methods in a scene; their one axis is the noise. Comparisons are not yet

@@ -1,4 +1,4 @@
-// What counts as success of a run: bounds on its measures, all of which must hold.
+// Success of a run: bounds on its measures, all of which must hold.
 #pragma once
 
 #include <limits>
@@ -17,12 +17,13 @@ struct Bound {
   bool holds(double value) const { return value >= min && value <= max; }  // never for NaN
 };
 
-// For each run whether all bounds hold; false for runs that failed. Throws std::out_of_range for a measure
-// that the sweep does not have. pre: no run is pending.
+// Returns for each run whether all bounds hold; false for runs that failed. Throws std::out_of_range for a
+// measure that the sweep does not have. pre: no run is pending.
 std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds);
 
-// A typical failure of a cell: the median of its unsuccessful runs, ordered by the first bound that they
-// break and its measure, runs that ended with an error last. -1: there is none.
+// Returns the run that is a typical failure of a cell: the median of its unsuccessful runs, ordered by the
+// first bound that they break and by its measure, with runs that ended in an error last. -1 if no run is
+// unsuccessful.
 long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds, std::size_t cell);
 
 }  // namespace remote_touch

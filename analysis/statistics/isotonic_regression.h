@@ -8,8 +8,8 @@ namespace remote_touch {
 // The decreasing values nearest to the given ones by weighted least squares (pool adjacent violators).
 std::vector<double> isotonic_falling(const std::vector<double>& values, const std::vector<double>& weights);
 
-// Where a decreasing curve over increasing x crosses the level, by linear interpolation; the first x if it
-// starts below the level, the last if it ends above.
+// Returns the x at which a decreasing curve over increasing x crosses the level, by linear interpolation: the
+// first x if the curve starts below the level, the last x if it ends above.
 double crossing(const std::vector<double>& x, const std::vector<double>& falling, double level);
 
 }  // namespace remote_touch

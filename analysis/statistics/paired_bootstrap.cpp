@@ -20,7 +20,7 @@ class Choices {
                 {0xFFFFFFFFu, static_cast<std::uint32_t>(draw), 0}} {}
   std::size_t below(std::size_t count) {
     if (next_ == words_.size()) words_ = uniforms(stream_, point_++), next_ = 0;
-    const double fraction = words_[next_++];  // in (0, 1)
+    const double fraction = words_[next_++];  // uniform in (0, 1)
     return std::min(count - 1, static_cast<std::size_t>(fraction * static_cast<double>(count)));
   }
 
@@ -31,7 +31,8 @@ class Choices {
   std::size_t next_ = 4;
 };
 
-// Of sorted values, the one that so large a share lies below, between neighbours in proportion.
+// Quantile of sorted values: the value that this fraction of them lies below, interpolated between
+// neighbours.
 double quantile(const std::vector<double>& sorted, double fraction) {
   const double place = fraction * static_cast<double>(sorted.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(place), sorted.size() - 1);

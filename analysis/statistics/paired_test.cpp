@@ -45,7 +45,7 @@ double sign_test(std::int64_t plus, std::int64_t minus) {
 double symmetry_test(const std::vector<double>& differences) {
   const double max = max_magnitude(differences);
   if (max == 0) return 1;
-  double sum = 0, squares = 0;  // in units of the largest: no square overflows or vanishes
+  double sum = 0, squares = 0;  // scaled by the largest, so that no square overflows or vanishes
   for (const double d : differences) sum += d / max, squares += (d / max) * (d / max);
   return std::min(1.0, 2 * std::exp(-sum * sum / (2 * squares)));
 }

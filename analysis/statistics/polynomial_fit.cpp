@@ -39,7 +39,7 @@ double PolynomialFit::half_width(double x) const {
   return kTwoSided95 * std::sqrt(std::max(0.0, row.dot(spread * row)));
 }
 
-// In units of the largest x: powers of small numbers would differ by many orders.
+// The fit is computed in units of the largest x, because powers of small numbers differ by many orders.
 PolynomialFit fit_polynomial(const std::vector<double>& x, const std::vector<double>& y,
                              std::vector<int> powers) {
   const auto rows = static_cast<Eigen::Index>(x.size()), columns = static_cast<Eigen::Index>(powers.size());

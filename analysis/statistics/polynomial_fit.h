@@ -13,7 +13,7 @@ double polynomial(const std::vector<double>& coefficients, const std::vector<int
 struct PolynomialFit {
   std::vector<int> powers;
   std::vector<double> coefficients;
-  std::vector<double> covariance;  // of the coefficients, row by row
+  std::vector<double> covariance;  // covariance matrix of the coefficients, row by row
   double residual_rms = 0;
 
   double at(double x) const;

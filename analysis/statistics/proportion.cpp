@@ -10,7 +10,7 @@ std::pair<double, double> wilson_interval(int events, int runs, double z) {
   const double n = runs, p = events / n, z2 = z * z;
   const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
-  // Where the count itself is an end, so is the interval's, to the last bit.
+  // The lower end is exactly 0 if there is no event, and the upper end exactly 1 if every run is one.
   return {events <= 0 ? 0 : std::max(0.0, middle - half), events >= runs ? 1 : std::min(1.0, middle + half)};
 }
 

@@ -65,7 +65,7 @@ bool is_written_in_place(const std::filesystem::path& target) {
   return true;
 }
 
-// Its temporary file, flushed to the disk.
+// Writes the target's temporary file and flushes it to the disk. Returns its name.
 std::filesystem::path write_temporary(const std::filesystem::path& target, const void* data,
                                       std::size_t size) {
   std::filesystem::path temporary = temporary_of(target);
@@ -142,14 +142,14 @@ void require_different_file(const std::filesystem::path& target, const std::file
 }
 
 std::filesystem::path resolved(const std::filesystem::path& target) {
-  constexpr int kMaxLinks = 40;  // as the system
+  constexpr int kMaxLinks = 40;  // limit of the system
   std::filesystem::path place = target;
   std::error_code unreachable;
   for (int links = 0; std::filesystem::is_symlink(place, unreachable); ++links) {
     if (links == kMaxLinks) refuse(target, ELOOP, "a file");
     const auto next = std::filesystem::read_symlink(place, unreachable);
     if (unreachable) break;
-    place = place.parent_path() / next;  // which is next where that is absolute
+    place = place.parent_path() / next;  // next itself, if it is absolute
   }
   return place;
 }

@@ -37,8 +37,8 @@ std::filesystem::path temporary_of(const std::filesystem::path& target);
 // also where a file appeared meanwhile.
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-// The names of the files in the target's folder outlast a power cut then, where the file system can promise
-// that.
+// Flushes the folder of the target, so that the names of its files outlast a power cut, if the file system
+// supports that.
 void flush_folder(const std::filesystem::path& target);
 
 // The file that a symbolic link leads to, whether it exists or not; any other name unchanged. Throws

@@ -58,7 +58,7 @@ std::string way_to_recover(const std::filesystem::path& journal) {
   return "`remote-touch recover " + journal.string() + " -o FILE`";
 }
 
-// File systems without hard links, such as FAT.
+// True for an error of a file system without hard links, such as FAT.
 bool has_no_links(int error) {
   return error == EPERM || error == EOPNOTSUPP || error == ENOSYS || error == EMLINK;
 }
@@ -133,7 +133,7 @@ void JournalWriter::create(const JournalBlock& first) {
   flush_folder(file_);
 }
 
-// Over nothing that is there.
+// Gives the file its name, unless a file with that name exists.
 void JournalWriter::give_name(const std::filesystem::path& temporary) const {
   if (::link(temporary.c_str(), file_.c_str()) == 0) {
     ::unlink(temporary.c_str());
@@ -208,7 +208,7 @@ JournalReader::~JournalReader() {
   ::close(descriptor_);
 }
 
-// False where the file ends before.
+// Returns false if the file ends before.
 bool JournalReader::read(std::uint64_t from, void* bytes, std::size_t size) const {
   char* const to = static_cast<char*>(bytes);
   for (std::size_t done = 0; done < size;) {

@@ -56,7 +56,7 @@ void limit(int resource, rlim_t wanted) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
 }
 
-// In the child.
+// Runs in the child: sends the result of the work, or its error, and ends the process.
 [[noreturn]] void answer(int to, const ChildLimits& limits,
                          const std::function<std::string()>& work) noexcept {
   become_limited_child(limits);

@@ -26,10 +26,10 @@ void write_file_digest(const std::filesystem::path& file);
 // The first bytes of a file, followed by zeros where it has fewer or cannot be read.
 std::string opening_of(const std::filesystem::path& file, std::size_t size);
 
-// Whether a file begins as a finished result does; the rest of it is not read.
+// True if a file begins as a finished result does. The rest of the file is not read.
 bool has_result_header(const std::filesystem::path& file);
 
-// valid: every byte is as it was written, but for those that was_opened_for_writing() tells of.
+// valid: every byte is as it was written, except the bytes that was_opened_for_writing() allows to differ.
 enum class FileDigest { valid, absent, broken };
 // Throws InputError when the file cannot be read.
 FileDigest file_digest_of(const std::filesystem::path& file);

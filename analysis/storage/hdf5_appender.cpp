@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// What a camera sends is compressed as fast as it can be.
+// Compression level: camera data is compressed as fast as possible.
 constexpr unsigned kDeflate = 1;
 
 hid_t stored(Hdf5Appender::Number number) {
@@ -76,7 +76,7 @@ void Hdf5Appender::require_no_device() const {
 void Hdf5Appender::begin() {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   check(H5Pset_userblock(creation, kDigestBlockSize));
-  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
+  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // needed for attributes above 64 KiB
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
   check(file_ < 0 ? -1 : 0);
 }
@@ -86,7 +86,7 @@ void Hdf5Appender::remove_temporary() {
   std::filesystem::remove(temporary_, gone);
 }
 
-// False where something could not be written.
+// Returns false if something could not be written.
 bool Hdf5Appender::close() {
   bool good = true;
   for (const auto& [path, data] : open_) good &= H5Dclose(data.id) >= 0;
@@ -142,7 +142,7 @@ void Hdf5Appender::append(const std::string& path, const void* rows, std::size_t
   });
 }
 
-// The bytes of a chunk as they are in the file: the library does not compress them again.
+// row: the bytes of a chunk as they are in the file. The library does not compress them again.
 void Hdf5Appender::append_deflated(const std::string& path, const std::string& row) {
   guarded([&] {
     Open& data = open_.at(path);
@@ -188,7 +188,7 @@ std::string deflated_row(const void* values, std::size_t count, std::size_t valu
 }
 
 bool is_deflated_row(const std::string& row, std::size_t size) {
-  constexpr std::size_t kMaxRatio = 1032;  // of this method
+  constexpr std::size_t kMaxRatio = 1032;  // largest ratio of deflate
   if (row.size() < size / kMaxRatio) return false;
   std::string shuffled(size, '\0');
   uLongf used = static_cast<uLongf>(size);

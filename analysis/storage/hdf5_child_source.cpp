@@ -42,7 +42,7 @@ Hdf5Summary summary_of(const Hdf5Source& source) {
 
 enum class About : std::uint8_t { summary, column, rows };
 
-// What a child is asked about a file.
+// Question to a child about a file.
 struct Question {
   About about = About::summary;
   std::string dataset = {};
@@ -56,7 +56,7 @@ std::string packed_question(const std::string& file, const Question& question) {
   return pack.take();
 }
 
-// In the child.
+// Runs in the child: returns the packed answer to a packed question.
 std::string answer(const std::string& bytes) {
   Unpacker unpack(bytes);
   std::string file;

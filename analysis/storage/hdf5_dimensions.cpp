@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// By this text netCDF knows a dataset that is no variable. The size follows, as it writes it.
+// Text by which netCDF recognises a dataset that is no variable. The size follows, formatted as netCDF does.
 constexpr const char* kNoVariable = "This is a netCDF dimension but not a netCDF variable.";
 constexpr const char* kLabels = "names of components";
 
@@ -72,7 +72,7 @@ bool only_names_a_dimension(hid_t file, const std::string& dataset) try {
   const std::string name = text_attribute(opened, "NAME");  // of a dimension scale
   return name == kLabels || name.starts_with(kNoVariable);
 } catch (const std::runtime_error&) {
-  return false;  // who reads it is told what is wrong
+  return false;  // a read of the dataset reports what is wrong
 }
 
 Handle character_type() {

@@ -1,6 +1,6 @@
-// What other programs need of a file beside its values: a name for every dimension and every enumeration. The
-// netCDF library and h5netcdf open no dataset of which only some dimensions have names, and netCDF no
-// enumeration without one. For analysis/storage/hdf5_* only.
+// Names that other programs need in a file: one for every dimension and every enumeration. The netCDF library
+// and h5netcdf cannot open a dataset of which only some dimensions have names, and netCDF cannot open an
+// enumeration without a name. For analysis/storage/hdf5_* only.
 #pragma once
 
 #include <string>
@@ -10,26 +10,27 @@
 
 namespace remote_touch {
 
-// A dimension that has a name and no values, as netCDF writes it, unless it is there already.
+// Adds a dimension that has a name and no values, as netCDF writes it, unless it is there already.
 void add_dimension(hid_t file, const std::string& path, hsize_t size);
-// The names of the components of vectors (xyz) or of quaternions (wxyz) as a dimension of that group, unless
-// it is there already. Returns its path. pre: width is 3 or 4.
+// Adds the names of the components of vectors (xyz) or of quaternions (wxyz) as a dimension of that group,
+// unless it is there already. Returns its path. pre: width is 3 or 4.
 std::string component_labels(hid_t file, const std::string& group, int width);
 void attach_dimension(hid_t file, const std::string& dataset, const std::string& dimension, unsigned place);
-// Whether a dataset only names a dimension, as those of the functions above: it is no column.
+// True if a dataset only names a dimension, as those of the functions above do: it is no column.
 bool only_names_a_dimension(hid_t file, const std::string& dataset);
 
 // The enumeration of a column's values, stored in the root as NAME_values. Columns with the same names share
 // it.
 Handle named_enumeration(hid_t file, const std::string& column, const std::vector<std::string>& value_names);
-// The same names for readers that take an enumeration for numbers: the convention CF of netCDF.
+// Writes the same names for readers that read an enumeration as numbers: the convention CF of netCDF.
 void write_flags(hid_t file, const std::string& dataset, const std::vector<std::string>& value_names);
 
-// A byte of a text in a dataset, whose attribute kEncoding says how they are to be read: Octave opens no file
-// with a dataset that HDF5 itself calls UTF-8.
+// Type of one byte of a text in a dataset. The dataset's attribute kEncoding states the encoding, because
+// Octave opens no file with a dataset that HDF5 itself calls UTF-8.
 Handle character_type();
 
-// On a dataset of texts: its last dimension is that of the characters of a text. The name is netCDF's.
+// Attribute of a dataset of texts, whose last dimension is that of the characters of a text. The name is
+// netCDF's.
 inline constexpr const char* kEncoding = "_Encoding";
 
 }  // namespace remote_touch

@@ -21,13 +21,13 @@ class Hdf5Work {
   Hdf5Work(const Hdf5Work&) : Hdf5Work() {}
   Hdf5Work& operator=(const Hdf5Work&) = default;
   ~Hdf5Work() { --count_; }
-  // Also for a signal handler: whether there is one, and the file descriptor of the messages to the user; -1:
-  // there are none.
+  // is_on(): true if one exists. messages(): the file descriptor of the messages to the user, -1 if there are
+  // none. A signal handler may call both.
   static bool is_on() { return count_ > 0; }
   static int messages() { return is_silent_ ? -1 : static_cast<int>(messages_); }
-  // While the library's own messages are sent elsewhere.
+  // Sets that file descriptor, while the library's own messages are sent elsewhere.
   static void move_messages(int descriptor) { messages_ = descriptor; }
-  // In a child process that reads for this one, which tells what became of it.
+  // Switches the messages off in a child process that reads for its parent: the parent reports how it ended.
   static void silence() { is_silent_ = true; }
 
  private:
@@ -69,7 +69,7 @@ class Hdf5Writer {
              Storage storage);
   // Makes a dataset the scale of its own dimension.
   void scale(const std::string& path);
-  std::size_t size();  // of the file so far, in bytes
+  std::size_t size();  // size of the file so far, bytes
   // Throws InputError naming the file when it cannot be written.
   void save(const std::filesystem::path& target);
 

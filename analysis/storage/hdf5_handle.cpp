@@ -44,11 +44,12 @@ herr_t take_error(unsigned, const H5E_error2_t* error, void* refusal) {
   return 0;
 }
 
-// Of its first call the library prints the errors, and nothing else can prevent that.
+// Silences the library's error messages. The library prints those of its first call; only redirecting stderr
+// prevents that.
 void begin() {
   const Hdf5Work work;
-  // What it does at the end of the program is needless where every file is closed, and may not end or crash
-  // where a call found no memory.
+  // The library's work at the end of the program is not needed if every file is closed. If a call found no
+  // memory, that work may hang or crash.
   H5dont_atexit();
   const int shown = ::dup(STDERR_FILENO), nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (shown >= 0) Hdf5Work::move_messages(shown);
@@ -75,7 +76,7 @@ void throw_refusal() {
 void use_hdf5() {
   static std::once_flag once;
   std::call_once(once, begin);
-  // Built for threads, it prints the errors of each other thread until that one says so, too.
+  // A library that was built for threads prints the errors of each thread until that thread silences it, too.
   thread_local bool is_silent = false;
   if (is_silent) return;
   is_silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;

@@ -9,8 +9,8 @@
 
 namespace remote_touch {
 
-// Throws what the library says of the call that it refused: std::bad_alloc where it found no memory, else
-// std::runtime_error with the error of the system, if there is one.
+// Throws the error of the call that the library refused: std::runtime_error with the error text of the
+// system, if the library reports one; else std::bad_alloc, if it found no memory; else std::runtime_error.
 [[noreturn]] void throw_refusal();
 
 // Errors are exceptions, not printed. To be called before the library is used, in every thread that does.
@@ -39,7 +39,7 @@ inline void check(herr_t result) {
   if (result < 0) throw_refusal();
 }
 
-// For what is made. Time stamps off, so that equal contents are equal bytes.
+// Property list for a new object. Time stamps are off, so that equal contents are equal bytes.
 inline Handle creation_list(hid_t kind) {
   Handle list(H5Pcreate(kind), H5Pclose);
   check(H5Pset_obj_track_times(list, false));

@@ -26,7 +26,7 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 
 namespace {
 
-// Where the HDF5 part of a file may begin: at 0, 512, 1024, 2048, ...
+// True if the signature is at an offset where the HDF5 part of a file may begin: 0, 512, 1024, 2048, ...
 bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   errno = 0;
@@ -77,7 +77,7 @@ bool require_readable(const std::filesystem::path& file) {
 ReplacedFile::ReplacedFile(const std::string& file)
     : InputError(file, "was replaced while it was read: expected once its writer has ended") {}
 
-// While it is open, no other file gets its number.
+// Holds a file open, so that no other file gets its inode number.
 class Hdf5Reader::HeldFile {
  public:
   explicit HeldFile(const std::string& file)
@@ -88,7 +88,8 @@ class Hdf5Reader::HeldFile {
   HeldFile(const HeldFile&) = delete;
   HeldFile& operator=(const HeldFile&) = delete;
 
-  // One that cannot be opened is refused elsewhere.
+  // True if that is still the name of the held file, or if the file could not be opened: it is refused
+  // elsewhere.
   bool has_name(const std::string& file) const {
     struct stat ours = {}, there = {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &ours) != 0) return true;
@@ -149,7 +150,7 @@ Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> conte
   require_version();
 }
 
-// True when it is sealed: the library reads it in this process, and holds it.
+// Opens the file. Returns true if it is sealed: the library then reads it in this process, and holds it.
 bool Hdf5Reader::open(const RunInChild& run) {
   const bool is_sealed = require_readable(file_);
   attributes_ = guarded([&] {
@@ -157,7 +158,7 @@ bool Hdf5Reader::open(const RunInChild& run) {
     return content_->attributes();
   });
   require_version();
-  // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
+  // The only unsealed file of this program is that of a sweep at work: its runs have checksums of their own.
   if (!is_sealed && attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
     damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
   return is_sealed;

@@ -13,8 +13,8 @@
 
 namespace remote_touch {
 
-// Its name belongs to another file than the one that was opened, as when a sweep replaces its file at the
-// end: what was read of both does not fit together. The whole can be read again.
+// The file's name belongs to another file than the one that was opened, as when a sweep replaces its file at
+// the end: values that were read from both do not fit together. The whole can be read again.
 struct ReplacedFile : InputError {
   explicit ReplacedFile(const std::string& file);
 };
@@ -51,7 +51,7 @@ class Hdf5Reader {
     if (!values || read.width != width) damaged(dataset + " has values of another kind");
     return std::move(*values);
   }
-  std::int64_t offset(const std::string& dataset) const;  // of its values, bytes; pre: stored in one piece
+  std::int64_t offset(const std::string& dataset) const;  // byte offset of values; pre: stored in one piece
 
   [[noreturn]] void damaged(const std::string& how) const;
 

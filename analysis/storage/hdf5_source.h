@@ -1,4 +1,4 @@
-// What readers ask of an HDF5 file, and who answers: the HDF5 library in this process, or in a child.
+// Queries of the content of an HDF5 file, which the HDF5 library answers in this process or in a child.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Hdf5Source {
   virtual Column column(const std::string& dataset) const = 0;
   // Rows first .. first + count - 1.
   virtual Column rows(const std::string& dataset, std::size_t first, std::size_t count) const = 0;
-  // Of its values, bytes; throws when they are not stored in one piece.
+  // Byte offset of its values; throws if they are not stored in one piece.
   virtual std::int64_t offset(const std::string& dataset) const = 0;
 };
 

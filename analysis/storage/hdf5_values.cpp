@@ -12,8 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-// The best that deflate can do. A dataset that claims more than so many bytes for each that it stores is not
-// read, unless it is small: values that were never written take no place in the file.
+// Largest ratio of deflate. A dataset that claims more bytes than this for each stored byte is not read,
+// unless it is small: values that were never written occupy no space in the file.
 constexpr hsize_t kMaxInflation = 1032, kMaxUnwritten = 1 << 20;
 
 std::optional<hsize_t> product(const std::vector<hsize_t>& extent, hsize_t factor) {
@@ -74,11 +74,11 @@ std::string text_attribute(hid_t object, const char* name) {
 
 namespace {
 
-// What of a dataset is read: all of it, or some rows.
+// Part of a dataset that is read: all of it, or some rows.
 struct Selection {
   hid_t in_memory = H5S_ALL, in_file = H5S_ALL;
-  std::size_t count = 0;        // of values
-  std::size_t text_length = 1;  // so many of them are one text
+  std::size_t count = 0;        // number of values
+  std::size_t text_length = 1;  // number of values that make one text
 };
 
 std::vector<std::string> read_texts(hid_t data, hid_t type, const Selection& wanted) {
@@ -106,8 +106,8 @@ std::vector<std::string> names_of(hid_t enumeration) {
   return names;
 }
 
-// 64 bits without a sign are hashes; with one they are numbers, which a double has exactly up to 2^53. So it
-// has those of 32 bits without a sign, where the HDF5 library would cut what is above 2^31 - 1.
+// Unsigned integers of 64 bits are read as hashes. Signed ones are read as doubles, which are exact up to
+// 2^53. So are unsigned ones of 32 bits, because the HDF5 library would cut values above 2^31 - 1.
 Values read_integers(hid_t data, hid_t type, const Selection& wanted) {
   const std::size_t size = H5Tget_size(type);
   const bool has_sign = H5Tget_sign(type) != H5T_SGN_NONE;
@@ -137,7 +137,8 @@ void require_known_kind(hid_t type, const std::string& name) {
     throw std::runtime_error(name + " is neither numbers nor texts of one length");
 }
 
-// In one piece or in chunks in this file; not in others, nor put together from other datasets.
+// Throws std::runtime_error unless the values are in this file, in one piece or in chunks: neither in other
+// files, nor put together from other datasets.
 void require_own_values(hid_t creation, const std::string& name) {
   const H5D_layout_t layout = H5Pget_layout(creation);
   if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
@@ -162,7 +163,7 @@ void require_room_for(hid_t data, hid_t type, const std::vector<hsize_t>& extent
       throw std::runtime_error(name + " claims more values than the file can hold");
 }
 
-// Its extent, when this program can read it.
+// Returns the extent of a dataset. Throws std::runtime_error if this program cannot read it.
 std::vector<hsize_t> checked_extent(hid_t data, hid_t type, hid_t space, const std::string& name) {
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 1) throw std::runtime_error(name + " has no dimension");
@@ -176,7 +177,8 @@ std::vector<hsize_t> checked_extent(hid_t data, hid_t type, hid_t space, const s
   return extent;
 }
 
-// As this program writes texts; others, and its earlier versions, store each in one place.
+// True if texts are stored as this program writes them, by character. Other programs, and earlier versions of
+// this one, store each text as one value.
 bool has_texts_by_character(hid_t data, hid_t type, const std::vector<hsize_t>& extent) {
   return extent.size() > 1 && extent.back() > 0 && has_fixed_texts(type) && H5Tget_size(type) == 1 &&
          !text_attribute(data, kEncoding).empty();

@@ -16,11 +16,11 @@ namespace remote_touch {
 
 namespace {
 
-// Columns longer than that are compressed, in chunks of so many rows; an array has chunks of at most so many
-// values.
+// Columns of more than kMaxContiguous rows are compressed, in chunks of kChunk rows. Those of several
+// dimensions have chunks of at most kMaxChunk values.
 constexpr hsize_t kMaxContiguous = 256, kChunk = 4096, kMaxChunk = 32768;
 
-// Of the longest, at least 1: a dimension of size 0 would hold no texts.
+// Length of the longest text, at least 1: a dimension of size 0 would hold no texts.
 std::size_t max_length(const std::vector<std::string>& texts) {
   std::size_t length = 1;
   for (const std::string& text : texts) length = std::max(length, text.size());
@@ -87,7 +87,7 @@ void Hdf5Writer::attributes(const std::string& object, const TextAttributes& lis
 
 namespace {
 
-// Whole trailing dimensions, as many as fit.
+// Extent of a chunk: whole trailing dimensions, as many as fit.
 std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
   if (extent.size() == 1) return {std::min(kChunk, extent.front())};
   for (hsize_t& along : extent) {

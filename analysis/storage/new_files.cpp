@@ -80,7 +80,7 @@ void NewFiles::finish() {
       refuse(file, error);
     file.is_new = true;
   }
-  const std::vector<File> done = std::move(files_);  // from here on they stay
+  const std::vector<File> done = std::move(files_);  // they now stay, whatever happens
   files_.clear();
   for (const File& file : done)
     if (!file.old.empty()) ::unlink(file.old.c_str());

@@ -7,9 +7,9 @@
 
 namespace remote_touch {
 
-// Written one after the other under temporary names beside their targets, and renamed at the end. Every
-// member throws InputError naming the target when it cannot be written; then, and when finish() was not
-// called, no new file is left and files that were there are as they were. Only a program that is killed
+// The files are written one after the other under temporary names beside their targets, and renamed at the
+// end. Every member throws InputError naming the target if it cannot be written. Then, and if finish() was
+// not called, no new file is left and files that were there are as they were. Only a program that is killed
 // between two renames leaves some new and some old.
 class NewFiles {
  public:
@@ -18,13 +18,13 @@ class NewFiles {
   NewFiles(const NewFiles&) = delete;
   NewFiles& operator=(const NewFiles&) = delete;
 
-  // A regular file, or absent. pre: no other process writes it now.
+  // Begins a file. target: a regular file, or absent. pre: no other process writes it now.
   void begin(const std::filesystem::path& target);
-  void append(const std::string& bytes);  // to the file that was begun last
+  void append(const std::string& bytes);  // appends to the file that was begun last
   void finish();
 
   std::size_t count() const { return files_.size(); }
-  unsigned long long size() const { return size_; }  // of all, in bytes
+  unsigned long long size() const { return size_; }  // total size in bytes
 
  private:
   struct File {

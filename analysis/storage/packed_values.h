@@ -51,8 +51,8 @@ class Unpacker {
  public:
   Unpacker(const char* begin, const char* end) : at_(begin), end_(end) {}
   explicit Unpacker(const std::string& bytes) : Unpacker(bytes.data(), bytes.data() + bytes.size()) {}
-  bool good() const { return good_; }                 // nothing was missing
-  bool done() const { return good_ && at_ == end_; }  // and nothing is left
+  bool good() const { return good_; }                 // true if nothing was missing
+  bool done() const { return good_ && at_ == end_; }  // true if, in addition, nothing is left
   template <class Value>
   void value(Value& v) {
     if (has(1, sizeof v)) std::memcpy(&v, at_, sizeof v), at_ += sizeof v;

@@ -1,5 +1,5 @@
-// The functions of OpenSSL that need no memory. Those that replace them load configurations and tables for
-// each program, 5000 allocations, and crash where one of them finds no memory.
+// Uses the functions of OpenSSL that need no memory. Those that replace them load configurations and tables
+// for each program, 5000 allocations, and crash if one of them finds no memory.
 #define OPENSSL_SUPPRESS_DEPRECATED
 
 #include "analysis/storage/sha256.h"
@@ -19,7 +19,7 @@ namespace remote_touch {
 
 namespace {
 
-// For the error of the system.
+// Throws InputError with the error of the system, errno.
 [[noreturn]] void refuse_unreadable(const std::filesystem::path& file) {
   throw InputError(file.string(),
                    std::string("cannot be read (") + std::strerror(errno) + "): expected a readable file");
@@ -34,8 +34,8 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  // How many bytes there are from there, at most size; 0 at the end, -1 with errno set when it cannot be
-  // read.
+  // Reads up to size bytes from the offset `at` on. Returns their number, 0 at the end, or -1 with errno set
+  // if the file cannot be read.
   ssize_t read(char* to, std::size_t size, off_t at) const {
     ssize_t found;
     do {

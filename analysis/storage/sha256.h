@@ -19,7 +19,8 @@ class Sha256 {
   std::shared_ptr<void> state_;
 };
 
-// SHA-256 of the bytes of a file from an offset on, behind others. Throws InputError when it cannot be read.
+// SHA-256 of `before`, followed by the bytes of a file from the offset `from` on. Throws InputError if the
+// file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file, std::size_t from = 0,
                            std::string_view before = {});
 

@@ -67,7 +67,7 @@ std::string joined_names(const std::vector<std::string>& names) {
 std::vector<std::string> split_names(const std::string& joined) {
   std::vector<std::string> list;
   std::istringstream text(joined);
-  text.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  text.exceptions(std::ios::badbit);  // throws if memory runs out, instead of ending the list early
   for (std::string name; std::getline(text, name, ',');) list.push_back(name);
   return list;
 }
@@ -207,7 +207,8 @@ class SweepReader {
   std::vector<Value> values(const std::string& name, std::size_t length) const {
     return std::get<std::vector<Value>>(column<Value>(name, length).values);
   }
-  // Of its axes and replicates, which may be named more often than they are there.
+  // Number of runs: the product of the axes' lengths and the replicates. A damaged file may name an axis
+  // repeatedly, so that the product overflows.
   std::size_t run_count(const SweepResult& result) const {
     auto runs = static_cast<std::size_t>(result.replicates);
     for (const Column& each : result.axes)

@@ -25,15 +25,15 @@ std::vector<std::string> split_names(const std::string& joined);
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
                         const TextAttributes& attributes);
 
-// The content of a file, finished or not. Runs that were written only in part are pending. Throws InputError
-// for a file that is not a sweep, or was changed since it was written.
+// The content of a file, finished or in progress. Runs that were written only in part are pending. Throws
+// InputError for a file that is not a sweep, or was changed since it was written.
 struct StoredSweep {
   SweepResult result;
-  TextAttributes attributes;  // without schema, digest, and the names of axes, measures and kinds of notes
+  TextAttributes attributes;  // all but schema, digest, and the names of axes, measures and note kinds
   bool in_progress = false;
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
-// Begins again when a sweep at work has replaced its file.
+// Reads the file again if a running sweep has replaced it.
 StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
 // The layout while the sweep runs: nothing compressed, so that runs can be written in place, and a checksum

@@ -25,7 +25,8 @@ class SweepInProgress {
   // Stores the values, the state and the notes of one run. One call at a time. Throws InputError if the file
   // cannot be written.
   void record(const SweepResult& result, std::size_t run);
-  // After this, everything recorded survives a power cut. Throws also when the file was replaced or removed.
+  // Makes everything recorded survive a power cut. Throws InputError if that fails, and also if the file was
+  // replaced or removed.
   void flush();
 
  private:

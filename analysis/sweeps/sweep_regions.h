@@ -11,7 +11,7 @@ namespace remote_touch {
 
 // A box of cells: on each axis the values [first, second).
 struct Region {
-  std::string label;  // of the axes that are split: "noise_sigma_m 0 to 0.005, velocity_estimate true"
+  std::string label;  // ranges on the split axes: "noise_sigma_m 0 to 0.005, velocity_estimate true"
   std::vector<std::pair<std::size_t, std::size_t>> places = {};
   bool contains(const std::vector<std::size_t>& place) const;
 };

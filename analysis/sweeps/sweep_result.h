@@ -24,7 +24,7 @@ struct SweepResult {
   int replicates = 1;
   std::vector<Column> measures;  // NaN where the run is not done
   std::vector<RunState> state;
-  std::vector<std::int32_t> round;  // of refinement that added the run; empty without refinement
+  std::vector<std::int32_t> round;  // round of refinement that added the run; empty without refinement
   std::vector<std::string> error;
   // note_kinds: the names of the kinds of notes. notes: one number for each run; bit i is set if the run has
   // a note of the kind note_kinds[i]. It is 0 if the run is not done. Both are empty in results that were
@@ -62,7 +62,7 @@ struct NoteCount {
 // Returns the counts in the order of note_kinds, without kinds that no finished run has.
 std::vector<NoteCount> note_counts(const SweepResult& result);
 
-// How often an event happened in the finished runs of a cell.
+// Count of an event in the finished runs of a cell.
 struct Tally {
   int events = 0, runs = 0;
 };

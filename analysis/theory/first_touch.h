@@ -1,6 +1,6 @@
-// How fast a surface may move when the proxy of chapter 4 first touches it, without noise and at any frame
-// rate. (4.14) bounds the acceleration of a surface whose velocity the proxy has already estimated. At the
-// first touch the estimate v_hat is still 0 (4.2.5).
+// Limit of the velocity of a surface when the proxy of chapter 4 first touches it, without noise and at any
+// frame rate. (4.14) bounds the acceleration of a surface whose velocity the proxy has already estimated. At
+// the first touch the estimate v_hat is still 0 (4.2.5).
 //
 // The points form a plane that moves along its normal with constant velocity v. So each frame shows the plane
 // closer by delta = v / f_c. The hand, and so the proxy, is at rest. b is the distance from the proxy's

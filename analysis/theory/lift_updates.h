@@ -1,4 +1,4 @@
-// What happened at each update of a cloud that moves along a known normal: the quantities of 4.4.
+// The quantities of 4.4 at each update of a cloud that moves along a known normal.
 #pragma once
 
 #include <vector>

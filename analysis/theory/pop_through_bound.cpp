@@ -47,7 +47,7 @@ double survival_probability(const Lift& lift, const NoiseEffect& noise, double a
     const double variance =
         square(noise.margin_sd_m) + square(noise.thickness_sd_m) +
         (square(estimate) - square(lift.start_velocity_m_per_s)) * square(noise.normal_error_sd / f);
-    // Without noise a step from 0 to 1; the rounding of (4.14) is left to decide nothing.
+    // Zero variance: the probability is a step from 0 to 1, and the rounding of (4.14) does not affect it.
     probability *= variance > 0 ? 0.5 * std::erfc(-margin / std::sqrt(2 * variance)) : margin > 0 ? 1 : 0;
     estimate += noise.gain * (velocity - estimate);
   }

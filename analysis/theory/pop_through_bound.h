@@ -38,8 +38,8 @@ const PrintedFit& printed_normal_error();  // (4.24)
 struct NoiseEffect {
   double thickness_m = 0, thickness_sd_m = 0;
   double normal_error = 0, normal_error_sd = 0;
-  double velocity_bias_m_per_s = 0, velocity_sd_m_per_s = 0;  // of v_hat_j - v_{j-1}
-  double margin_sd_m = 0;  // of the margin of (4.17), whose terms above are correlated
+  double velocity_bias_m_per_s = 0, velocity_sd_m_per_s = 0;  // mean and scatter of v_hat_j - v_{j-1}
+  double margin_sd_m = 0;  // scatter of the margin of (4.17), whose terms above are correlated
   double gain = 1;         // fraction of a velocity error that one update corrects, see below
 };
 
@@ -62,7 +62,7 @@ struct NoiseEffect {
 // Not using the bias makes the bound too low at little noise; at much noise, where e_n grows, it is about
 // right. The figure "bounds" shows predicted and observed survival.
 double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration);
-// The acceleration at which that is one half.
+// The acceleration at which the survival probability is one half.
 double scatter_bound(const Lift& lift, const NoiseEffect& noise);
 
 }  // namespace remote_touch

@@ -12,7 +12,7 @@ double above(double x) {
   return 0.5 * std::erfc(x * std::sqrt(0.5));
 }
 
-// Where a function that falls passes one half.
+// Returns the position at which a decreasing function passes one half, by bisection.
 template <class Function>
 double median(double low, double high, Function&& falling) {
   for (int i = 0; i < 60; ++i) {
@@ -59,7 +59,7 @@ double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, d
     }
     return 1 - none;
   };
-  // Just as far as the plate is thick some are left; beyond everything none is.
+  // A jump of just the plate's thickness leaves some points in it. A jump beyond all points leaves none.
   return median(thickness_m, thickness_m + highest->height_m - lowest->height_m + 2 * kReach * sigma_m,
                 any_in_plate);
 }

@@ -1,9 +1,9 @@
-// How far one frame may move a surface of points against a level, square plate that lies on it, in the
-// direction of its thickness. The points that the frame puts into the plate push it out; without a contact
-// force along a point that is beyond, it is carried until none is left in it. Of a surface that falls away
-// from where it is touched some are left when the first are through: the plate is carried over its thickness
-// and that drop. Heights are measured from the highest place under the plate before the frame, metres; angles
-// in radians.
+// Largest jump by which one frame may move a surface of points against a level, square plate that lies on it,
+// in the direction of the plate's thickness. The points that the frame puts into the plate push it out.
+// Points beyond the plate exert no contact force, so the plate is carried until no point is left in it. If
+// the surface falls away from the touched position, some points are left when the first are through: the
+// plate is carried over its thickness and that drop. Heights are measured from the highest position under the
+// plate before the frame, in metres; angles are in radians.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ namespace remote_touch {
 
 // Lowest and highest place of a surface under a plate after the frame, less how far the frame moves it.
 struct UnderPlate {
-  double drop_m = 0;  // how far the lowest place is below
-  double rise_m = 0;  // how far the highest place is above, if the surface turns
+  double drop_m = 0;  // depth of the lowest position below
+  double rise_m = 0;  // height of the highest position above, if the surface turns
 };
 
 // An edge along the plate's middle, with flanks that slope, and that turns about itself in the frame; slope
@@ -33,9 +33,9 @@ struct NoisyPoint {
   double height_m = 0, under_plate = 1;
 };
 
-// The jump after which the plate is as likely lost as not, of points with noise of sigma along its thickness,
-// drawn anew in each frame: no point is left in it. Of the place of the plate, on the highest point of the
-// frame before, the median is taken. pre: sigma_m > 0; some points are under the plate.
+// The jump after which the plate is lost with probability 1/2: no point is left in it. The points have noise
+// of sigma along the plate's thickness, drawn anew in each frame. The plate rests on the highest point of the
+// frame before; the median of its position is taken. pre: sigma_m > 0; some points are under the plate.
 double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m);
 
 }  // namespace remote_touch

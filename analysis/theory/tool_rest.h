@@ -14,7 +14,7 @@ struct EvenSpring {
   double stiffness_N_per_m = 600, gyration_radius_m = 0.03;
 };
 
-// On the hand.
+// Wrench on the hand.
 struct RestingWrench {
   Eigen::Vector2d force_N = Eigen::Vector2d::Zero();
   double torque_Nm = 0;

@@ -14,13 +14,13 @@ struct SequenceEntry {
   double began_s = 0;
   double ended_s = std::numeric_limits<double>::quiet_NaN();
   bool missed = false;  // ended by its deadline
-  // From the tool to the step's goal when it ended; NaN for a step without one. All steps that ended in the
-  // same tick have the value of the first of them with a goal.
+  // Distance and angle from the tool to the step's goal when the step ended; NaN for a step without a goal.
+  // All steps that ended in the same tick have the values of the first of them with a goal.
   double distance_m = std::numeric_limits<double>::quiet_NaN();
   double angle_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
-// In the order of the steps; empty for a trace without a task.
+// Returns the entries in the order of the steps; empty for a trace without a task.
 std::vector<SequenceEntry> sequence_log(const Trace& trace);
 
 }  // namespace remote_touch

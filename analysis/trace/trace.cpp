@@ -74,7 +74,7 @@ bool read_rows(const std::optional<Column>& column, std::vector<Eigen::Quaternio
       column, 4, rows, [](const double* at) { return Eigen::Quaterniond(at[0], at[1], at[2], at[3]); });
 }
 
-// What the entries of the table are written with.
+// Meaning of a column in the table, for runs without and with a tool.
 struct Meaning {
   Meaning(const char* of_every_run) : without_tool(of_every_run), with_tool(of_every_run) {}
   Meaning(const char* of_proxy, const char* of_tool) : without_tool(of_proxy), with_tool(of_tool) {}

@@ -23,17 +23,17 @@ struct HandState {
 struct Trace {
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
-  // Where the renderer touches and where the hand is, against the true surface: positive above it, NaN where
-  // the truth is not known.
+  // Position of the renderer's contact point and of the HIP against the true surface: positive above it, NaN
+  // if the truth is not known.
   struct TrueContact {
-    double height_m = 0;        // of the point that touches
-    double hip_distance_m = 0;  // of the HIP
+    double height_m = 0;        // height of the contact point
+    double hip_distance_m = 0;  // distance of the HIP
   };
   // Ground truth of a tick, which the renderer does not know.
   struct Truth {
-    double proxy_distance_m = 0;              // to the true surface, of the proxy
-    double slave_distance_m = 0;              // and of the slave's command
-    std::uint64_t frame_hash = 0;             // of the newest frame delivered; 0 if it was not computed
+    double proxy_distance_m = 0;              // distance of the proxy from the true surface
+    double slave_distance_m = 0;              // distance of the slave's command from it
+    std::uint64_t frame_hash = 0;             // hash of the newest frame delivered; 0 if it was not computed
     std::optional<TrueContact> contact = {};  // computed only where a measure asks for it
     // Unit normal of the true surface at the renderer's contact, towards the free side. NaN if it is not
     // known or nothing is touched. Computed only if a measure needs it.
@@ -59,15 +59,15 @@ struct Trace {
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 
-  // How far behind the true surface the position may lie while the surface still holds it, m; 0 for a ball,
-  // whose centre stays in front. See held_depth_m() in rendered_contact.h. For measures alone: no column.
+  // Depth behind the true surface at which the surface still holds the position, m; 0 for a ball, whose
+  // centre stays in front. See held_depth_m() in rendered_contact.h. Used by measures alone: not a column.
   double held_depth_m = 0;
   // Rows for measures alone: no column, because stored traces have none. Empty unless it was computed.
   std::vector<TrueContact> contact;
   std::vector<Vec3> true_normal;  // Truth::normal
 };
 
-// Which runs have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
+// The runs that have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
 // simulated operator or device.
 enum class TracePart { always, tool, guidance, hand };
 
@@ -75,7 +75,7 @@ struct TraceColumn {
   const char* name;
   const char* unit;
   const char* meaning;
-  const char* meaning_with_tool;  // in a run with a tool
+  const char* meaning_with_tool;  // used in a run with a tool
   TracePart part;
   int width;  // numbers in a row
   std::vector<std::string> value_names;

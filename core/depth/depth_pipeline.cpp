@@ -9,16 +9,17 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMaxHalf = 7;  // of a window
-// Rows that one thread takes at a time. Weights of the window above are computed anew for each band; so few
-// as 60 cost 3 %.
+constexpr int kMaxHalf = 7;  // half width of a window
+// Number of rows that one thread processes at a time. The weights of the window above are computed anew for
+// each band; bands of only 60 rows cost 3 %.
 constexpr int kBandRows = 60;
 
 int half(int window) {
   return window / 2;
 }
 
-// A band's room for weights: as few as there are threads are in use, and these stay in the cache.
+// Memory for the weights of a band. At most as many parts are in use as there are threads, so that they stay
+// in the cache.
 class ScratchPool {
  public:
   ScratchPool(float* first, std::size_t size, int count) : first_(first), size_(size), free_(all(count)) {}
@@ -45,7 +46,7 @@ int band_count(int rows) {
 
 }  // namespace
 
-// What is to be done: the rectangle of an image, seen by a camera.
+// The work for one call: a rectangle of an image, and the camera that saw it.
 struct DepthPipeline::Frame {
   const double* depth_m;
   CameraIntrinsics camera;
@@ -53,13 +54,15 @@ struct DepthPipeline::Frame {
   double X_WC[12];
   bool keep_points;
   int normal_half = 0, filter_half = 0;       // 0: no filter
-  int shift = 0;                              // of windows beside a pixel; 0: none
-  double filter_scale = 1, normal_scale = 1;  // units of a plane in a metre
+  int shift = 0;                              // distance of the windows beside a pixel; 0: none
+  double filter_scale = 1, normal_scale = 1;  // units of a plane per metre
 
-  // How far from the rectangle filtered points are needed, and measured ones.
+  // Distance in pixels from the rectangle up to which filtered points (wider) and measured points (reach) are
+  // needed.
   int wider() const { return shift + normal_half; }
   int reach() const { return wider() + filter_half; }
-  // Rows and columns of the rectangle widened by some, within the image, counted from the rectangle.
+  // Limits of the rectangle after widening it by `wider` pixels, clipped to the image and counted from the
+  // rectangle.
   int first_row(int wider) const { return std::max(-wider, -at.top); }
   int last_row(int wider) const { return std::min(at.height + wider, camera.height - at.top); }
   int first_column(int wider) const { return std::max(-wider, -at.left); }
@@ -77,7 +80,8 @@ bool fits(int first, int count, int all) {
 
 }  // namespace
 
-// What the kernels touch around the pixels asked for: with sharp edges normals are asked for beside them.
+// The border is the widest region that the kernels touch around the requested pixels. With sharp_edges it is
+// wider, because normals are also computed beside these pixels.
 DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
     : DepthProcessor(settings), kernels_(kernels), border_((settings.sharp_edges ? 5 : 3) * kMaxHalf) {}
 
@@ -111,13 +115,13 @@ void DepthPipeline::process_frame(const DepthFrame& whole, PointCloud& cloud) {
   run(frame, cloud);
 }
 
-// Column 0 of row 0 in three planes, one after another; or another column of it.
+// Returns the given column of row 0 in each of three planes that lie one after another.
 PointPlanes DepthPipeline::planes(std::vector<float>& values, int column) const {
   float* const first = values.data() + first_pixel() + column;
   return {first, first + plane_size_, first + 2 * plane_size_, stride_};
 }
 
-// None unless edges are to be sharp.
+// Empty unless sharp_edges is set.
 FitPlanes DepthPipeline::fit_planes(int column) {
   if (!settings_.sharp_edges) return {};
   float* const first = fits_.data() + first_pixel() + column;
@@ -152,7 +156,7 @@ void DepthPipeline::prepare(const Frame& frame) {
        frame.camera.fy);
 }
 
-// Leaves no points in a row but those of columns first .. last - 1, which are for the caller to write.
+// Removes the points of a row except those in columns first .. last - 1, which the caller writes.
 void DepthPipeline::clear_beside(const PointPlanes& to, const Frame& frame, int row, int reach, int first,
                                  int last) const {
   for (float* plane : {to.x, to.y, to.z}) {
@@ -162,7 +166,8 @@ void DepthPipeline::clear_beside(const PointPlanes& to, const Frame& frame, int 
   }
 }
 
-// One row of points, with the filter's changes or as measured, and none outside of the image.
+// Writes one row of points, either with the filter's changes or as measured. Pixels outside the image get no
+// point.
 void DepthPipeline::write_points(const Frame& frame, int row, int reach, double scale, bool changed,
                                  const PointPlanes& to) {
   const bool inside = row >= frame.first_row(reach) && row < frame.last_row(reach);
@@ -193,7 +198,7 @@ void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* 
   for (int row = first; row < last; ++row) write_points(frame, row, wider, frame.normal_scale, true, smooth);
 }
 
-// With sharp edges also of pixels beside the rectangle.
+// Computes normals of the rectangle and, with sharp_edges, of pixels beside it.
 void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* scratch) {
   const int beside = frame.shift;
   const PixelRays rays{rays_x_.data() + border_ - beside, rays_y_.data() + border_};
@@ -207,7 +212,7 @@ void DepthPipeline::normals_band(const Frame& frame, int first, int last, float*
     kernels_.depth.inverse_depth_normals(band, points, rays, step, normals, fit_planes(-beside));
 }
 
-// normals: column 0 of row 0.
+// normals points to column 0 of row 0.
 void DepthPipeline::row_to_cloud(const Frame& frame, int row, const PointPlanes& normals, PointCloud& cloud) {
   const int width = frame.at.width;
   const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
@@ -239,7 +244,7 @@ void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
   for (int row = -reach; row < height + reach; ++row)
     write_points(frame, row, reach, scale, false, first_planes);
 
-  // Rows first .. last - 1 in bands. Each writes rows of its own only.
+  // Processes rows first .. last - 1 in bands. Each band writes only its own rows.
   const auto in_bands = [&](int first, int last, int half_window, const auto& work) {
     const int bands = band_count(last - first);
     const std::size_t size = weight_buffer_size(frame.at.width + 2 * wider, half_window);

@@ -1,20 +1,21 @@
-// From a depth frame to a cloud with normals: filter (7.1), (7.2) and the normals of 6.2.1.
+// Makes a cloud with normals from a depth frame: filter (7.1), (7.2) and the normals of 6.2.1.
 //
-// Depths are filtered spatially: v0' = sum v_k phi(k) / sum phi(k) over a window of pixels, with phi(k) =
-// exp(-|p_k - p_0|^2 / (2 sigma_f^2)) of Cartesian distances between the points as measured. Then the points
-// are unprojected again, and a plane of weighted total least squares through the filtered neighbours of each
-// gives its normal: weights psi of (4.2) from 1 at the point to 0 at the radius, eigenvector of the smallest
-// eigenvalue of the covariance, towards the sensor.
+// The filter smooths depths spatially: v0' = sum v_k phi(k) / sum phi(k) over a window of pixels, with
+// phi(k) = exp(-|p_k - p_0|^2 / (2 sigma_f^2)) of the Cartesian distances between the points as measured.
+// Then the points are unprojected again. The normal of each point is that of a plane of weighted total least
+// squares through its filtered neighbours: weights psi of (4.2) fall from 1 at the point to 0 at the radius,
+// and the normal is the eigenvector of the smallest eigenvalue of the covariance, turned towards the sensor.
 //
-// With sharp_edges (not in the dissertation) a pixel may take the normal of one of eight windows around its
-// own. Each is away by half the width of the normal's window and half that of the filter's. The pixel takes
-// the one that fits best, if that fits clearly better: if its mean square error and the squared distance of
-// the pixel's own point from its plane are together a quarter of the own window's error or less. At an edge
-// the own window averages both sides; a window that ends there has one side only.
+// With sharp_edges (not in the dissertation) a pixel may use the normal of one of eight windows around its
+// own. Each of them is shifted by half the width of the normal's window plus half that of the filter's. The
+// pixel uses the window that fits best, provided that it fits clearly better than its own: its mean square
+// error plus the squared distance of the pixel's own point from its plane is less than a quarter of the own
+// window's error. At an edge the own window averages both sides; a window that ends there has one side only.
 //
-// A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: no point, and no influence.
-// Computed in single precision in the camera frame: normals are within 0.05 degrees of those in double. The
-// same bits on every machine, for any number of threads, and for a rectangle as for the whole frame.
+// A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: it gives no point and has no
+// influence. The pipeline computes in single precision in the camera frame: normals are within 0.05 degrees
+// of those in double. The result has the same bits on every machine, for any number of threads, and for a
+// rectangle as for the whole frame.
 #pragma once
 
 #include <cstdint>
@@ -31,14 +32,15 @@ struct PixelRectangle {
   int width = 0, height = 0;
 };
 
-// On the CPU, in the kernels of its instruction set.
+// Depth pipeline on the CPU, with the kernels of its instruction set.
 class DepthPipeline final : public DepthProcessor {
  public:
   DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
 
   using DepthProcessor::process;
-  // Only these pixels, at the cost of these: bit for bit as they are in the whole frame. The image layout is
-  // that of a camera with these pixels alone. pre: the rectangle lies in the image.
+  // Processes only the pixels of the rectangle, at their cost alone. The result is the same as in the whole
+  // frame, bit for bit. The image layout is that of a camera with these pixels alone. pre: the rectangle lies
+  // in the image.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                const PixelRectangle& rectangle, PointCloud& cloud);
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
@@ -60,15 +62,16 @@ class DepthPipeline final : public DepthProcessor {
   void filter_band(const Frame& frame, int first, int last, float* scratch);
   void normals_band(const Frame& frame, int first, int last, float* scratch);
   void row_to_cloud(const Frame& frame, int row, const PointPlanes& normals, PointCloud& cloud);
-  std::ptrdiff_t first_pixel() const { return border_ * stride_ + border_; }  // of a plane
+  std::ptrdiff_t first_pixel() const { return border_ * stride_ + border_; }  // offset in a plane
   PointPlanes planes(std::vector<float>& values, int column) const;
   FitPlanes fit_planes(int column);
 
   const Kernels& kernels_;
-  const int border_;  // of a plane, around the pixels asked for
+  const int border_;  // width of the border of a plane around the requested pixels
   std::ptrdiff_t stride_ = 0;
   std::size_t plane_size_ = 0;
-  // Planes with a border: points in units of the filter, points in units of the normals, normals.
+  // Planes with a border. raw_: points in units of the filter; smooth_: points in units of the normals;
+  // normals_.
   std::vector<float> raw_, smooth_, normals_, fits_, change_, rays_x_, rays_y_, scratch_;
   std::vector<double> wide_rays_x_, wide_rays_y_;
   std::vector<std::uint8_t> valid_;

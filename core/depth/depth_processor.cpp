@@ -62,7 +62,7 @@ void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const Rigid
   const std::size_t count = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   for (std::vector<double>* column : {&cloud.x, &cloud.y, &cloud.z}) column->resize(count);
   cloud.fixture_radius_m.clear(), cloud.stiffness_N_per_m.clear(), cloud.colour.clear();
-  cloud.image = ImageLayout{camera, X_WC, 1e-6};  // as in cloud_from_depth
+  cloud.image = ImageLayout{camera, X_WC, 1e-6};  // same value as in cloud_from_depth
 }
 
 PointCloud DepthProcessor::process(const DepthImage& depth, const CameraIntrinsics& camera,

@@ -1,5 +1,5 @@
-// What makes a cloud with normals of a depth frame. DepthPipeline does it on the CPU; another one may do it
-// elsewhere, with the same bits.
+// Interface for computing a cloud with normals from a depth frame. DepthPipeline does it on the CPU; another
+// implementation may do it elsewhere, with the same bits.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@
 
 namespace remote_touch {
 
-// How a normal is found: the plane of total least squares, or the faster fit of the inverse depth, which is
-// an affine function of the pixel on every plane, with weights (1 - q^2)^2 for psi(q).
+// Method of computing a normal: the plane of total least squares, or the faster fit of the inverse depth. On
+// every plane the inverse depth is an affine function of the pixel; its fit has weights (1 - q^2)^2 in place
+// of psi(q).
 enum class NormalFit { total_least_squares, inverse_depth };
 
 struct DepthPipelineSettings {
@@ -31,8 +32,8 @@ struct DepthPipelineSettings {
   bool operator==(const DepthPipelineSettings&) const = default;
 };
 
-// The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
-// 11 x 11.
+// The fast setting: it needs a quarter to a third of the default's time. Filter and steps together use every
+// pixel of 11 x 11.
 inline constexpr DepthPipelineSettings kFastDepthPipeline{
     true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth, true};
 
@@ -53,40 +54,42 @@ struct DepthFrame {
 
 // A whole depth image as sensors send it.
 struct RawDepth {
-  const std::uint16_t* units;  // of each pixel; 0: nothing measured
+  const std::uint16_t* units;  // measured value of each pixel; 0: nothing measured
   double metres_per_unit;
   CameraIntrinsics camera;
   RigidTransform X_WC;
-  std::span<const std::uint32_t> colour = {};  // of each pixel, 0xRRGGBB; empty: none
+  std::span<const std::uint32_t> colour = {};  // 0xRRGGBB of each pixel; empty: no colours
 };
 
-// Reuses its memory: after the first frame of a size nothing is allocated, if the caller passes the same
-// cloud again. One thread at a time. Throws std::invalid_argument if sizes do not match, and a maker of one
-// for settings that validate() refuses.
+// Reuses its memory: after the first frame of a size nothing is allocated if the caller passes the same cloud
+// again. For one thread at a time. Throws std::invalid_argument if sizes do not match. Constructors of
+// implementations throw it for settings that validate() rejects.
 class DepthProcessor {
  public:
   virtual ~DepthProcessor() = default;
 
-  // X_WC is the registration of the camera in the base frame. cloud becomes points, normals and image layout,
-  // without other columns; NaN where there is no point, or no plane for a normal.
+  // Writes points, normals and image layout into cloud, and removes its other columns. X_WC is the
+  // registration of the camera in the base frame. Points are NaN where nothing was measured, normals also
+  // where there is no plane.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                PointCloud& cloud);
   PointCloud process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC);
-  // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
+  // Processes an organised cloud in place: its depth image is computed from the points, and all other columns
+  // stay.
   void process(PointCloud& cloud);
 
-  // A whole frame at once, for a processor to which copying takes long: process(cloud), then the columns of
-  // r_f and k_s by the steps and the cloud's colours. False: this processor does not do that, and the cloud
-  // is as it was.
+  // Processes a whole frame in one call, for a processor to which copying takes long: process(cloud), then
+  // the columns of r_f and k_s from the steps and the cloud's colours. Returns false, with the cloud
+  // unchanged, if this processor does not support it.
   virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
-  // The same from a sensor's image, which first becomes a cloud with its colours, as by cloud_from_depth();
-  // without the columns of r_f and k_s where the steps are null.
+  // The same from a sensor's image, which first becomes a cloud with its colours, as by cloud_from_depth().
+  // Without steps (null) the columns of r_f and k_s are not written.
   virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
     return false;
   }
 
-  // Normals, and unless they are kept points, of every pixel of the frame. The cloud has columns x, y, z of
-  // the frame's size, and the image layout.
+  // Computes the normals of every pixel of the frame and, unless keep_points is set, the points. The cloud
+  // has columns x, y, z of the frame's size, and the image layout.
   virtual void process_frame(const DepthFrame& frame, PointCloud& cloud) = 0;
 
  protected:
@@ -94,8 +97,8 @@ class DepthProcessor {
   DepthProcessor(const DepthProcessor&) = default;
   DepthProcessor& operator=(const DepthProcessor&) = delete;
 
-  // Of an organised cloud: its depth image is taken from the points. Holds until the next call. Throws
-  // std::invalid_argument.
+  // Returns the depth frame of an organised cloud, with depths computed from its points. It is valid until
+  // the next call. Throws std::invalid_argument if the cloud has no image layout or not the camera's size.
   DepthFrame frame_of(const PointCloud& cloud);
 
   const DepthPipelineSettings settings_;
@@ -104,10 +107,10 @@ class DepthProcessor {
   std::vector<double> depth_m_;
 };
 
-// Gives the cloud the columns x, y, z and the layout of an image of this camera, and no other ones. What
-// stands in the columns is for the caller to write.
+// Gives the cloud the columns x, y, z and the layout of an image of this camera, and removes all others. The
+// caller writes the values of the columns.
 void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const RigidTransform& X_WC);
-// Throws std::invalid_argument.
+// Throws std::invalid_argument if the depth image does not have the camera's size.
 void check_sizes(const DepthImage& depth, const CameraIntrinsics& camera);
 
 }  // namespace remote_touch

@@ -3,7 +3,7 @@
 namespace remote_touch {
 
 namespace {
-constexpr double kRounding_s = 1e-9;  // of differences of times
+constexpr double kRounding_s = 1e-9;  // rounding error of a time difference
 }
 
 Parameters parameters(SequenceStep& s) {
@@ -49,7 +49,7 @@ void FixtureSequence::set_buttons(std::uint32_t buttons) {
   down_ = buttons;
 }
 
-// One press is taken by one step.
+// True if the button was pressed in this tick. One press is used by one step only.
 bool FixtureSequence::takes_press(int button) {
   const std::uint32_t bit = std::uint32_t{1} << button;
   const bool pressed = (pressed_ & bit) != 0;

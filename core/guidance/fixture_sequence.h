@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// lock, unlock: enables, disables a forbidden region; activate, release: starts, stops a guidance fixture,
-// and activate also stops every other.
+// lock enables and unlock disables a forbidden region. activate starts a guidance fixture and stops every
+// other one; release stops it. wait does nothing.
 enum class FixtureAction { lock, unlock, activate, release, wait };
 enum class StepStart { previous, button };
 enum class StepEnd { immediately, reached, button };
@@ -22,18 +22,18 @@ enum class StepEnd { immediately, reached, button };
 // fixture's goal, or at a press of the button. A step that exceeds its deadline ends as missed.
 struct SequenceStep {
   FixtureAction action = FixtureAction::wait;
-  std::string fixture;  // its label; none for wait, unless its goal is to be reached
+  std::string fixture;  // label of the fixture; empty for wait, unless the step waits for its goal
   StepStart start = StepStart::previous;
   double not_before_s = 0;
   StepEnd done = StepEnd::immediately;
   int button = 0;
-  double deadline_s = 0;  // after the step began; 0: none
+  double deadline_s = 0;  // time limit from the beginning of the step; 0: none
   Vec3 offset_m{0, 0, 0};
 };
 
 Parameters parameters(SequenceStep& s);
 std::string validate(const SequenceStep& s);
-// "activate right": its action and its fixture, for people.
+// Returns the action and the fixture as text for people, such as "activate right".
 std::string name_of(const SequenceStep& s);
 
 class FixtureSequence {
@@ -42,10 +42,10 @@ class FixtureSequence {
 
   // The buttons that are down in this tick, one bit each. Call it once a tick, before begins() and ends().
   void set_buttons(std::uint32_t buttons);
-  // Whether the current step begins now.
+  // Begins the current step if its conditions hold. Returns true if it begins now.
   bool begins(double time_s);
-  // Whether the current step ends now, done or missed; if so, the next one becomes the current one. reached:
-  // the tool is at the step's goal.
+  // Ends the current step if it is done or missed. Returns true if it ends now; the next step is then the
+  // current one. reached: the tool is at the step's goal.
   bool ends(double time_s, bool reached);
 
   // Number of the current step, from 0; the number of steps once the last has ended.
@@ -53,7 +53,7 @@ class FixtureSequence {
   bool is_over() const { return current_ == static_cast<int>(steps_.size()); }
   const SequenceStep& step() const { return steps_[static_cast<std::size_t>(current_)]; }  // pre: not over
   bool is_running() const { return running_; }  // the current step has begun
-  int missed() const { return missed_; }        // steps so far
+  int missed() const { return missed_; }        // number of missed steps so far
   const std::vector<SequenceStep>& steps() const { return steps_; }
 
  private:

@@ -20,7 +20,7 @@ struct GuidanceSettings {
   double standoff_m = 0.1;
   Vec3 offset_m{0, 0, 0};
   int min_points = 20;
-  double hold_s = 0, fade_s = 0;  // of GuidancePresence; not in the dissertation
+  double hold_s = 0, fade_s = 0;  // times of GuidancePresence; not in the dissertation
   double stiffness_N_per_m = 200;
   double gyration_radius_m = 0.03;
   double max_force_N = 4;
@@ -31,15 +31,16 @@ struct GuidanceSettings {
 Parameters parameters(GuidanceSettings& s);
 std::string validate(const GuidanceSettings& s);
 
-// The goal pose of the tool, base frame. Orientation: rotation_deg (fixed), followed by the shortest rotation
-// that takes the approach axis against the normal of the target's plane (plane, if the target is flat).
-// Position: the target's mean, moved back by standoff_m along the approach axis, plus both offsets. None for
-// fewer points than min_points.
+// Returns the goal pose of the tool, base frame; empty if the target has fewer than min_points points.
+// Orientation: rotation_deg (fixed), followed by the shortest rotation that turns the approach axis against
+// the normal of the target's plane (plane, if the target is flat). Position: the target's mean, moved back by
+// standoff_m along the approach axis, plus both offsets.
 std::optional<ToolPose> guidance_goal(const GuidanceSettings& settings, const GuidanceTarget& target,
                                       const Vec3& more_offset_m = Vec3::Zero());
 
-// The wrench on the hand towards the goal, about the device's position, world frame; limited to max_force_N
-// and max_torque_Nm. stiffness_N_per_m: the fixture's own; negative: that of the settings.
+// Returns the wrench on the hand towards the goal, about the device's position, world frame; limited to
+// max_force_N and max_torque_Nm. stiffness_N_per_m: the fixture's own stiffness; if negative, that of the
+// settings is used.
 Wrench guidance_wrench(const GuidanceSettings& settings, double stiffness_N_per_m, const ToolPose& goal,
                        const ToolPose& device);
 

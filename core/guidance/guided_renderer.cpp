@@ -13,7 +13,7 @@ bool is_for(FixtureAction action, FixtureRole role) {
   return forbidden == (role == FixtureRole::forbidden);
 }
 
-// As it stands in a file.
+// Returns the name of the action as experiment files spell it.
 std::string action_name(SequenceStep step) {
   const Parameters all = parameters(step);
   const Choice& action = std::get<Choice>(all.front().value);
@@ -27,7 +27,7 @@ std::string labels_of(const std::vector<FixtureValues>& fixtures) {
   return text.empty() ? ", and none has one" : text;
 }
 
-// The first step that does something with a fixture.
+// Returns the first step that acts on the fixture, or steps.end().
 auto first_naming(const std::vector<SequenceStep>& steps, const std::string& label) {
   return std::find_if(steps.begin(), steps.end(), [&](const SequenceStep& s) {
     return s.action != FixtureAction::wait && !label.empty() && s.fixture == label;
@@ -115,7 +115,7 @@ void GuidedRenderer::on_frame(const Frame& frame) {
                                  frame.arrives_s);
 }
 
-// pre: there is one of that label.
+// Returns the index of the fixture with this label. pre: there is one.
 std::size_t GuidedRenderer::number_of(const std::string& label) const {
   return static_cast<std::size_t>(std::find(labels_.begin(), labels_.end(), label) - labels_.begin());
 }
@@ -141,7 +141,7 @@ void GuidedRenderer::act(const SequenceStep& step) {
   if (activates) guide->offset_m = step.offset_m;
 }
 
-// Whose goal the step waits for.
+// Returns the guide whose goal the step waits for; null if it waits for none.
 const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) const {
   if (step.done != StepEnd::reached) return nullptr;
   const std::size_t fixture = number_of(step.fixture);
@@ -155,7 +155,9 @@ std::optional<ToolPose> GuidedRenderer::goal(const Guide& guide, double time_s) 
   return target ? guidance_goal(settings_, *target, guide.offset_m) : std::nullopt;
 }
 
-// From the tool, not from the device: it is the tool that the robot follows. A proxy has no orientation.
+// Returns the distance and the angle that remain from the tool to the goal; empty if the goal or the tool's
+// position is not known. The tool counts, not the device, because the robot follows the tool. A proxy has no
+// orientation, so its angle is 0.
 std::optional<GuidedRenderer::Remaining> GuidedRenderer::remaining(const Guide& guide,
                                                                    const RenderOutput& out,
                                                                    double time_s) const {
@@ -182,7 +184,8 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
   }
 }
 
-// Without a device nothing pulls, and the force rises anew when it is back.
+// Adds the guidance wrench to the output. While there is no valid device pose, nothing pulls and the level of
+// the force falls; it rises from there when the device is back.
 void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
   for (Guide& guide : guides_) {
     const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;

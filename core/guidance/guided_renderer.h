@@ -23,9 +23,9 @@ std::string validate(const std::vector<FixtureValues>& fixtures, const std::vect
 
 class GuidedRenderer final : public Renderer {
  public:
-  // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment reads. A
-  // fixture starts disabled if the task first enables it, and the other way round; one that no step uses is
-  // enabled from the start. pre: validate(fixtures, steps) is empty.
+  // fixtures: all fixtures of the experiment, in order. switches: the switches that its FixtureAssignment
+  // reads. A fixture starts disabled if the first step that uses it enables it. Otherwise, and if no step
+  // uses it, it starts enabled. pre: validate(fixtures, steps) is empty.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);
@@ -39,13 +39,13 @@ class GuidedRenderer final : public Renderer {
 
  private:
   struct Guide {
-    std::size_t fixture;       // in the list
-    double stiffness_N_per_m;  // -1: that of the settings
+    std::size_t fixture;       // index in the list of fixtures
+    double stiffness_N_per_m;  // -1: stiffness of the settings
     double reached_m;
     bool active;
     GuidancePresence presence;
-    Vec3 offset_m = Vec3::Zero();  // of the step that activated it
-    // What the force pulls to, still while it falls: the goal and the strength of its rule.
+    Vec3 offset_m = Vec3::Zero();  // offset of the step that activated it
+    // The goal of the force and the strength of the rule. Both are kept while the force falls.
     ToolPose goal = {};
     double strength = 0;
   };

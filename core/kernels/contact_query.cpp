@@ -1,5 +1,5 @@
-// What the proxy sees: one pass over the points for its state, its normal and the stiffness. Written in
-// vectors, for compilers make poor ones of minima and of 64-bit integers.
+// Query of the points near the proxy: one pass computes its state, its normal and the stiffness. The code is
+// written in vectors, because compilers vectorise minima and 64-bit integers badly.
 #include <immintrin.h>
 
 #include <cstdint>
@@ -80,9 +80,9 @@ std::uint64_t total(const Bits& v) {
   return across<std::uint64_t>(v, [](std::uint64_t a, std::uint64_t b) { return a + b; });
 }
 
-// The sum of count terms t whose t + M were added up as bit patterns. Within M's binade these are integers
-// that count the grid's steps, so the sum is exact, its order does not matter, and each term is t rounded to
-// the grid.
+// Returns the sum of count terms t whose t + M were added up as bit patterns. Within M's binade these are
+// integers that count the grid's steps. So the sum is exact, its order does not matter, and each term is t
+// rounded to the grid.
 double exact_sum(const Bits& sums, std::size_t count, double grid) {
   const std::uint64_t exponent = bits(grid) & 0x7FF0000000000000u;
   const double step = __builtin_bit_cast(double, exponent - (std::uint64_t{52} << 52));
@@ -95,11 +95,11 @@ inline Lanes wendland(Lanes t) {
   return (q * q) * (q * q) * (4.0 * t + 1.0);
 }
 
-// Roots are taken seven vectors before they are used: a root and a division in one chain leave the divider
+// Roots are computed seven vectors before they are used: a root and a division in one chain leave the divider
 // idle.
 constexpr std::size_t kRing = 8, kAhead = 7;
 
-// Nearest point, normal (4.1) with weights (4.2), and the sums of (5.8).
+// Computes the nearest point, the normal (4.1) with weights (4.2), and the sums of (5.8).
 template <bool kRadius, bool kStiffness>
 ContactQuery query_columns(const PointsView& points, const double p[3], const ProxyRegions& regions) {
   const Lanes zero = {}, tiny = zero + 1e-150;
@@ -125,7 +125,7 @@ ContactQuery query_columns(const PointsView& points, const double p[3], const Pr
     if (v + kAhead < vectors) measure(v + kAhead);
     const Lanes dx = px - load(points.x + i), dy = py - load(points.y + i), dz = pz - load(points.z + i);
     const Lanes r = kRadius ? distance - load(points.radius + i) : distance;
-    // At r3 t is 1 up to rounding, and psi below 1e-60 is 0 on the grid.
+    // If r is r3, t is 1 up to rounding, and psi below 1e-60 is 0 on the grid.
     const Lanes psi = wendland((smaller(larger(r, r1), r3) - r1) * scale);
     const Lanes w = psi / larger(distance, tiny);  // a point at P itself adds 0 / 1e-150 = 0: skipped
     nearest = smaller(r, nearest);

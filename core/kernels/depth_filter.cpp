@@ -34,7 +34,7 @@ void filter_row(const RowBand& band, int row, bool only_weights, const PointPlan
   for (int u = -half; u < end; u += kFloats) {
     const std::ptrdiff_t here = row * in.stride + u;
     const Point p0 = point(in, here);
-    Floats sum = {}, total = Floats{} + 1.0f;  // of the point itself
+    Floats sum = {}, total = Floats{} + 1.0f;  // weight of the point itself
     const auto pair = [&](int below, int across) {
       const Point p = point(in, here + below * in.stride + across);
       const Floats dx = p.x - p0.x, dy = p.y - p0.y, dz = p.z - p0.z;

@@ -1,6 +1,6 @@
-// The depth pipeline, 6.2.1: from a depth image to points, the bilateral filter (7.1), (7.2), normals, and
-// into a cloud. Pixel (column, row) of a plane is plane[row * stride + column]; columns and rows count from
-// the requested region, so those of its border can be negative. No alignment is required.
+// The depth pipeline, 6.2.1: points of a depth image, the bilateral filter (7.1), (7.2), normals, and their
+// conversion into a cloud. Pixel (column, row) of a plane is plane[row * stride + column]; columns and rows
+// count from the requested region, so those of its border can be negative. No alignment is required.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@ struct PointPlanes {
 
 inline constexpr float kNowhere = 1e12f;
 
-// Of each pixel the plane that was fitted to its window: 1 / z = a i + b j + c at i columns and j rows from
-// the pixel; and the weighted mean square of how far the points of the window are from it, divided by their
-// depth. NaN where there is no plane. Null: not wanted.
+// The plane that was fitted to the window of each pixel: 1 / z = a i + b j + c at i columns and j rows from
+// the pixel. error: weighted mean square of the distances of the window's points from the plane, divided by
+// their depth. All are NaN where there is no plane. Null pointers: not wanted.
 struct FitPlanes {
   float* a = nullptr;
   float* b = nullptr;
@@ -35,8 +35,8 @@ struct PixelRays {
   const float* y;
 };
 
-// Requests rows first .. last - 1 and columns 0 .. width - 1. The planes go on for 2 half columns and rows on
-// every side of these, and for kMaxLanes more columns to the right.
+// Requests rows first .. last - 1 and columns 0 .. width - 1. The planes extend by 2 half columns and rows on
+// every side of these, and by kMaxLanes more columns to the right.
 struct RowBand {
   int first, last;
   int width;
@@ -57,11 +57,11 @@ constexpr std::size_t weight_buffer_size(int width, int half) {
   return static_cast<std::size_t>(half * (half + 3) / 2 * (2 * half + 1) * weight_stride(width, half));
 }
 
-// One row of a depth image: its rays, its depths in metres, and what the filter adds to them (null: no
+// One row of a depth image: its rays, its depths in metres, and the filter's changes to them (null: no
 // filter).
 struct PixelRow {
   int width;
-  const double* ray_x;  // as PixelRays, in double
+  const double* ray_x;  // the same as in PixelRays, in double
   double ray_y;
   const double* depth_m;
   const float* change;
@@ -78,40 +78,42 @@ struct CloudRow {
   double* nx;
   double* ny;
   double* nz;
-  std::uint8_t* valid;  // whether there is a point
+  std::uint8_t* valid;  // 1 if there is a point, else 0
 };
 
-// A point with its two neighbours is a plane only if the middle eigenvalue of their covariance is above this
-// fraction of the sum of all three: a strip a hundredth as wide as long has no normal. For the fit of the
-// inverse depth likewise the product of both eigenvalues of the pixels' covariance, as a fraction of their
-// sum squared.
+// A point and two neighbours form a plane only if the middle eigenvalue of their covariance is above this
+// fraction of the sum of all three: a strip a hundredth as wide as long has no normal. The fit of the inverse
+// depth compares the product of both eigenvalues of the pixels' covariance with this fraction of their
+// squared sum.
 inline constexpr float kThinnest = 1e-4f;
 
-// (7.2) takes squared distances in units of sigma_f^2 / (kFilterExponent / 2).
+// The unit of squared distances in (7.2) is sigma_f^2 / (kFilterExponent / 2).
 inline constexpr double kFilterExponent = 0.033102384734499175;
 
 struct DepthKernels {
-  // The points of one row in the camera frame, their z times scale.
+  // Computes the points of one row in the camera frame, multiplied by scale.
   void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
-  // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of
+  // (7.1), (7.2): writes the filter's change of the z of every pixel. Lengths are in units of
   // sigma_f / sqrt(kFilterExponent / 2).
   void (*filter_depth)(const RowBand&, const PointPlanes& points, float* change);
-  // Unit normals towards the sensor, NaN where there is no plane. Lengths are in units of the radius; step is
-  // (1 / fx, 1 / fy).
+  // Writes unit normals towards the sensor, NaN where there is no plane. Lengths are in units of the radius;
+  // step is (1 / fx, 1 / fy).
   void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
                         const PointPlanes& normals);
-  // The same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q. The fits have the
-  // stride of the normals.
+  // Writes the same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q. The fits have
+  // the stride of the normals.
   void (*inverse_depth_normals)(const RowBand&, const PointPlanes& points, const PixelRays&,
                                 const float step[2], const PointPlanes& normals, const FitPlanes& fits);
-  // One row: of its own fit and those of the 8 pixels `shift` columns or rows away each takes the normal
-  // whose plane errs least, with the pixel's own point counted as an error of its own; another than its own
-  // only if its error is a quarter at most. z: depths of the points, of the stride of the normals. The planes
-  // of normals and fits go on for `shift` columns and rows on every side, and for kMaxLanes more columns.
+  // Selects the normals of one row. The candidates of each pixel are its own fit and those of the 8 pixels
+  // `shift` columns or rows away. The one with the smallest error is used; the squared distance of the
+  // pixel's own point from the plane, divided by its depth, is added to the error. Another fit than its own
+  // is used only if its error is less than a quarter of the own one. z: depths of the points, of the stride
+  // of the normals. The planes of normals and fits extend by `shift` columns and rows on every side, and by
+  // kMaxLanes more columns.
   void (*sharp_normals)(int width, int shift, const float* z, const PointPlanes& normals,
                         const FitPlanes& fits, const PointPlanes& sharp);
-  // One row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points that
-  // the normals belong to.
+  // Writes one row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points
+  // that the normals belong to.
   void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);
   void (*normals_to_cloud)(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
                            const CloudRow&);

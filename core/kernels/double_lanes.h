@@ -19,7 +19,7 @@ constexpr int kDoubles = 4;
 constexpr int kDoubles = 2;
 #endif
 using Doubles __attribute__((vector_size(8 * kDoubles))) = double;
-using Flags __attribute__((vector_size(8 * kDoubles))) = long;  // of a comparison: all bits set, or none
+using Flags __attribute__((vector_size(8 * kDoubles))) = long;  // true: all bits of a lane set; false: none
 using Counts __attribute__((vector_size(4 * kDoubles))) = std::int32_t;
 
 inline Doubles all(double value) {
@@ -75,11 +75,11 @@ inline Doubles as_doubles(Counts a) {
 }
 #endif
 
-// A number that several are divided by. With fused multiplication and addition the quotient comes from the
-// rounded reciprocal and is the same as that of a division, bit for bit, in a third of its time: after the
-// first step it is within one place of the exact one, so that the next remainder is exact, and the second
-// step rounds to the nearest (Markstein 1990). pre: finite numbers, apart from lanes that are not used; no
-// quotient or remainder that is too small for all its places.
+// A divisor that is used several times. With fused multiplication and addition the quotient is computed from
+// the rounded reciprocal. It is the same as that of a division, bit for bit, in a third of its time: after
+// the first step it is within one unit in the last place of the exact one, so that the next remainder is
+// exact, and the second step rounds to the nearest (Markstein 1990). pre: finite numbers, apart from lanes
+// that are not used; no quotient or remainder that is subnormal.
 struct Divisor {
   Doubles value;
 #if defined(__FMA__)
@@ -103,7 +103,7 @@ inline Doubles operator/(Doubles a, const Divisor& by) {
   const Doubles rough = a * by.reciprocal;
   const Doubles near = fused(fused(-by.value, rough, a), by.reciprocal, rough);
   const Doubles quotient = fused(fused(-by.value, near, a), by.reciprocal, near);
-  return a == 0 ? a : quotient;  // with the sign of the zero
+  return a == 0 ? a : quotient;  // keeps the sign of the zero
 }
 #else
 inline Doubles operator/(Doubles a, const Divisor& by) {
@@ -128,7 +128,7 @@ class Packing {
   explicit Packing(Flags flags);
 
   std::size_t count() const { return static_cast<std::size_t>(__builtin_popcount(mask_)); }
-  // The lanes that are left out may be written behind the others: kDoubles numbers have to fit.
+  // Lanes that are not flagged may be written behind the others: p needs room for kDoubles numbers.
   void put(Doubles a, double* p) const;
 
  private:

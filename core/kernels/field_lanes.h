@@ -1,5 +1,5 @@
-// The trilinear distance field of a tool at several places at once, with the operations of sample_field() in
-// its order.
+// The trilinear distance field of a tool at several positions at once, with the operations of sample_field()
+// in its order.
 #pragma once
 
 #include "core/kernels/disk_search.h"
@@ -12,13 +12,13 @@ namespace {
 struct FieldLanes {
   Doubles distance;
   Doubles3 gradient_T;
-  Flags is_known;  // false outside the grid, where the other members are those of its nearest place
-  Counts cell;     // its number, the first coordinate running fastest
+  Flags is_known;  // false outside the grid, where the other members are those of the nearest position in it
+  Counts cell;     // index of the cell, the first coordinate running fastest
   Flags in_cell;   // false on the last planes of the grid, too
 };
 
 inline Doubles clamped(Doubles u, double cells) {
-  const Doubles above = u > 0 ? u : Doubles{};  // what is no number, to 0
+  const Doubles above = u > 0 ? u : Doubles{};  // NaN becomes 0
   return above < cells ? above : all(cells);
 }
 
@@ -83,13 +83,13 @@ inline FieldLanes sample(const PosedField& f, const Doubles3& p_T) {
           (in_u == u) & (in_v == v) & (in_w == w) & (u < f.cells[0]) & (v < f.cells[1]) & (w < f.cells[2])};
 }
 
-// From world axes into those of the tool.
+// Rotates a vector from world axes into those of the tool.
 inline Doubles3 rotated(const double (&R)[3][3], const Doubles3& a) {
   return {R[0][0] * a.x + (R[0][1] * a.y + R[0][2] * a.z), R[1][0] * a.x + (R[1][1] * a.y + R[1][2] * a.z),
           R[2][0] * a.x + (R[2][1] * a.y + R[2][2] * a.z)};
 }
 
-// Points in the tool frame, and the field there.
+// Points in the tool frame, and the field at them.
 struct PlacesInField {
   Doubles3 p_T;
   FieldLanes at;
@@ -101,7 +101,7 @@ inline PlacesInField places(const PointColumns& points, std::size_t i, const Pos
   return {p_T, sample(f, p_T)};
 }
 
-// A disk of points i .. in the tool frame: its normal, radius and slope of the field in its plane.
+// Disks of the points from i on, in the tool frame: normals, radii, and slopes of the field in their planes.
 struct DisksInField {
   Doubles3 n_T;
   Doubles radius, extent, slope, lower;  // slope: NaN without a normal
@@ -117,7 +117,7 @@ inline DisksInField disks_at(const PointColumns& points, std::size_t i, double f
           has_normal ? at.distance - radius * slope : at.distance};
 }
 
-// As cell_number() does it.
+// Does the same as cell_number() of contact_thinning.h.
 inline Flags cell_along(Doubles x, double per_m) {
   return (Flags)(x * per_m - kAlmostHalf + kRoundsToWhole) & 0xfffff;
 }
@@ -125,7 +125,7 @@ inline Flags cell_number(const Doubles3& p, double per_m) {
   return cell_along(p.x, per_m) << 40 | cell_along(p.y, per_m) << 20 | cell_along(p.z, per_m);
 }
 
-// As is_flat() of disk_contact.h; NaN is not.
+// Does the same as is_flat() of disk_contact.h; a NaN slope is not flat.
 inline Flags is_flat(Doubles slope, Doubles radius, Doubles extent) {
   return (slope < disk_search::kFlatSlope) & ((extent == 0) | (slope * radius < disk_search::kFlatDepth_m));
 }

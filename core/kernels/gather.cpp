@@ -1,8 +1,8 @@
-// Copies the points of a ball out of the runs that a neighbour search looks at. The comparison is the same on
-// every level, so the set is too. Copies of the arguments are kept, for the compiler would have to reread
-// them after each store. In the rows of an image window most points qualify: skipping the others costs more
-// in mispredicted branches than it saves. With radii the window is that of the largest region, and most do
-// not.
+// Copies the points of a ball out of the runs that a neighbour search visits. The comparison is the same on
+// every level, so the set is too. The functions copy their arguments, because the compiler would have to
+// reread them after each store. In the rows of an image window most points qualify, and skipping the others
+// costs more in mispredicted branches than it saves. With radii the window is that of the largest region, and
+// most points do not qualify.
 #include <immintrin.h>
 
 #include "core/kernels/gather_kernels.h"
@@ -64,7 +64,7 @@ std::size_t append_columns(PointRun run, const double centre[3], double reach, c
 
 #elif defined(__AVX2__)
 
-// For each set of survivors among four: where the survivors come from, as pairs of words and as words.
+// Source positions of the survivors for each set of survivors among four, as pairs of words and as words.
 struct Squeeze {
   alignas(32) std::int32_t pair[16][8];
   alignas(16) std::int32_t word[16][4];
@@ -135,7 +135,7 @@ std::size_t append_columns(PointRun run, const double centre[3], double reach, c
 
 #else
 
-// Every point is stored, and only a survivor moves the end on.
+// Stores every point; only a survivor advances the end.
 template <bool kIndexed, bool kExtra>
 std::size_t append_short(const PointRun& run, std::size_t start, const double centre[3], double reach,
                          const PointSink& sink, std::size_t n) {
@@ -157,7 +157,8 @@ std::size_t append_short(const PointRun& run, std::size_t start, const double ce
   return n;
 }
 
-// Distances first, in a loop the compiler turns into vectors, then the survivors, few among many.
+// Computes the distances first, in a loop that the compiler vectorises, then stores the survivors, few among
+// many.
 template <bool kIndexed, bool kExtra>
 std::size_t append_long(const PointRun& run, std::size_t start, const double centre[3], double reach,
                         const PointSink& sink, std::size_t n) {

@@ -22,7 +22,7 @@ namespace {
 constexpr Kernels kX86_64 = REMOTE_TOUCH_KERNELS("x86-64", x86_64);
 constexpr Kernels kX86_64v3 = REMOTE_TOUCH_KERNELS("x86-64-v3", x86_64_v3);
 constexpr Kernels kX86_64v4 = REMOTE_TOUCH_KERNELS("x86-64-v4", x86_64_v4);
-constexpr const Kernels* kLevels[] = {&kX86_64, &kX86_64v3, &kX86_64v4};  // as in Isa
+constexpr const Kernels* kLevels[] = {&kX86_64, &kX86_64v3, &kX86_64v4};  // same order as Isa
 
 }  // namespace
 

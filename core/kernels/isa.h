@@ -1,5 +1,5 @@
-// The levels of the kernels that the running machine has. A program may take kernels_for(best_isa()); which
-// one is the fastest is for a measurement to tell (runners/kernel_choice). All give the same bits.
+// The levels of the kernels that the running machine supports. A program may use kernels_for(best_isa());
+// only a measurement (runners/kernel_choice) shows which level is the fastest. All give the same bits.
 #pragma once
 
 #include <span>
@@ -11,9 +11,9 @@ namespace remote_touch {
 // x86-64 levels in rising order.
 enum class Isa { x86_64, x86_64_v3, x86_64_v4 };
 
-Isa best_isa();                   // the highest of the running machine
+Isa best_isa();                   // the highest level of the running machine
 const Kernels& kernels_for(Isa);  // pre: the machine has that level
-// Those of every level that the running machine has, in rising order.
+// Kernels of every level that the running machine supports, in rising order.
 std::span<const Kernels* const> supported_kernels();
 
 }  // namespace remote_touch

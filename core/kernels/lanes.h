@@ -1,4 +1,4 @@
-// How columns are padded: to whole groups of kLanes, which each x86-64 level reads in one or several vectors.
+// Padding of columns: to whole groups of kLanes, which each x86-64 level reads in one or several vectors.
 #pragma once
 
 #include <cstddef>

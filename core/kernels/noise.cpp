@@ -1,7 +1,7 @@
 // Gaussian noise: Philox4x32-10 (Salmon et al. 2011) and Box-Muller, with own elementary functions, because
-// those of the C library differ in the last bit between machines. Written in vectors of 64-bit lanes:
-// compilers make poor ones of 32-bit products. A word of the generator is the lower half of a lane; what the
-// upper half holds is not looked at before it is masked away.
+// those of the C library differ in the last bit between machines. The code is written in vectors of 64-bit
+// lanes, because compilers vectorise 32-bit products badly. A word of the generator is the lower half of a
+// lane; the upper half is masked away before it is used.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -52,8 +52,8 @@ inline unsigned signs(Part a) {
 constexpr std::size_t kNative = sizeof(Part) / 8;
 using NativeBits __attribute__((vector_size(sizeof(Part)))) = std::uint64_t;
 
-// Two of them side by side for the normals: the long chain of operations on one would leave the machine
-// waiting.
+// Two native vectors side by side for the normals: the long chain of operations on one would leave the
+// machine waiting.
 constexpr std::size_t kWidth = 2 * kNative;
 using Lanes __attribute__((vector_size(2 * sizeof(Part)))) = double;
 using Bits __attribute__((vector_size(2 * sizeof(Part)))) = std::uint64_t;
@@ -64,7 +64,7 @@ struct Parts {
 inline NativeBits product(NativeBits a, NativeBits b) {
   return (NativeBits)product((Part)a, (Part)b);
 }
-// Copied, not cast: g++ 12 makes better AVX2 code of it.
+// The vector is copied, not cast: g++ 12 makes better AVX2 code of it.
 template <class Vector>
 inline Parts split(const Vector& vector) {
   Parts parts;
@@ -99,7 +99,7 @@ constexpr Bits kNone = {};
 
 using Half __attribute__((vector_size(sizeof(Bits) / 2))) = std::uint32_t;
 
-// The first live of the words; zeros beyond.
+// Loads the first `live` words; the other lanes are 0.
 inline Bits load(const std::uint32_t* words, std::size_t live) {
   Half half = {};
   if (live == kWidth)
@@ -109,7 +109,7 @@ inline Bits load(const std::uint32_t* words, std::size_t live) {
   return __builtin_convertvector(half, Bits);
 }
 
-// Whole numbers below 2^51 in magnitude as doubles: they are the last digits of 1.5 * 2^52.
+// Converts whole numbers below 2^51 in magnitude to doubles: they are the last digits of 1.5 * 2^52.
 inline Lanes number(Bits whole) {
   return (Lanes)(whole + 0x4338000000000000u) - 0x1.8p52;
 }
@@ -150,7 +150,8 @@ struct SineCosine {
   Lanes sine, cosine;
 };
 
-// Of 2 pi k / 2^32: the nearest quarter turn, then Taylor series on [-pi/4, pi/4].
+// Sine and cosine of 2 pi k / 2^32: subtracts the nearest quarter turn, then uses Taylor series on
+// [-pi/4, pi/4].
 inline SineCosine sine_cosine(Bits k) {
   const Bits quarter = (k + 0x20000000u) >> 30;
   const Lanes a = number(k - (quarter << 30)) * (6.283185307179586 * 0x1p-32), a2 = a * a;
@@ -159,13 +160,13 @@ inline SineCosine sine_cosine(Bits k) {
   s = s * a2 - 1.0 / 5040.0, s = s * a2 + 1.0 / 120.0, s = s * a2 - 1.0 / 6.0, s = (s * a2 + 1.0) * a;
   c = c + 1.0 / 479001600.0, c = c * a2 - 1.0 / 3628800.0, c = c * a2 + 1.0 / 40320.0;
   c = c * a2 - 1.0 / 720.0, c = c * a2 + 1.0 / 24.0, c = c * a2 - 0.5, c = c * a2 + 1.0;
-  const Bits odd = kNone - (quarter & 1u);  // all ones where a quarter turn is left over
+  const Bits odd = kNone - (quarter & 1u);  // all ones where the quarter turns are odd
   const Bits sine_sign = (quarter & 2u) << 62, cosine_sign = ((quarter + 1u) & 2u) << 62;
   return {(Lanes)((Bits)choose(odd, c, s) ^ sine_sign), (Lanes)((Bits)choose(odd, s, c) ^ cosine_sign)};
 }
 
-// The upper bit of a lane is set where the words of one normal, of its radius and of its angle, do not allow
-// what is asked. A cosine is negative for angles from a quarter to three quarters of a turn.
+// The upper bit of a lane is set if the words of one normal, of its radius and of its angle, do not satisfy
+// the bounds. A cosine is negative for angles from a quarter to three quarters of a turn.
 inline NativeBits refused(NativeBits radius, NativeBits angle, NativeBits bounds) {
   const NativeBits negative = (angle + 0x40000000u) << 32;
   return ((bounds & kWord) - radius) | ((negative ^ (bounds << 1)) & bounds);

@@ -16,9 +16,9 @@ struct NoiseKernels {
   // Three standard normals for each of the points index[0..count), by Box and Muller.
   void (*normals)(const NoiseStream&, const std::uint32_t* index, std::size_t count, double* x, double* y,
                   double* z);
-  // Of the points first .. first + count - 1, in order, those whose random words allow the x normal to meet
-  // the bound x[i] and the z normal to meet z (word_bounds() in noise.h); a point that is not returned misses
-  // at least one of them. Returns how many; index has the capacity for count + kLanes.
+  // Selects from the points first .. first + count - 1, in order, those whose random words allow the x normal
+  // to meet the bound x[i] and the z normal to meet z (word_bounds() in noise.h). A point that is not
+  // selected misses at least one of them. Returns their number; index has the capacity for count + kLanes.
   std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
                             const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
 };

@@ -1,4 +1,4 @@
-// The points of a tracked patch. Places are rounded to a grid on which the sums are exact, so that neither
+// The points of a tracked patch. Positions are rounded to a grid on which the sums are exact, so that neither
 // the order of the points nor the number of lanes matters.
 #include "core/kernels/level.h"
 #include "core/kernels/patch_kernels.h"
@@ -11,7 +11,7 @@ inline double rounded(double x) {
   return (x + kRoundsToPatchGrid) - kRoundsToPatchGrid;
 }
 
-// Of sums of three, the last two first: as the vectors of the core add them.
+// Adds the last two of three terms first, in the order in which Eigen adds them in the core.
 inline double dot(const double a[3], double x, double y, double z) {
   return a[0] * x + (a[1] * y + a[2] * z);
 }
@@ -22,8 +22,8 @@ inline double square(double x) {
 
 }  // namespace
 
-// Places first, in a loop that the compiler turns into vectors; then every one is stored, and only those of
-// the region move the end on.
+// Computes the positions first, in a loop that the compiler vectorises. Then it stores every point; only
+// points of the region advance the end.
 std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, const PatchColumns& to) {
   constexpr std::size_t kChunk = 64;
   double u[kChunk], v[kChunk], h[kChunk];
@@ -53,7 +53,7 @@ std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, con
   return n;
 }
 
-// The cells first, then what lies at their corners.
+// Computes the cells first, then interpolates the heights at their corners.
 void heights_above(const PatchColumns& places, std::size_t total, const HeightGrid& grid, double* above) {
   constexpr std::size_t kChunk = 64;
   double along[kChunk], across[kChunk];

@@ -1,5 +1,5 @@
-// Normals, 6.2.1: the plane of weighted total least squares through the neighbours of a pixel, for 16, 8 or 4
-// pixels of a row at a time.
+// Normals, 6.2.1: the plane of weighted total least squares through the neighbours of a pixel. The kernel
+// computes 16, 8 or 4 pixels of a row at a time.
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/float_lanes.h"
 #include "core/kernels/level.h"
@@ -8,14 +8,14 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// Neighbour (i, j) columns and rows away has, relative to the centre's point, the sheared coordinates
-// (i z / fx, j z / fy, dz): with rays a that is p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So sums
-// of w dz^n i^a j^b give every moment, and i, j are numbers instead of columns to load and multiply with.
+// The neighbour (i, j) columns and rows away has, relative to the centre's point, the sheared coordinates
+// (i z / fx, j z / fy, dz): with rays a, p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So sums of
+// w dz^n i^a j^b give every moment, and i, j are numbers instead of columns to load and multiply with.
 struct Sums {
   Floats one = {}, i = {}, j = {}, ii = {}, ij = {}, jj = {};
 };
 
-// Of one row of the window.
+// Sums over one row of the window.
 struct RowSums {
   Floats one = {}, i = {}, ii = {};
 
@@ -93,12 +93,13 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
   const Floats away = n.x * ray_x + n.y * ray_y + n.z;
   const Floats factor = (away > Floats{} ? Floats{} - 1.0f : Floats{} + 1.0f) / length;
   const auto plane = (z < Floats{} + 0.5f * kNowhere) & (c1 > Floats{} + kThinnest);
-  // One NaN for all: which of two a product keeps is up to the compiler.
+  // The same NaN for all: the compiler chooses which of two NaNs a product keeps.
   const Floats none = Floats{} + __builtin_nanf("");
   return {plane ? n.x * factor : none, plane ? n.y * factor : none, plane ? n.z * factor : none};
 }
 
-// kTaps: pixels of the window that are used on each side of its centre, or 0 where that is not known.
+// kTaps: pixels of the window that are used on each side of its centre, or 0 if their number is not a
+// constant.
 template <int kTaps, int kStep>
 void normals_of_row(const RowBand& band, int row, bool only_weights, const PointPlanes in,
                     const PixelRays& rays, const float step[2], const PointPlanes out) {

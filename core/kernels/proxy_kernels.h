@@ -1,16 +1,16 @@
-// What the proxy needs from the points near it: its state, normal and stiffness, and its step sizes.
-// Positions and radii in m, directions of unit length.
+// Queries of the points near the proxy: its state, normal and stiffness, and its step sizes. Positions and
+// radii are in m, directions have unit length.
 #pragma once
 
 #include "core/kernels/points_view.h"
 
 namespace remote_touch {
 
-// The radii that define the proxy's regions, Fig 4.2, and what the sums over the points need.
+// The radii that define the proxy's regions, Fig 4.2, and the constants of the sums over the points.
 struct ProxyRegions {
   double r1, r2, r3;
   double sum_grid;   // M of kernels.h, at least 1.5 * the number of points, a power of two times 1.5
-  double stiffness;  // for points without their own, N/m
+  double stiffness;  // stiffness of points without their own, N/m
 };
 
 // Local statistics of the points around a proxy position. r_n = |P - x| - r_f, (5.5).

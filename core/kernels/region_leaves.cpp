@@ -1,6 +1,7 @@
-// One leaf of a tool against a patch of forbidden regions, 7.4.1, and which of the pairs found matter. Groups
-// of regions whose boxes are too far away are passed over, and pairs that are far apart sorted out without a
-// root; what is left is written close together, so that roots and divisions are taken for it alone.
+// Detection between one leaf of a tool and a patch of forbidden regions, 7.4.1, and selection of the pairs
+// that matter. Groups of regions whose boxes are too far away are skipped, and pairs that are far apart are
+// rejected without a root. The remaining pairs are stored close together, so that roots and divisions are
+// computed for them alone.
 #include <immintrin.h>
 #include <math.h>
 
@@ -11,19 +12,20 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-12;  // no pair within the margin is sorted out by the rounding of squares
+constexpr double kRounding = 1 + 1e-12;  // rounding of squares never rejects a pair within the margin
 
-// One in so many has to be gone before the others close up: that takes time, later passes take less.
+// The remaining regions move together once one in so many has been removed: that costs time, but saves it in
+// later passes.
 constexpr std::size_t kCloseUp = 8;
 
 inline std::size_t in_whole_groups(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-// boxes_near() tells of kWidth groups which can hold a region that sort_group() would leave: each of its
-// terms is rounded from one that is no larger, and its reach is no smaller. sort_group() leaves numbers of
-// the regions of a group that may be near, the ways from their centres in the columns of the normal, and
-// their radii in that of the gap.
+// boxes_near() returns which of kWidth groups can hold a region that sort_group() would keep: each of its
+// terms is rounded from one that is no larger, and its reach is no smaller. sort_group() stores the numbers
+// of those regions of a group that may be near, the vectors from their centres in the columns of the normal,
+// and their radii in the column of the gap.
 #if defined(__AVX512F__)
 
 constexpr std::size_t kWidth = 8;
@@ -32,7 +34,7 @@ inline unsigned equal(const double* p, double value) {
 }
 
 struct Leaf {
-  __m512d x, y, z, own;  // own: its radius and the margin
+  __m512d x, y, z, own;  // own: radius of the leaf plus the margin
 
   Leaf(const double leaf[4], double margin)
       : x(_mm512_set1_pd(leaf[0])),
@@ -111,7 +113,7 @@ inline unsigned equal(const double* p, double value) {
 }
 
 struct Leaf {
-  Lanes x, y, z, own;  // own: its radius and the margin
+  Lanes x, y, z, own;  // own: radius of the leaf plus the margin
 
   Leaf(const double leaf[4], double margin)
       : x(Lanes{} + leaf[0]), y(Lanes{} + leaf[1]), z(Lanes{} + leaf[2]), own(Lanes{} + (leaf[3] + margin)) {}
@@ -157,7 +159,8 @@ std::size_t sort_out(const SphereRun& run, const double columns[4], double margi
   return n;
 }
 
-// From ways and radii to unit normals and gaps, in whole groups: what lies beyond the last is not read.
+// Converts vectors and radii to unit normals and gaps, in whole groups. Values beyond the last are never
+// read.
 void measure(double leaf_radius, const NearRegions& near, std::size_t from, std::size_t to) {
   const std::size_t end = from + in_whole_groups(to - from);
   for (std::size_t group = from; group < end; group += kLanes)
@@ -174,8 +177,8 @@ void measure(double leaf_radius, const NearRegions& near, std::size_t from, std:
     }
 }
 
-// Those with gaps above the margin go, and the others close up, with or without their numbers; of those whose
-// gaps turned out to be so most often there are none. What is written lies never behind what was read.
+// Removes the regions whose gaps are above the margin and moves the others together, with or without their
+// numbers. Most often none is removed. The write position never passes the read position.
 #if defined(__AVX512F__)
 
 template <bool kNumbers>
@@ -223,8 +226,9 @@ std::size_t within_margin(const NearRegions& near, double margin, std::size_t fr
 
 #endif
 
-// The first of those with the least gap; pre: there is one. Whether there is must not be asked of the least
-// gap: of no numbers an OpenMP minimum may be the largest finite one, as clang++ has it, instead of infinite.
+// Returns the first index with the least gap; pre: there is one. The caller must not derive this from the
+// least gap: if no gap is finite, an OpenMP minimum may be the largest finite number instead of infinity, as
+// with clang++.
 std::size_t deepest(const double* gap, double min) {
   std::size_t at = 0;
   unsigned same = equal(gap, min);
@@ -236,11 +240,12 @@ struct Kept {
   double nx, ny, nz, gap, twice_motion_squared, alike;
 };
 struct Left {
-  double min;  // gap
+  double min;  // least gap
   std::size_t count;
 };
 
-// Those that one stands for and those above most get infinite gaps.
+// Sets the gaps of the regions that `by` makes redundant, and all gaps above max, to infinity. Returns the
+// least remaining gap and the number of remaining regions.
 #if defined(__AVX512F__)
 
 Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {

@@ -1,5 +1,5 @@
-// The contacts of disks, for many disks at once: the operations of disk_contact.cpp in their order, where
-// they are explained.
+// The contacts of many disks at once. The operations are those of disk_contact.cpp, in their order, and are
+// explained there.
 #include "core/kernels/disk_search.h"
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
@@ -33,8 +33,7 @@ struct ContactLanes {
   Doubles depth, side;
 };
 
-// Numbers of disks for all lanes: the last ones of a list that is no multiple of their number repeat its last
-// disk.
+// Numbers of disks for all lanes. If a list does not fill its last vector, its last disk is repeated.
 struct Numbers {
   std::uint32_t at[kDoubles];
 
@@ -92,7 +91,7 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
           flags ? a.slope : b.slope};
 }
 
-// One line of those lanes that are `active`. Returns where it went anywhere and did not end at the rim.
+// Searches one line in the lanes that are `active`. Returns the lanes that moved and did not end at the rim.
 Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
   const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
@@ -141,7 +140,7 @@ inline Flags leaves(const PosedField& field, const DiskLanes& disk, PlaceLanes& 
   return beyond.distance - place.at.distance > 0.5 * kStep_m;
 }
 
-// depth is NaN where the search has left the grid.
+// depth is NaN if the search left the grid.
 ContactLanes near_contacts(const PosedField& field, const DiskLanes& disk, double known_side) {
   PlaceLanes place{disk.p_T, disk.at, Flags{}, ~Flags{}};
   Flags active = disk.has_normal & (disk.radius > 0);
@@ -168,7 +167,7 @@ ContactLanes near_contacts(const PosedField& field, const DiskLanes& disk, doubl
   return {place.p_T, out, place.is_known ? -place.at.distance : all(__builtin_nan("")), side};
 }
 
-// Of the disks number[from[0]], number[from[1]] ..; contacts have the places from[0], from[1] .. themselves.
+// Stores the contacts of one vector: lane k is the contact out[from[k]].
 void put(const ContactLanes& contacts, const std::uint32_t* from, std::size_t count, ContactNumbers* out) {
   double column[8][kDoubles];
   const Doubles three[2][3] = {{contacts.p_T.x, contacts.p_T.y, contacts.p_T.z},
@@ -187,7 +186,7 @@ void put(const ContactLanes& contacts, const std::uint32_t* from, std::size_t co
 void disk_contacts(const DiskColumns& disks, const std::uint32_t* number, std::size_t count,
                    const PosedField& field, double search_m, double known_side, ContactNumbers* out) {
   constexpr std::size_t kChunk = 512;
-  // Disks that are flat in the field are together, since none of them is searched.
+  // Disks that are flat in the field are grouped together, since none of them is searched.
   enum Kind { kFar, kFlat, kSteep, kKinds };
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t size = count - first < kChunk ? count - first : kChunk;

@@ -1,5 +1,6 @@
-// Which points lie in cells of a tool that are worth a look, 6.2.2: into the cells' frame, and a lookup. The
-// operations of the transform come in the same order on every level, so the cell of a point is the same too.
+// Detection of points in those cells of a tool that matter, 6.2.2: each point is transformed into the cells'
+// frame and its cell is looked up. The operations of the transform come in the same order on every level, so
+// the cell of a point is the same too.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -11,8 +12,8 @@ namespace {
 
 #if defined(__AVX512F__)
 
-// A coordinate of eight points in cells, rounded towards zero; what is no number, or far off, becomes a
-// negative one.
+// A coordinate of eight points in cells, rounded towards zero; NaN, or a value far off, becomes a negative
+// one.
 inline __m256i coordinate(const double row[4], __m512d x, __m512d y, __m512d z) {
   const __m512d along = _mm512_add_pd(
       _mm512_add_pd(_mm512_mul_pd(_mm512_set1_pd(row[0]), x), _mm512_mul_pd(_mm512_set1_pd(row[1]), y)),
@@ -75,7 +76,8 @@ inline void store_coordinate(const double row[4], const double* x, const double*
 }
 #endif
 
-// Coordinates of eight points in vectors, then the lookups one by one: few points are inside the grid.
+// Computes the coordinates of eight points in vectors, then looks up the cells one by one: few points are
+// inside the grid.
 std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
                  std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
                  std::uint32_t* found) {

@@ -1,6 +1,6 @@
-// Which groups of points are worth a look at each of them, 6.2.2: by the distance of their bounding spheres
-// from the tool. Outside the grid that is the distance to its box, or that of its nearest cell less the way
-// there.
+// Detection of the groups of points that can be near a tool, 6.2.2, by the distance of their bounding spheres
+// from the tool. Outside the grid two lower bounds of it are used: the distance to the grid's box, and the
+// distance of the nearest cell less the way there.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -12,7 +12,8 @@ namespace {
 
 #if defined(__AVX512F__)
 
-// A coordinate of eight centres in cells, moved into the grid (no number: to 0), and by how far.
+// A coordinate of eight centres in cells, moved into the grid (NaN becomes 0), and the distance by which it
+// moved.
 struct Along {
   __m256i cell;
   __m512d away;
@@ -73,7 +74,7 @@ inline double along(const double row[4], double x, double y, double z) {
   return row[0] * x + row[1] * y + row[2] * z + row[3];
 }
 
-// Into the grid; what is no number, to 0.
+// Moves a coordinate into the grid; NaN becomes 0.
 inline double clamped(double u, double cells) {
   const double above = u > 0 ? u : 0;
   return above < cells ? above : cells;
@@ -83,7 +84,7 @@ inline double magnitude(double x) {
   return x < 0 ? -x : x;
 }
 
-// The same in doubles first, eight at a time, then the lookups one by one.
+// The same in doubles: computes eight coordinates at a time, then looks up the cells one by one.
 std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
                  const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
                  std::uint32_t* found) {

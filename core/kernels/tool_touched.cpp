@@ -1,6 +1,6 @@
-// What of a cloud a tool touches, 6.2.2, every point counted: the voxels that its points lie in, and the
-// distance of those that lie in none. The operations are those of voxel_tool.cpp and disk_contact.cpp, in
-// their order.
+// The points of a cloud that a tool touches, 6.2.2, every point counted: the voxels that points lie in, and
+// the distances of points that lie in none. The operations are those of voxel_tool.cpp and disk_contact.cpp,
+// in their order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 
@@ -8,9 +8,9 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-constexpr long kInterior = 2;  // as in Voxel
+constexpr long kInterior = 2;  // the value of Voxel::interior
 
-// Voxels of cells, one by one.
+// Looks up the voxels of cells, one by one.
 inline Flags voxels_at(const CellTable& table, Counts cell) {
   Flags voxels;
   for (int lane = 0; lane < kDoubles; ++lane)
@@ -18,7 +18,7 @@ inline Flags voxels_at(const CellTable& table, Counts cell) {
   return voxels;
 }
 
-// Whether the disks of points can come as near as `touch`: in the plane of a normal n the field is no steeper
+// True for lanes whose disks can come as near as `touch`: in the plane of a normal n the field is no steeper
 // than its gradient times the larger of 1 and |1 - n.n|.
 inline Flags can_touch(const PointColumns& points, std::size_t i, double fraction, const TouchLimits& limits,
                        Doubles distance) {
@@ -26,14 +26,14 @@ inline Flags can_touch(const PointColumns& points, std::size_t i, double fractio
   const Doubles3 n{load(points.nx + i), load(points.ny + i), load(points.nz + i)};
   const Doubles off = magnitude(1 - dot(n, n)), steep = off < 1 ? all(1) : off;
   const Doubles radius = fraction * load(points.spacing + i) + load(points.extent + i);
-  return ~(distance > limits.touch + kRounding * limits.slope * (steep * radius));  // without a normal, too
+  return ~(distance > limits.touch + kRounding * limits.slope * (steep * radius));  // true without a normal
 }
 
 class Summary {
  public:
   explicit Summary(TouchedSummary& out) : out_(out) {}
 
-  // Lanes of points first .. and the cells of the clusters that they are in.
+  // Counts the touched lanes and stores the numbers of their clusters.
   void add(Flags touched, Flags cluster) {
     const Packing all(touched);
     if (all.count() == 0) return;

@@ -8,8 +8,8 @@ namespace remote_touch {
 
 namespace {
 
-// How many bytes the character at a place has, 0 where there is none (RFC 3629: no surrogates, none longer
-// than it needs to be).
+// Returns the number of bytes of the character at a position, 0 if the bytes there are not valid UTF-8 (RFC
+// 3629: no surrogates, no encoding longer than necessary).
 std::size_t character_at(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> std::uint32_t {
     return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0;
@@ -30,20 +30,21 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
-// The place of a character in UTF-8 that is not beyond this one.
+// Returns the position at which the UTF-8 character begins that contains byte `at`.
 std::size_t character_before(const std::string& line, std::size_t at) {
   while (at > 0 && (static_cast<unsigned char>(line[at]) & 0xC0) == 0x80) --at;
   return at;
 }
 
-// The first and the last bytes of a text with "..." between them, without a cut through a character.
+// Returns the first and the last bytes of a text with "..." between them. No character is cut.
 std::string ends_of(const std::string& text, std::size_t first_bytes, std::size_t last_bytes) {
   const std::size_t first = character_before(text, first_bytes);
   const std::size_t last = character_before(text, text.size() - last_bytes);
   return text.substr(0, first) + "..." + text.substr(last);
 }
 
-// A number of many digits, or a key without end, is not worth its line. File names are shorter, but for few.
+// Shortens words: a number with many digits, or an endless key, is not worth its line. Few file names are
+// longer than the limit.
 std::string with_short_words(const std::string& line) {
   constexpr std::size_t kMaxWord = 400, kBegin = 200, kEnd = 100;
   std::string shorter;
@@ -55,8 +56,8 @@ std::string with_short_words(const std::string& line) {
   return shorter;
 }
 
-// The limit leaves room for two long paths and a list of all names that are expected: these lists have up to
-// 300 bytes. Subject and problem begin the line, and what is expected ends it.
+// The limit leaves room for two long paths and a list of all expected names: these lists have up to 300
+// bytes. The line begins with subject and problem, and ends with what is expected.
 std::string with_short_middle(const std::string& line) {
   constexpr std::size_t kMaxLine = 1000, kBegin = 500, kEnd = 490;
   return line.size() <= kMaxLine ? line : ends_of(line, kBegin, kEnd);

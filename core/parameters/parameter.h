@@ -26,7 +26,7 @@ struct Rows {
 };
 
 struct Parameter {
-  std::string name;  // with the unit as suffix, as written in a file
+  std::string name;  // name in a file, with the unit as suffix
   std::variant<double*, int*, std::uint64_t*, bool*, std::string*, Vec3*, Choice, Rows> value;
   double low = 0;  // allowed range of a number, ends included
   double high = 0;
@@ -38,7 +38,7 @@ using Parameters = std::vector<Parameter>;
 
 inline constexpr bool kLive = true;
 
-// Those of a list that may change during a run.
+// Returns the parameters of a list that may change during a run.
 inline Parameters live_ones(Parameters list) {
   std::erase_if(list, [](const Parameter& parameter) { return !parameter.is_live; });
   return list;

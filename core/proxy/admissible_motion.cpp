@@ -9,13 +9,13 @@ namespace remote_touch {
 
 namespace {
 
-// A motion is in the way of a normal when it goes against it by more than the rounding of unit vectors.
+// A motion violates a normal if it goes against it by more than the rounding of unit vectors.
 constexpr double kRounding = 1e-12;
-// Every round ends farther from u than the one before, so there is an end; rounding might not know.
+// Every round ends farther from u than the one before, so the rounds end. The limit guards against rounding.
 constexpr int kMaxRounds = 100;
 
-// By coordinates: what is chosen among equals must not depend on the order of the points. By their magnitudes
-// first, for left and right are alike.
+// Orders normals by their coordinates, so that the choice among equal ones does not depend on the order of
+// the points. Magnitudes are compared first, because left and right are alike.
 bool comes_before(const Vec3& a, const Vec3& b) {
   const Vec3 size_a = a.cwiseAbs(), size_b = b.cwiseAbs();
   if (size_a != size_b)
@@ -32,13 +32,13 @@ struct Barriers {
   void add(const Vec3& n) { normal[count++] = n; }
 };
 
-// v less its part along the direction of by.
+// Returns v without its component along `by`.
 Vec3 less(const Vec3& v, const Vec3& by) {
   return v - (v.dot(by) / by.squaredNorm()) * by;
 }
 
-// Finds the touching region that s goes against most; false when there is none. Nothing is stored, for a
-// proxy may touch very many.
+// Finds the normal of the touching region that s goes against most. Returns false if there is none. The
+// regions are not stored, because a proxy may touch very many.
 bool max_obstacles(const PointsView& points, const Vec3& p_W, double r2, const Vec3& s, double slack,
                    Vec3& normal) {
   double min = -slack;
@@ -55,7 +55,8 @@ bool max_obstacles(const PointsView& points, const Vec3& p_W, double r2, const V
   return found;
 }
 
-// The projection of u onto what up to three barriers allow, which are then those that it lies on.
+// Projects u onto the motions that up to three barriers allow. onto() keeps only the barriers that the result
+// lies on.
 class Projection {
  public:
   Projection(const Vec3& u, double slack) : u_(u), slack_(slack) {}
@@ -83,8 +84,9 @@ class Projection {
     one.add(a);
     offer(all, u_ - u_.dot(a) * a, one, best);
   }
-  // The sum and the difference of the normals span what is left out, the same bits whichever comes first. The
-  // shorter of them, which tells least of its direction, is put right by the longer.
+  // The sum and the difference of the two normals span the directions that are removed, with the same bits
+  // whichever normal comes first. The shorter of the two has the less accurate direction, so its component
+  // along the longer one is removed.
   void on_line(const Barriers& all, std::size_t i, std::size_t j, Best& best) const {
     const Vec3 &a = all.normal[i], &b = all.normal[j];
     Vec3 longer = a + b, shorter = a - b;
@@ -120,7 +122,7 @@ bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_
   return false;
 }
 
-// The dual method: the region most in the way joins those that hold the motion, until none is.
+// Uses the dual method: the most violated region is added to the barriers until no region is violated.
 Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2) {
   const double slack = kRounding * u.norm();
   const Projection projection(u, slack);

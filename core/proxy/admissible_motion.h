@@ -7,14 +7,14 @@
 
 namespace remote_touch {
 
-// The motion nearest to u among those that enter no region within r2 of p: the projection of u onto the cone
-// of all s with n_i . s >= 0, n_i = (p - x_i) / |p - x_i|. It is u itself if no region is in the way, and
-// zero in a corner that holds p from all sides. A point at p itself is skipped.
+// Returns the motion nearest to u among those that enter no region within r2 of p: the projection of u onto
+// the cone of all s with n_i . s >= 0, n_i = (p - x_i) / |p - x_i|. It is u itself if no region is in the
+// way, and zero in a corner that holds p from all sides. A point at p itself is skipped.
 Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2);
 
-// Whether the mean normal says little of what p touches: the direction away from a region within r2 of p is
-// off the unit vector normal_W by an angle of more than this cosine, as in a crease. Between the points of a
-// flat surface it is so, too, where they are far apart.
+// True if the unit vector normal_W, the mean normal, is not reliable, as in a crease: the direction away from
+// a region within r2 of p deviates from it by more than the angle of this cosine. This is also true between
+// the points of a flat surface, if they are far apart.
 bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_W, double r2, double cosine);
 
 }  // namespace remote_touch

@@ -8,13 +8,14 @@
 namespace remote_touch {
 
 enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
-enum class FreeRoot { ahead, smallest_magnitude };  // of (4.9); the second is the printed text
-// (4.6), (5.16); every touching region by itself; or the second in creases and the first elsewhere.
+enum class FreeRoot { ahead, smallest_magnitude };  // root of (4.9); the second is the printed text
+// tangent_plane: (4.6), (5.16). regions: every touching region by itself. creases: regions in creases,
+// tangent_plane elsewhere.
 enum class ContactRule { tangent_plane, regions, creases };
-enum class ExitRule { towards_hip, out_of_contact };  // in contact with the HIP outside: (4.7) or (5.17)
+enum class ExitRule { towards_hip, out_of_contact };  // step in contact with the HIP outside: (4.7) or (5.17)
 enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
-enum class DampingSign { plus, minus };  // of the k_d term inside the bracket of (4.16); minus is printed
-enum class ForceGate { latest_contact, contact_now };  // when (4.16) is sent; the second is printed
+enum class DampingSign { plus, minus };  // sign of the k_d term in the bracket of (4.16); minus is printed
+enum class ForceGate { latest_contact, contact_now };  // condition for sending (4.16); the second is printed
 enum class SlaveCommand { proxy, hip };  // a hard constraint on the slave robot, or a soft one, 5.2
 
 struct ProxyParameters {
@@ -49,8 +50,7 @@ struct ProxyParameters {
 Parameters parameters(ProxyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ProxyParameters& p);
-// The same list where the radii r1, r2 and r3 may not change during a run: for methods that derive lengths
-// from them.
+// Returns the list with r1, r2 and r3 fixed during a run, for methods that derive lengths from these radii.
 Parameters with_fixed_radii(Parameters list);
 // Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {

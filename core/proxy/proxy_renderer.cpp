@@ -12,7 +12,7 @@
 namespace remote_touch {
 
 namespace {
-// A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
+// A HIP farther away than this cannot be a hand's, and squares of its distances would be too inaccurate.
 constexpr double kMaxHipDistance_m = 1e6;
 }  // namespace
 
@@ -24,7 +24,7 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
       velocity_(parameters.max_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
 
-// Whether the frame is newer than all before.
+// Stores the frame and returns true if it is newer than all before.
 bool ProxyRenderer::take(const Frame& frame) {
   if (!order_.take(frame)) return false;
   replace_points(frame.points);
@@ -38,7 +38,7 @@ void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points
   is_clear_ = false;
 }
 
-// r_f of the region that the proxy touches, if growth is to be told from motion.
+// Returns r_f of the region that the proxy touches. Empty without contact, or if growth counts as motion.
 std::optional<double> ProxyRenderer::felt_radius_m() {
   if (p_.growth_is_motion || !in_contact_) return {};
   return nearest_region_radius_m(near_.around(proxy_W_).view(), proxy_W_);
@@ -72,7 +72,8 @@ void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
   has_local_query_ = false;
 }
 
-// Without the estimate the surface is taken to be at rest, in (4.15) too; switched on again, it starts anew.
+// The surface counts as at rest while the estimate is off, in (4.15) too. The estimate starts anew when it is
+// switched on again.
 void ProxyRenderer::parameters_changed() {
   set_radii(p_.r1_m, p_.r2_m, p_.r3_m);
   is_clear_ = false;
@@ -91,7 +92,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   out.frame_index = order_.newest();
   out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
   if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
-    // Hold still and let go: a force from a lost position would be a guess.
+    // The proxy rests and the force is zero: a force from an unknown position would be a guess.
     coupling_.release();
     out.status = RenderStatus::device_not_finite;
     return out;
@@ -114,7 +115,8 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   return out;
 }
 
-// State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it; kept while it rests.
+// Returns the state (4.2.1) and the normal (4.1) at the proxy, from one pass over the points around it. The
+// result is kept while the proxy rests.
 const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
   if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
   local_query_.points = near_.around(proxy_W_).view();
@@ -155,7 +157,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
     velocity_.on_step(s);  // (4.13)
     const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
     if (here.state == ContactState::free && moved == hip_W)
-      in_contact_ = false;  // nothing holds the proxy back
+      in_contact_ = false;  // the proxy is free and nothing holds it back
     const bool settled = moved == proxy_W_;
     proxy_W_ = moved;
     if (settled || k == p_.steps_per_tick) {
@@ -166,10 +168,10 @@ int ProxyRenderer::move(const Vec3& hip_W) {
   return 0;
 }
 
-// Beyond the dissertation: where regions overlap the way out of one may end in another, and the budget of
-// steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
-// back to where it was outside; after a frame that leaves no such place it goes out along a straight line.
-// Returns the number of steps.
+// Moves an entrenched proxy out of overlapping regions, where the way out of one region may end in another,
+// and so may the budget of steps. Not in the dissertation. First up to max_exit_steps more steps of (5.11)
+// are made. If the proxy is still entrenched, it returns to its last position outside all regions. If a frame
+// has made that position invalid, it leaves along a straight line. Returns the number of steps.
 int ProxyRenderer::close(const Vec3& hip_W) {
   if (p_.max_exit_steps == 0) return 0;
   int steps = 0;
@@ -182,12 +184,12 @@ int ProxyRenderer::close(const Vec3& hip_W) {
     proxy_W_ = clear_W_;
   else if (const auto exit_W = straight_exit(near_, kernels_, proxy_W_, normal_W_, hip_W - proxy_W_, p_))
     proxy_W_ = *exit_W;
-  has_local_query_ = false;  // the search may have replaced the list that it is from
+  has_local_query_ = false;  // the search may have replaced the list of neighbours of the query
   return steps;
 }
 
-// Whether touching regions hold the proxy each by itself, where it is. It takes a clearer sight of one
-// surface alone to leave a crease than to meet one, or the rules would take turns.
+// True if touching regions hold the proxy each by itself. A crease is entered at a larger angle than it is
+// left, or the two rules would alternate.
 bool ProxyRenderer::takes_regions(const LocalQuery& here) {
   if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
   constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
@@ -210,7 +212,8 @@ Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
   return region_step(near_, proxy_W_, goal, u, p_);
 }
 
-// The output describes the position that the tick ends in; the state of the method is not touched.
+// Fills in the output for the position at the end of the tick. Also updates clear_W_ and, through
+// takes_regions(), in_crease_.
 void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   const LocalQuery& here = local_query();
   out.proxy_W = proxy_W_;
@@ -218,7 +221,8 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
   out.normal_W = unit_normal(here.query, normal_W_);
   out.surface_velocity_m_per_s = velocity_.m_per_s();
-  // The list of neighbours goes further than r3 in some directions: what it finds there is chance.
+  // The list of neighbours reaches beyond r3 in some directions only, so a distance beyond r3 is not
+  // reliable.
   out.nearest_distance_m =
       here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(here.query.touching);
@@ -231,15 +235,16 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
     out.status = RenderStatus::degenerate_normal;
 }
 
-// The frame shows the surface as it was when it was captured. Like (4.15), the prediction takes it to go on
-// along v_hat; a position that would lie in a region of the newest frame is not sent.
+// Returns the commanded position of the slave robot. A frame shows the surface at the time of its capture.
+// Like (4.15), the prediction assumes that the surface continues along v_hat. A predicted position that lies
+// in a region of the newest frame is not sent.
 Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
   if (p_.slave_command == SlaveCommand::hip) return hip_W;
   if (!p_.slave_prediction || !in_contact_) return clear_W_;
   const double age_s = std::clamp(time_s - order_.captured_s(), 0.0, velocity_.horizon_s());
   const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
   const ContactQuery there = query(near_.around(ahead_W).view(), ahead_W);
-  has_local_query_ = false;  // what the proxy saw may have made room
+  has_local_query_ = false;  // the query ahead may have replaced the list of neighbours
   return classify(there.nearest, p_) == ContactState::entrenched ? clear_W_ : ahead_W;
 }
 
@@ -252,12 +257,12 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
     return Vec3::Zero();
   }
   const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
-  // Bounded: when frames stop to come, the surface is no longer taken to go on.
+  // The time is bounded: if frames stop coming, the surface is no longer assumed to continue.
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
   return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_, ticks);
 }
 
-// (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.
+// Returns (5.8) as a weighted mean if the points have a stiffness, else the renderer's own stiffness.
 double ProxyRenderer::stiffness(const ContactQuery& query) const {
   return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : p_.stiffness_N_per_m;
 }

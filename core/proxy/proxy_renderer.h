@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-// How a surface moved from one frame to the next.
+// The motion of a surface from one frame to the next.
 struct SurfaceMotion {
-  Vec3 displacement_m = Vec3::Zero();  // what the proxy is moved by
+  Vec3 displacement_m = Vec3::Zero();  // displacement of the proxy
   double velocity_m_per_s = 0;         // along the normal, positive towards the proxy
   Vec3 normal_W = Vec3::Zero();
 };
@@ -38,7 +38,7 @@ class ProxyRenderer final : public Renderer {
   // stop: a tick also ends when the proxy in contact has converged (4.8). It always ends when a step changes
   // nothing or steps_per_tick are made.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
-  // r1, r2 and r3 of Table 4.2 from now on, as the constructor's: for methods that adapt them to the points.
+  // Sets r1, r2 and r3 of Table 4.2, for methods that adapt them to the points. pre: as for the constructor.
   void set_radii(double r1_m, double r2_m, double r3_m);
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override;
@@ -50,7 +50,7 @@ class ProxyRenderer final : public Renderer {
  private:
   bool take(const Frame& frame);
   std::optional<double> felt_radius_m();
-  struct LocalQuery {  // what the proxy sees from where it is
+  struct LocalQuery {  // state, normal and neighbours at a proxy position
     ContactQuery query;
     ContactState state;
     PointsView points;
@@ -73,25 +73,25 @@ class ProxyRenderer final : public Renderer {
   SurfaceVelocity velocity_;
   VirtualCoupling coupling_;
 
-  LocalQuery local_query_;  // from query_position_W_, while has_local_query_
+  LocalQuery local_query_;  // query at query_position_W_; valid while has_local_query_
   Vec3 query_position_W_ = Vec3::Zero();
   bool has_local_query_ = false;
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
   Vec3 clear_W_ = RenderOutput{}.slave_W;  // the latest proxy position outside all regions
-  bool is_clear_ = false;                  // outside those of the newest frame
+  bool is_clear_ = false;                  // clear_W_ is outside all regions of the newest frame
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
-  bool placed_ = false;                    // the proxy starts at the first HIP
-  bool in_contact_ = false;                // until the proxy is free and nothing holds it back
-  bool in_crease_ = false;                 // as takes_regions() saw it last
+  bool placed_ = false;                    // the proxy was placed at the first HIP
+  bool in_contact_ = false;                // stays true until the proxy is free and nothing holds it back
+  bool in_crease_ = false;                 // last result of takes_regions() under ContactRule::creases
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // before the newest change
   FrameOrder order_;
   double frame_arrived_s_ = 0;
   double force_time_s_ = 0;                 // time of the tick whose force was computed last
-  Vec3 frame_correction_m_ = Vec3::Zero();  // by (4.3) since the last tick
+  Vec3 frame_correction_m_ = Vec3::Zero();  // displacement by frames since the last tick, (4.3)
   bool stops_at_convergence_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace {
 // A weighted sum of unit vectors shorter than this has no direction: what remains is rounding.
 constexpr double kNoDirection = 1e-10;
 
-// A shorter way to the next region is rounding: those so near touch already.
+// A shorter distance to the next region is rounding: a region so near touches already.
 constexpr double kNoMotion_m = 1e-12;
 
 // sin(theta)^2 by series, for std::sin may differ in the last bit between machines; exact to 1e-16 below 1
@@ -25,8 +25,8 @@ double sine_squared(double degrees) {
   return 0.5 * sum;
 }
 
-// The printed reading of (4.9): among all points, ahead or behind, the root of smallest magnitude, and the
-// smallest step of those. Roots beyond the way to the HIP, either way, are not asked about.
+// Returns the printed reading of (4.9): the root of smallest magnitude of each point, ahead or behind, and
+// the smallest step of these. Roots beyond the distance to the HIP, in either direction, are ignored.
 double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& u, double radius,
                          double limit) {
   double step = limit;
@@ -76,7 +76,7 @@ Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyP
                           ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
                           : printed_free_root(near.within(p_W, distance + p.contact_radius_m()).view(), p_W,
                                               direction, p.contact_radius_m(), distance);
-  // Unhindered, the step is u itself: P then meets the HIP bit for bit.
+  // A step without an obstacle is u itself, so that P meets the HIP bit for bit.
   return step >= distance ? u : Vec3(step * direction);
 }
 
@@ -102,11 +102,13 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
   const Vec3 step = step_towards(goal, p);
   const double length = step.norm();
   if (!(length > 0)) return Vec3::Zero();
-  // Between r1 and r_c, so that what touches already, at r1 or more, is not met again.
+  // The radius lies between r1 and r_c, so that a region that touches already, at r1 or more, is not met
+  // again.
   const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
   double path_length = near.first_hit(p_W, step / length, reach, length);
-  // A region that ended an earlier step lies just there, and the rounding of a motion along it can meet it
-  // again at once: the proxy would stay for ever. The goal enters no region that touches, so none is there.
+  // A region that ended an earlier step lies exactly at this distance, and a motion along it can meet it
+  // again at once by rounding. The proxy would then stay forever. The goal enters no touching region, so the
+  // distance is computed again with a smaller radius.
   if (path_length < kNoMotion_m)
     path_length = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
   return step * (path_length / length);

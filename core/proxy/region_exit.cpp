@@ -19,7 +19,7 @@ std::array<Vec3, 9> directions(const Vec3& normal_W, const Vec3& u) {
   const Vec3 n = unit_or(normal_W, unit_or(-u, Vec3::UnitY()));
   int min = 0;
   n.cwiseAbs().minCoeff(&min);
-  // What is left of u across the normal; of a u along it, only rounding.
+  // The component of u across the normal. It is only rounding if u runs along the normal.
   const Vec3 across = u - u.dot(n) * n;
   const bool has_direction = across.squaredNorm() > 1e-24 * u.squaredNorm();
   const Vec3 a = unit_or(has_direction ? across : n.cross(Vec3::Unit(min)), Vec3::Zero()), b = n.cross(a);
@@ -27,7 +27,8 @@ std::array<Vec3, 9> directions(const Vec3& normal_W, const Vec3& u) {
   return {n, kHalfWay * (n + a), kHalfWay * (n - a), kHalfWay * (n + b), kHalfWay * (n - b), a, -a, b, -b};
 }
 
-// How far along a line the first position outside all regions is; infinite beyond max_m, or after too many.
+// Returns the distance along a line to the first position outside all regions. Infinite if it is max_m or
+// more, or if kMaxExits regions do not suffice.
 double exit_along(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W, const Vec3& direction,
                   double max_m, const ProxyParameters& p) {
   const auto outside = [&](const PointsView& points, const Vec3& q_W) {

@@ -10,17 +10,18 @@
 
 namespace remote_touch {
 
-// A position outside all regions, r_n >= r1, on the shortest of nine straight lines from p: along the normal,
-// across it towards and away from u and to both sides, and half way between. None of them leads against the
-// normal, so the proxy stays on its side. Without a normal the way away from u takes its place, without u an
-// axis of the world. Where (5.11) takes a new direction in every step and can go round in circles, a straight
-// line leaves every region but once. Empty if no line ends outside within kMaxExits regions.
+// Returns a position outside all regions, r_n >= r1, on the shortest of nine straight lines from p: along the
+// normal, across it towards and away from u and to both sides, and halfway between. None of them leads
+// against the normal, so the proxy stays on its side. Without a normal the direction away from u replaces it;
+// without u, an axis of the world does. (5.11) takes a new direction in every step and can go round in
+// circles, but a straight line leaves every region only once. Empty if no line ends outside within kMaxExits
+// regions.
 inline constexpr int kMaxExits = 32;
 std::optional<Vec3> straight_exit(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W,
                                   const Vec3& normal_W, const Vec3& u, const ProxyParameters& p);
 
-// r_f of the region that is nearest to p, or that p is deepest in; of several equally near ones the smallest
-// r_f. Empty without points.
+// Returns r_f of the region that is nearest to p, or that p is deepest in. If several are equally near, the
+// smallest r_f is returned. Empty without points.
 std::optional<double> nearest_region_radius_m(const PointsView& points, const Vec3& p_W);
 
 }  // namespace remote_touch

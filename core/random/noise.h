@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// What a run is keyed by; cell and replicate are those of a sweep and 0 outside one.
+// Key of the noise of a run; cell and replicate are those of a sweep and 0 outside one.
 struct NoiseKey {
   std::uint64_t seed = 1;
   std::uint64_t cell = 0;       // below 2^32

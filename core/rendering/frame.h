@@ -11,19 +11,19 @@
 
 namespace remote_touch {
 
-// What a renderer computes from a frame in advance, see Renderer::prepare().
+// Data that a renderer computes from a frame in advance, see Renderer::prepare().
 class FramePreparation {
  public:
   virtual ~FramePreparation() = default;
 };
 
-// The surface that a frame shows, as a simulation knows it. For oracles alone: renderers that show what a
-// better estimate could reach. A sensor has none.
+// The true surface that a frame shows, as a simulation knows it; a sensor has none. Only for oracles:
+// renderers that show what a better estimate could reach.
 class TrueSurface {
  public:
   virtual ~TrueSurface() = default;
-  // Distance to the surface at a time, m, positive on the side that the sensor sees; NaN if it is not known,
-  // and beside a surface with a border, where there is no back.
+  // Returns the distance to the surface at a time, m, positive on the side that the sensor sees. NaN if it is
+  // not known, and beside a surface with a border, where there is no back.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
 };
 

@@ -5,10 +5,10 @@
 namespace remote_touch {
 
 enum class FrameNeed {
-  normals,    // of the points
+  normals,    // points with normals
   organised,  // rows and columns, so that the neighbours of a point are known
   regions,    // forbidden regions around points, or a target of guidance
-  view        // where the sensor looks: an image, or a setting `view`
+  view        // viewing direction of the sensor: an image, or a setting `view`
 };
 
 }  // namespace remote_touch

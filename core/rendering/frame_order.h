@@ -1,4 +1,5 @@
-// Which frame of a stream is the newest. A frame captured no later than that is dropped, and reported once.
+// The newest frame of a stream. A frame that was captured no later than the newest one is dropped, and the
+// drop is reported once.
 #pragma once
 
 #include <utility>
@@ -10,9 +11,9 @@ namespace remote_touch {
 
 class FrameOrder {
  public:
-  // Whether the frame is newer than all before.
+  // True if the frame was captured after the newest one, or is the first.
   bool is_newer(const Frame& frame) const;
-  // The same; if so, it becomes the newest.
+  // Same as is_newer(). A newer frame becomes the newest one; any other frame counts as dropped.
   bool take(const Frame& frame);
   int newest() const { return index_; }  // -1 before the first
   double captured_s() const { return captured_s_; }

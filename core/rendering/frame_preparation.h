@@ -1,5 +1,5 @@
-// What a renderer reads in place of a cloud's columns, such as a tree; built once a frame, in advance by
-// prepare() or in on_frame().
+// The data structure that a renderer reads in place of a cloud's columns, such as a tree. It is built once a
+// frame, in advance by prepare() or in on_frame().
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& p
   return made;
 }
 
-// The form of the frame, built now unless it was prepared; only that allocates.
+// Returns the form of the frame. Builds it now unless it was prepared; only this case allocates.
 template <class Form, class... Settings>
 std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels, const Settings&... settings) {
   auto prepared = std::dynamic_pointer_cast<const PreparedForm<Form>>(frame.prepared);

@@ -13,8 +13,8 @@ namespace remote_touch {
 
 enum class ContactState { free = 0, contact = 1, entrenched = 2 };
 
-// Why an output is not an ordinary one; the most serious reason is reported. device_not_finite includes a HIP
-// more than 1000 km away.
+// The reason why an output is not an ordinary one. Only the most serious reason is reported.
+// device_not_finite includes a HIP more than 1000 km away.
 enum class RenderStatus {
   ok = 0,
   stale_frame_dropped = 1,
@@ -23,21 +23,23 @@ enum class RenderStatus {
   device_not_finite = 4
 };
 
-// What a renderer of a rigid tool adds, chapter 6. The tool frame has its origin in the centre of mass of the
-// tool, which is RenderOutput::proxy_W.
+// The additional output of a renderer of a rigid tool, chapter 6. The tool frame has its origin in the centre
+// of mass of the tool, which is RenderOutput::proxy_W.
 struct ToolOutput {
-  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();  // takes tool coordinates to the world
-  Vec3 torque_Nm = Vec3::Zero();  // on the hand, about the HIP, world frame
-  // Of the pose at the end of the tick; RenderOutput::contact_count is the number of points that touch.
-  int active_constraints = 0;     // rows of (6.5) that hold the tool, at most 6
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();  // rotates tool coordinates to the world
+  Vec3 torque_Nm = Vec3::Zero();  // torque on the hand about the HIP, world frame
+  // The contacts are those of the pose at the end of the tick. RenderOutput::contact_count is the number of
+  // points that touch.
+  int active_constraints = 0;     // rows of (6.5) that hold the tool; penalty methods: pushing points
   int contact_clusters = 0;       // groups of touching points, 10 mm cells of the tool frame
-  double tool_penetration_m = 0;  // of the deepest point of the newest frame; 0 or more
+  double tool_penetration_m = 0;  // depth of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
   bool budget_exhausted = false;  // the tick ended before the tool had converged
-  int disabled_points = 0;        // of the newest frame, without a normal; TouchRule::voxels ignores them
+  int disabled_points = 0;  // points of the newest frame without a normal; TouchRule::voxels ignores them
 };
 
-// What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
+// The additional output of guidance, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and
+// ToolOutput::torque_Nm.
 struct GuidanceOutput {
   bool active = false;  // a guidance fixture pulls to a goal
   Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
@@ -47,7 +49,8 @@ struct GuidanceOutput {
   int sequence_step = 0;          // the task's current step, from 0; after the last, the number of steps
   bool sequence_running = false;  // the step has begun
   int sequence_missed = 0;        // number of steps that missed their deadline so far
-  // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
+  // Distance and angle from the tool to the goal of the first step that ended in this tick and had a goal to
+  // reach; NaN if there was none.
   double sequence_distance_m = std::numeric_limits<double>::quiet_NaN();
   double sequence_angle_rad = std::numeric_limits<double>::quiet_NaN();
 };
@@ -60,38 +63,38 @@ struct RenderOutput {
   // command is repeated until there is a valid one. NaN before the first. A slave robot with a tool also
   // follows the orientation of the pose that is commanded, the tool's or the device's.
   Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  ContactState state = ContactState::free;  // of proxy_W
+  ContactState state = ContactState::free;  // state of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
   double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)
   double nearest_distance_m = 0;        // distance of proxy_W to the nearest region, r_n of (5.5); infinite
                                         // beyond the renderer's reach
-  Vec3 frame_correction_m = Vec3::Zero();  // how far frame updates moved the proxy since the last tick, (4.3)
+  Vec3 frame_correction_m = Vec3::Zero();  // proxy displacement by frame updates since the last tick, (4.3)
   int steps = 0;                           // proxy steps made in this tick
   bool converged = false;                  // (4.8)
   int contact_count = 0;                   // points within r2
   int frame_index = -1;                    // newest frame in use, -1 before the first
   RenderStatus status = RenderStatus::ok;
   std::optional<ToolOutput> tool;          // a 3-DOF renderer has none
-  std::optional<GuidanceOutput> guidance;  // of experiments with guidance or a sequence
+  std::optional<GuidanceOutput> guidance;  // only in experiments with guidance or a sequence
 };
 
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  // The slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers of
-  // the same kind and settings. May run in parallel to on_frame() and step(), so it reads no live parameter.
-  // Results do not depend on it.
+  // Does the slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers
+  // of the same kind and settings. May run in parallel to on_frame() and step(), so it reads no live
+  // parameter. The results of the renderer do not depend on it.
   virtual void prepare(Frame& /*frame*/) const {}
   // Reserves memory for frames of so many points, or for images of so many pixels, both sides rounded up to
   // multiples of 16; then on_frame() of a prepared frame allocates nothing. It releases the frame before: the
   // caller keeps a reference to that one if memory must not be freed there either.
   virtual void reserve(std::size_t /*points*/) {}
-  // A new cloud, prepared or not. A frame that is not newer than the last one is dropped, and the status of
-  // the next output reports it.
+  // Adds a new frame, prepared or not. A frame that is not newer than the last one is dropped, and the status
+  // of the next output reports it.
   virtual void on_frame(const Frame& frame) = 0;
-  // Those of its settings that are marked live, with pointers to its own values. Between two steps the thread
-  // of step() may set these to others that its validate() allows; parameters_changed() then takes them,
-  // without an allocation.
+  // Returns the settings that are marked live, with pointers to the renderer's own values. Between two steps
+  // the thread of step() may set these values to others that validate() allows. parameters_changed() then
+  // applies them, without an allocation.
   virtual Parameters live_parameters() { return {}; }
   virtual void parameters_changed() {}
   // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: errors are

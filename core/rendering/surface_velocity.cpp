@@ -18,8 +18,8 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
   return carried * normal_;
 }
 
-// (4.13), v_hat + n.s / interval, where the proxy was carried all the way; where (4.3) was bounded, what it
-// was carried and the step together are what the surface moved.
+// Updates the estimate by (4.13), v_hat + n.s / interval, if the proxy was carried all the way. If (4.3) was
+// bounded, the motion of the surface is the distance carried plus the step.
 void SurfaceVelocity::on_step(const Vec3& step) {
   if (!awaits_step_) return;
   awaits_step_ = false;

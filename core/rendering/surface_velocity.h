@@ -17,15 +17,15 @@ class SurfaceVelocity {
   // to the proxy. The interval is the time between the two frames' captures: 1/f_c for a steady stream.
   // Frames that follow each other without a step between them count as one.
   Vec3 on_frame(double captured_s, const Vec3& normal);
-  // How much a forbidden region under the proxy grew in the newest frame, m: no motion of the cloud. To be
-  // called between on_frame() and on_step().
+  // Adds the growth of a forbidden region under the proxy in the newest frame, m. on_step() subtracts it,
+  // because it is no motion of the cloud. Call it between on_frame() and on_step().
   void on_growth(double growth_m) { growth_m_ += growth_m; }
-  // The first proxy step after a frame corrects the estimate, (4.13); later steps change nothing. It may be a
-  // step of any state: a free step back to the surface shows that the estimate was too high. Never negative,
-  // never reset.
+  // Corrects the estimate by the first proxy step after a frame, (4.13); later steps change nothing. It may
+  // be a step of any state: a free step back to the surface shows that the estimate was too high. The
+  // estimate is never negative and never reset.
   void on_step(const Vec3& step);
 
-  // In place of both, if the motion is measured by other means: the velocity along the normal, of either
+  // Replaces both calls if the motion is measured by other means. The velocity along the normal has either
   // sign.
   void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
 
@@ -43,10 +43,10 @@ class SurfaceVelocity {
   double horizon_s_;
   double velocity_m_per_s_ = 0;  // v_0 = 0
   double captured_s_ = 0;
-  double interval_s_ = 0;  // since the frame before the last step; 0 before the second frame
+  double interval_s_ = 0;  // time since the frame before the last step; 0 before the second frame
   UsualInterval usual_interval_;
-  double frame_correction_m_ = 0;  // how far the proxy was moved along the normal in that time
-  double growth_m_ = 0;            // of regions, in that time
+  double frame_correction_m_ = 0;  // displacement of the proxy along the normal in that time
+  double growth_m_ = 0;            // growth of regions in that time
   Vec3 normal_ = Vec3::Zero();
   bool has_frame_ = false;
   bool awaits_step_ = false;

@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// After a pause a stream continues at its former rate, so a pause does not predict when the next frame comes.
+// A stream continues at its former rate after a pause, so a pause does not predict when the next frame comes.
 // The part of an interval above a limit counts as a pause. The limit is kLongest times the previous interval
 // without its own pause. It grows with each longer interval, so a stream that becomes slower is accepted
 // after a few frames. The first interval of a stream has no limit.

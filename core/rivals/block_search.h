@@ -13,14 +13,14 @@ namespace remote_touch {
 class BlockSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points);
-  // So many points, none of which is measured. Keeps its memory.
+  // Sets the number of points, none of which is measured yet. Keeps its memory.
   void clear(std::size_t points, int columns, bool with_radius, bool with_stiffness);
   void set(std::size_t number, const Vec3& p_W) {
     x_[number] = p_W.x(), y_[number] = p_W.y(), z_[number] = p_W.z();
   }
   void set_fixture_radius(std::size_t number, double radius_m) { radius_[number] = radius_m; }
   void set_stiffness(std::size_t number, double N_per_m) { stiffness_[number] = N_per_m; }
-  // To be called after the last set().
+  // Must be called after the last set().
   void finish();
 
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;

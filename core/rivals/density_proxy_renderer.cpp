@@ -56,7 +56,7 @@ void DensityProxyRenderer::on_frame(const Frame& frame) {
   proxy_.on_frame(frame);
 }
 
-// From the set that was found last; 0 if it is too small to tell.
+// Returns the contact radius that belongs to the set found last; 0 if the set is too small.
 double DensityProxyRenderer::wanted_radius(double last_m) const {
   constexpr double kPi = 3.14159265358979323846, kGrowth = 1.05;
   double first_m = std::numeric_limits<double>::infinity();

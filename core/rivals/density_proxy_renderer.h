@@ -54,7 +54,7 @@ class DensityProxyRenderer final : public Renderer {
   const DensityProxyParameters p_;
   ProxyRenderer proxy_;
   NearestPoints nearest_;
-  std::shared_ptr<const NeighbourSearch> points_;  // of the newest frame
+  std::shared_ptr<const NeighbourSearch> points_;  // points of the newest frame
   double radius_m_;                                // r_c
 };
 

@@ -41,10 +41,10 @@ class FrameAverage {
  public:
   FrameAverage(const FrameAverageSettings& settings, const Kernels& kernels);
   void reserve(std::size_t points);
-  // The averaged points of a stream that goes on with this frame; valid until the next call but one. A frame
-  // of another size begins anew, but one without points counts as one in which all are missing. Allocates
-  // only for a frame larger than reserved. r_f and k_s are those of the newest frame; a point that is missing
-  // there has neither.
+  // Adds a frame to the stream and returns the averaged points, which are valid until the next call but one.
+  // A frame of another size restarts the averages, but one without points counts as one in which all are
+  // missing. Allocates only for a frame larger than reserved. r_f and k_s are those of the newest frame; a
+  // point that is missing there has neither.
   std::shared_ptr<const NeighbourSearch> next(const NeighbourSearch& points);
 
  private:
@@ -58,11 +58,12 @@ class FrameAverage {
   const FrameAverageSettings s_;
   const Kernels& kernels_;
   GatheredPoints all_;
-  // What was measured in the last frames, NaN where nothing was; as many are used as the rule needs.
+  // Measured positions of the last frames, NaN where nothing was measured. As many frames are used as the
+  // rule needs.
   std::array<std::vector<Vec3>, kMaxFrames> history_;
   int newest_ = 0;
-  std::vector<Vec3> smooth_;         // of the exponential rule
-  std::vector<std::uint32_t> seen_;  // in which of the last frames it was measured, one bit each
+  std::vector<Vec3> smooth_;         // state of the exponential rule
+  std::vector<std::uint32_t> seen_;  // one bit for each of the last frames: the point was measured in it
   std::array<std::shared_ptr<BlockSearch>, 2> shown_;
   int shown_last_ = 0;
 };

@@ -8,9 +8,10 @@ namespace remote_touch {
 
 namespace {
 
-// Radius of the ball in which the mesh is made, and the longest way of one round, in units of the edge limit.
+// Radius of the ball in which the mesh is made, and the longest motion of one round, in units of the edge
+// limit.
 constexpr double kMeshed = 0.5, kMaxStride = 0.25;
-// A shorter way is none, and planes are obeyed up to this, in units of the surface offset.
+// A shorter motion counts as none, and planes are obeyed up to this, in units of the surface offset.
 constexpr double kRestTolerance = 1e-6;
 
 }  // namespace
@@ -54,13 +55,13 @@ bool GodObjectRenderer::take(const NeighbourSearch& points) {
   return columns_ > 0;
 }
 
-// The mesh reaches beyond every way of one round. Which triangles it has beyond that does not matter.
+// The mesh reaches beyond every motion of one round. It does not matter which triangles it has beyond that.
 void GodObjectRenderer::find_planes() {
   const double radius = kMeshed * p_.max_edge_length_m, margin = radius - kMaxStride * p_.max_edge_length_m;
   if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= margin * margin) return;
   meshed_W_ = proxy_W_;
   is_meshed_ = true;
-  // Rounding must not cost a triangle.
+  // A margin for rounding, which must not cost a triangle.
   const double reach = (radius + p_.max_edge_length_m) * (1 + 1e-9);
   mesh_.assign(near_.within(meshed_W_, reach), columns_, {meshed_W_, radius * (1 + 1e-9)});
 }
@@ -73,8 +74,8 @@ void GodObjectRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   report(hip_W, out);
 }
 
-// From where the god-object is to the place nearest to the HIP over the triangles in the way. Returns whether
-// it moved.
+// Moves the god-object to the position nearest to the HIP over the triangles in the way. Returns true if it
+// moved.
 bool GodObjectRenderer::follow(const Vec3& hip_W) {
   const Vec3 start_W = proxy_W_;
   planes_.clear();
@@ -87,8 +88,9 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
   return (proxy_W_ - start_W).norm() > kRestTolerance * p_.surface_offset_m;
 }
 
-// Straight to the goal, or up to the first triangle, whose plane then joins the others. Returns whether this
-// look for planes is over: it got there, or there are too many.
+// Moves straight towards the goal, by one stride at most, or up to the first triangle, whose plane then joins
+// the others. Returns true if this search for planes is over: no triangle was in the way, or there are too
+// many planes.
 bool GodObjectRenderer::go(const Vec3& goal) {
   find_planes();
   const Vec3 displacement = goal - proxy_W_;

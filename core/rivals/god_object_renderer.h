@@ -1,24 +1,24 @@
 // The god-object of C. Zilles and K. Salisbury, "A constraint-based god-object method for haptic display",
-// IROS 1995, on the grid mesh of an organised frame (grid_mesh.h): what was done with recorded depth images
-// before point clouds were touched directly ([82], [83] of the dissertation).
+// IROS 1995, on the grid mesh of an organised frame (grid_mesh.h). Recorded depth images were rendered in
+// this way before point clouds were touched directly ([82], [83] of the dissertation).
 //
 // The god-object is a point that never passes a triangle, from either side. In each round it goes straight to
 // the position nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
-// way, whose plane then joins them; if there is none it has arrived, and the planes are searched for anew
-// from there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
+// way, whose plane then joins them. If no triangle is in the way it has arrived, and the planes are searched
+// for anew from there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
 //
 // So that its side is always clear, the god-object stays surface_offset_m away from planes that hold it;
 // where two are nearer to each other than that, it does not move.
 //
 // Limits: a new frame replaces the mesh and the god-object stays where it is, because the motion of the
-// surface is not known: a mesh that passes over it leaves it behind (pop-through). It falls through what was
-// not measured, and through gaps wider than max_edge_length_m, which have no triangles. An unorganised frame
-// has no mesh: the god-object is free and the status no_frame, although frame_index is 0 or more. Forbidden
-// regions r_f are ignored; the stiffness of points (5.8) is not.
+// surface is not known: a mesh that passes over it leaves it behind (pop-through). It falls through regions
+// that were not measured, and through gaps wider than max_edge_length_m, which have no triangles. An
+// unorganised frame has no mesh: the god-object is free and the status no_frame, although frame_index is 0 or
+// more. Forbidden regions r_f are ignored; the stiffness of points (5.8) is not.
 //
-// Of the outputs: contact_count counts the planes that hold the god-object, 0 to 3, steps the rounds,
-// nearest_distance_m goes to the nearest point; the state is never entrenched, because a surface that has
-// passed the god-object no longer holds it.
+// Outputs: contact_count is the number of planes that hold the god-object, 0 to 3; steps is the number of
+// rounds; nearest_distance_m is the distance to the nearest point; the state is never entrenched, because a
+// surface that has passed the god-object no longer holds it.
 #pragma once
 
 #include <string>
@@ -66,9 +66,9 @@ class GodObjectRenderer final : public RivalRenderer {
   GridMesh mesh_;
   Vec3 meshed_W_ = Vec3::Zero();  // centre of the ball in which mesh_ is valid, if is_meshed_
   bool is_meshed_ = false;
-  int columns_ = 0;  // of the newest frame
+  int columns_ = 0;  // number of columns of the newest frame
   PlaneConstraints planes_;
-  int active_planes_ = 0, rounds_ = 0;  // of this tick
+  int active_planes_ = 0, rounds_ = 0;  // values of this tick
 };
 
 }  // namespace remote_touch

@@ -18,23 +18,23 @@ struct Triangle {
   Vec3 normal;  // unit; its sign has no meaning
 };
 
-// Where a segment crosses a triangle. height: of both ends over the triangle's plane, on the side that the
-// segment starts from, so start > 0 >= end.
+// Crossing of a segment and a triangle. start and end: heights of the segment's ends above the triangle's
+// plane, on the side that the segment starts from, so start > 0 >= end.
 struct Crossing {
   const Triangle* triangle = nullptr;
   double start = 0, end = 0;
-  double fraction() const { return start / (start - end); }  // of the segment, up to the plane
+  double fraction() const { return start / (start - end); }  // part of the segment up to the plane
 };
 
 class GridMesh {
  public:
   explicit GridMesh(double max_edge_length_m) : edge_limit_m_(max_edge_length_m) {}
 
-  // Reserves memory for frames of so many points. assign() and the rest then never allocate.
+  // Reserves memory for frames of this number of points. assign() and the rest then never allocate.
   void reserve(std::size_t points);
-  // The triangles that meet the ball, from the points of a frame with so many columns. pre: points has all
-  // that lie within ball.radius + edge limit of the ball's centre. Whatever the order of the points, the
-  // triangles are the same in the same order.
+  // Makes the triangles that meet the ball, from the points of a frame with this number of columns. pre:
+  // points has all that lie within ball.radius + edge limit of the ball's centre. The order of the points has
+  // no effect: the triangles are the same, in the same order.
   void assign(const GatheredPoints& points, int columns, const Ball& ball);
   std::span<const Triangle> triangles() const { return {triangles_.data(), count_}; }
 
@@ -49,7 +49,7 @@ class GridMesh {
   double edge_limit_m_;
   std::size_t count_ = 0;
   Buffer<Triangle> triangles_;
-  Buffer<std::uint32_t> place_;  // of each point in a window of the frame: number in the list + 1; 0: none
+  Buffer<std::uint32_t> place_;  // number in the list + 1 of each point in a window of the frame; 0: none
 };
 
 }  // namespace remote_touch

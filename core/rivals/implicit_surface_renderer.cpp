@@ -8,11 +8,11 @@ namespace remote_touch {
 
 namespace {
 
-// In units of R:
+// Lengths in units of R.
 constexpr double kStride = 0.125;     // longest step of a walk or a slide
 constexpr double kMaxNewton = 0.5;    // longest step back to the surface
-constexpr double kOnSurface = 1e-10;  // nearer to f = 0 than this is on it
-constexpr double kMinMove = 1e-9;     // in units of R: a shorter displacement is none
+constexpr double kOnSurface = 1e-10;  // a position nearer to f = 0 than this is on it
+constexpr double kMinMove = 1e-9;     // a shorter displacement counts as none
 constexpr double kNearRest = 1e-4;    // shorter steps than this are the last ones
 constexpr int kNewtonSteps = 10, kBisections = 12, kHalvings = 6;
 
@@ -24,7 +24,7 @@ bool is_on_surface(const SurfaceSample& sample) {
   return sample.supported && std::abs(sample.distance()) <= kOnSurface;
 }
 
-// v less its part along the unit vector n.
+// Returns v without its component along the unit vector n.
 Vec3 less(const Vec3& v, const Vec3& n) {
   return v - v.dot(n) * n;
 }
@@ -75,7 +75,8 @@ void ImplicitSurfaceRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   report(here, hip_W, out);
 }
 
-// Newton's steps to f = 0. False where they do not lead there; here is then where they ended.
+// Takes Newton's steps to f = 0. Returns false if they do not lead there; here is then the position where
+// they ended.
 bool ImplicitSurfaceRenderer::settle(Place& here) {
   for (int k = 0; k < kNewtonSteps && here.sample.supported; ++k) {
     if (is_on_surface(here.sample)) return true;
@@ -87,7 +88,7 @@ bool ImplicitSurfaceRenderer::settle(Place& here) {
   return is_on_surface(here.sample);
 }
 
-// One step of the scheme; false when the proxy is at rest.
+// Takes one step of the scheme. Returns false if the proxy is at rest.
 bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
   const Vec3 u = hip_W - here.p_W;
   if (u.isZero(0)) return false;
@@ -95,7 +96,8 @@ bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
   return held ? slide(here, hip_W) : walk(here, hip_W);
 }
 
-// Straight towards the HIP, one stride, or up to the surface. Where nothing is near, to where something is.
+// Walks straight towards the HIP, one stride, or up to the surface. If no point is near, it first skips ahead
+// to where one is.
 bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   const double R = p_.support_radius_m, distance = (hip_W - here.p_W).norm();
   const Vec3 direction = (hip_W - here.p_W) / distance;
@@ -112,7 +114,7 @@ bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   return (here.p_W - start).norm() > kMinMove * R;
 }
 
-// Bisects the way between both, then goes on by Newton's steps.
+// Bisects the segment between both, then continues with Newton's steps.
 void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
   for (int k = 0; k < kBisections && !is_on_surface(outside.sample); ++k) {
     const Place middle = place(0.5 * (outside.p_W + inside.p_W), outside.sample.normal());
@@ -122,8 +124,8 @@ void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
   if (settle(settled)) outside = settled;
 }
 
-// In the tangent plane towards the HIP, and back to the surface. A step must bring the proxy nearer to the
-// HIP; near rest, where squares of distances no longer tell, the next step must be shorter.
+// Moves in the tangent plane towards the HIP, and back to the surface. A step must bring the proxy nearer to
+// the HIP; near rest, where squared distances are too coarse to show this, the next step must be shorter.
 bool ImplicitSurfaceRenderer::slide(Place& here, const Vec3& hip_W) {
   const Vec3 n = here.sample.normal(), u = hip_W - here.p_W, tangential = less(u, n);
   const double length = tangential.norm(), R = p_.support_radius_m;

@@ -69,7 +69,7 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
   ImplicitSurfaceParameters p_;
   const PointSurface surface_;
   Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which gives surfels their side; zero away from them
-  int steps_ = 0;             // of this tick
+  int steps_ = 0;             // evaluations of f in this tick
 };
 
 }  // namespace remote_touch

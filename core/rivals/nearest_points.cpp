@@ -26,7 +26,8 @@ Vec3 NearestPoints::offset(std::size_t i) const {
   return Vec3(view.x[i], view.y[i], view.z[i]) - p_W_;
 }
 
-// The points in a ball around the place. Returns how many: the list has more where regions reach into it.
+// Gathers the points in a ball around p_W_. Returns the number of points in the ball: the list has more if
+// regions reach into it.
 std::size_t NearestPoints::gather(const NeighbourSearch& points, double radius) {
   near_.clear();
   points.gather({p_W_, radius}, kernels_, near_);
@@ -69,7 +70,7 @@ double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, con
     int others = 0;
     nearest.for_each([&](const Vec3& e) { distances += std::round(e.norm() / kUnit_m), ++others; });
     if (others <= kNeighbours) continue;
-    // Of more than three at the same last distance only three count.
+    // If more than three points lie at the same last distance, only three count.
     distances -= (others - 1 - kNeighbours) * std::round(farthest / kUnit_m);
     sum += static_cast<std::int64_t>(distances), terms += kNeighbours;
   }

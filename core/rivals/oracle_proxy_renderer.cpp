@@ -20,7 +20,7 @@ Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
 }  // namespace
 
 namespace {
-// The motion is told.
+// The true motion is given, so there is no estimate.
 Parameters without_estimate(Parameters list) {
   std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
   return list;

@@ -1,4 +1,4 @@
-// ORACLE, not a method: the proxy of chapter 4 that is told how the true surface moved. It shows what the
+// ORACLE, not a method: the proxy of chapter 4 with knowledge of the true surface's motion. It shows what the
 // proxy would reach with a perfect estimate of the velocity, and which failures have other causes: the points
 // and their noise are the same. Only a simulation knows the truth (Frame::truth); without it the proxy is
 // that of velocity_estimate = false.
@@ -27,8 +27,8 @@ inline double max_stiffness_N_per_m(const OracleProxyParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }
 
-// How the true surface nearest to p moved between two times, along its normal at the second. Nothing moved
-// where that is not known.
+// Returns the motion of the true surface nearest to p between two times, along its normal at the second. The
+// motion is zero if it is not known.
 SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s);
 
 class OracleProxyRenderer final : public Renderer {
@@ -44,7 +44,7 @@ class OracleProxyRenderer final : public Renderer {
 
  private:
   ProxyRenderer proxy_;
-  double captured_s_ = 0;  // of the newest frame
+  double captured_s_ = 0;  // capture time of the newest frame
   bool has_frame_ = false;
 };
 

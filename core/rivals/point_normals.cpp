@@ -48,7 +48,7 @@ Vec3 PointNormals::compute(const Vec3& x_W) {
   if (!(farthest > 0)) return Vec3::Zero();
   std::size_t count = 0;
   nearest_.for_each([&](const Vec3&) { ++count; });
-  // Those at the last distance may be a little farther away than 1.
+  // Neighbours at the last distance may be slightly farther away than 1.
   ExactMoments moments(2 * sum_grid_for(count));
   nearest_.for_each([&](const Vec3& e) { moments.add(1, e / farthest); });
   const ThinnestAxis thin = thinnest_axis(moments.covariance());

@@ -1,6 +1,6 @@
 // A normal for each point of a frame: the axis along which its nearest neighbours are thinnest (principal
-// component analysis), turned towards the sensor. Computed when it is asked for and kept until the next
-// frame.
+// component analysis), turned towards the sensor. A normal is computed at its first use and kept until the
+// next frame.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace remote_touch {
 
-// Where the sensor is: at a position, or far away, looking along a direction.
+// The sensor: its position, or only its viewing direction if it is far away.
 struct ViewPoint {
   bool has_position = false;
   Vec3 position_W = Vec3::Zero();
   Vec3 direction_W{0, -1, 0};
 
-  // From the sensor to p; not of unit length.
+  // Vector from the sensor to p; not of unit length.
   Vec3 ray_to(const Vec3& p_W) const { return has_position ? Vec3(p_W - position_W) : direction_W; }
 };
 
-// The camera of an organised frame, else the direction.
+// Returns the camera position of an organised frame, else the direction.
 ViewPoint view_point(const NeighbourSearch& points, const Vec3& direction_W);
 
 class PointNormals {
@@ -30,10 +30,10 @@ class PointNormals {
   PointNormals(int neighbours, const Kernels& kernels) : neighbours_(neighbours), nearest_(kernels) {}
 
   void reserve(std::size_t points);
-  // A new frame. Allocates only for one larger than reserved. The points must outlive it.
+  // Begins a new frame. Allocates only for one larger than reserved. The points must outlive it.
   void set_points(const NeighbourSearch& points, const ViewPoint& view);
-  // Unit normal of the point with that number in the frame; zero where the neighbours span no plane. The same
-  // for every order of the points. Allocates nothing.
+  // Returns the unit normal of the point with that number in the frame; zero if the neighbours span no plane.
+  // The order of the points has no effect. Allocates nothing.
   Vec3 of(std::uint32_t number, const Vec3& x_W);
   NearestPoints& nearest() { return nearest_; }
 

@@ -1,6 +1,6 @@
-// What the 3-DOF methods for comparison have in common: renderers written from other papers, to be compared
-// with the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of
-// any method: the order of frames, a device that is lost, and the output before the first frame.
+// Common base of the 3-DOF methods for comparison: renderers written from other papers, to be compared with
+// the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of any
+// method: the order of frames, a device that is lost, and the output before the first frame.
 #pragma once
 
 #include <memory>
@@ -24,19 +24,19 @@ class RivalRenderer : public Renderer {
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
       : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 
-  // The points that the method renders in place of the newest frame's alone.
+  // Returns the points that the method renders for a new frame: by default the frame's own.
   virtual std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) { return frame.points; }
-  // Takes these points. Returns false if the method cannot use it: until the next one the outputs are
-  // those without a frame.
+  // Uses these points from now on. Returns false if the method cannot use them: until the next frame the
+  // outputs are those without a frame.
   virtual bool take(const NeighbourSearch& /*points*/) { return true; }
-  // One tick for a HIP that is finite and a frame that was taken. The proxy starts at the first HIP. Fills in
-  // force_N, state, nearest_distance_m, steps, converged, contact_count and status, and leaves the proxy and
-  // the normal in the members below.
+  // One tick for a HIP that is finite and a frame that the method can use. The proxy starts at the first HIP.
+  // Fills in force_N, state, nearest_distance_m, steps, converged, contact_count and status, and leaves the
+  // proxy and the normal in the members below.
   virtual void touch(const Vec3& hip_W, RenderOutput& out) = 0;
-  // The HIP is lost, or there is no frame: forget the state that assumes a continuous motion.
+  // Resets the state that assumes a continuous motion, because the HIP is lost or there is no frame.
   virtual void reset_motion() {}
 
-  // (5.8) where points carry a stiffness, else the renderer's own.
+  // Stiffness (5.8) if points carry one, else the renderer's own.
   double stiffness_of(const ContactQuery& query) const {
     return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : stiffness_N_per_m_;
   }
@@ -46,12 +46,12 @@ class RivalRenderer : public Renderer {
   double stiffness_N_per_m_;
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
-  double time_s_ = 0;  // of the current tick
+  double time_s_ = 0;  // time of the current tick
 
  private:
   FrameOrder order_;
-  bool usable_ = false;  // the newest frame
-  bool placed_ = false;  // the proxy is
+  bool usable_ = false;  // the method can use the newest frame
+  bool placed_ = false;  // the proxy has a position
 };
 
 }  // namespace remote_touch

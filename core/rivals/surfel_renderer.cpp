@@ -10,10 +10,11 @@ namespace remote_touch {
 
 namespace {
 
-// R in units of the mean distance to the three nearest neighbours; and where a cloud has no four points.
+// R in units of the mean distance to the three nearest neighbours, and R for a cloud of less than four
+// points.
 constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
-// In units of R: longest step of the HIP's way that is looked at, of a tick in the tangent plane, and of a
-// projection; a shorter displacement is none.
+// Lengths in units of R: the longest step between two checks of the HIP's path, the longest slide of a tick
+// in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as none.
 constexpr double kLookStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
 constexpr int kMaxLooks = 64;
 
@@ -115,8 +116,8 @@ void SurfelRenderer::release(const Vec3& hip_W) {
   proxy_W_ = hip_W;
 }
 
-// From where the HIP was to where it is, up to the first place behind the surface. Where nothing is near, to
-// where something is.
+// Moves from the last HIP position to the current one, up to the first position behind the surface. If no
+// point is near, it skips ahead to where one is.
 void SurfelRenderer::approach(const Vec3& hip_W) {
   const double R = radius_m_;
   for (int look = 1; look <= kMaxLooks; ++look) {

@@ -28,7 +28,7 @@
 namespace remote_touch {
 
 struct SurfelParameters {
-  double support_radius_m = 0.01;  // 0: from the first frame
+  double support_radius_m = 0.01;  // 0: computed from the first frame
   SurfaceWeight weight = SurfaceWeight::wendland;
   int normal_neighbours = 9;
   double previous_normal_fraction = 0.4;
@@ -73,8 +73,8 @@ class SurfelRenderer final : public RivalRenderer {
   Buffer<Vec3> gathered_normals_;
   std::deque<std::shared_ptr<const NeighbourSearch>> latest_;  // frames to be fused, the newest last
   bool is_held_ = false;
-  double depth_m_ = 0;  // of the held proxy behind the surface
-  int samples_ = 0;     // of this tick
+  double depth_m_ = 0;  // depth of the held proxy behind the surface
+  int samples_ = 0;     // evaluations of f in this tick
 };
 
 }  // namespace remote_touch

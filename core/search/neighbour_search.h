@@ -1,6 +1,6 @@
-// Finding the points near a position. Every search returns the same set: all points whose forbidden regions
-// meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0. They
-// differ in which points they test.
+// Searches for the points near a position. Every search returns the same set: all points whose forbidden
+// regions meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0.
+// The searches differ in which points they test.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ namespace remote_touch {
 class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
-  // Adds the points whose regions meet the ball to out, which has capacity for size() points; none for a ball
-  // that is nowhere (NaN). Does not call finish(). One reader at a time: an implementation may cache results
-  // for the next call.
+  // Adds the points whose regions meet the ball to out, which has capacity for size() points. A ball with NaN
+  // adds none. Does not call finish(). For one reader at a time: an implementation may cache results for the
+  // next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
   // Every measured point, in the order of the search. The default writes what gather() finds into buffer:
@@ -25,10 +25,10 @@ class NeighbourSearch {
   // stored cloud returns the cloud itself, with all its columns, and with the missing measurements as NaN.
   virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& buffer) const;
   virtual bool has_fixture_radius() const { return false; }
-  // Some radius is above 0: there are forbidden regions, chapter 5.
+  // True if some radius is above 0: there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
   virtual bool has_stiffness() const { return false; }
-  // No r_f of the cloud is larger, m.
+  // Upper bound of r_f of the cloud, m.
   virtual double max_fixture_radius_m() const { return 0; }
   // Number of columns of an organised frame; 0: unorganised. The point in a row and column has the number row
   // x columns + column in GatheredPoints::index(), whatever the order of the search.
@@ -74,15 +74,15 @@ class ImageWindowSearch final : public CloudSearch {
 
  private:
   RigidTransform X_CW_;
-  double nearest_depth_m_;  // of the whole image
+  double nearest_depth_m_;  // smallest depth of the whole image
 };
 
 // Tests the cells of a uniform grid that the ball's bounding box meets. Points are stored cell by cell, so
 // that neighbouring cells along z are one run.
 class UniformGridSearch final : public CloudSearch {
  public:
-  // cell_m is coarsened until there are at most about four cells a point. Throws std::invalid_argument if <=
-  // 0.
+  // cell_m is coarsened until there are at most about four cells per point. Throws std::invalid_argument if
+  // it is <= 0.
   UniformGridSearch(PointCloud cloud, double cell_m);
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
   int organised_columns() const override { return columns_; }
@@ -95,12 +95,12 @@ class UniformGridSearch final : public CloudSearch {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
   double cells_per_m_ = 1;
   int cells_[3] = {1, 1, 1};
-  int columns_;                                // of the cloud as given: here its points are sorted by cell
+  int columns_;                                // columns of the given cloud: here points are sorted by cell
   std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
-  std::vector<std::uint32_t> original_index_;  // of each stored position
+  std::vector<std::uint32_t> original_index_;  // original number of each stored point
 };
 
-// The image window for an organised cloud, brute force for a small one, the grid otherwise.
+// Makes an image window search for an organised cloud, brute force for a small one, the grid otherwise.
 std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m = 0.004);
 
 }  // namespace remote_touch

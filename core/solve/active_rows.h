@@ -1,5 +1,5 @@
-// The rows that hold the solution of a quadratic program, and how they change: the inner part of the method
-// of Goldfarb and Idnani (1983). For quadratic_program.cpp.
+// The active rows, which hold the solution of a quadratic program, and their changes: the inner part of the
+// method of Goldfarb and Idnani (1983). Used by quadratic_program.cpp.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace remote_touch {
 
-// Rows are of unit length. Rounding error of row . y for coordinates of y up to 1:
+// Rows have unit length. Rounding error of row . y for coordinates of y up to 1:
 inline constexpr double kRounding = 1e-14;
-// A row is a combination of others when the square of its part outside of them is below:
+// A row is a combination of others if the square of its part outside of them is below:
 inline constexpr double kParallelSquared = 1e-16;
 
 // The rows that hold y, as the columns of q R: q is orthonormal, and R is kept as its inverse. Columns beyond
@@ -25,7 +25,7 @@ struct ActiveRows {
   Square<N> q, inverse;
 
   // Moves y until it fulfils a row, with the rows that hold y tight and their multipliers at 0 or above: a
-  // row whose multiplier reaches 0 on the way leaves. Returns false if no such y exists.
+  // row whose multiplier reaches 0 on the way is removed. Returns false if no such y exists.
   bool take_in(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
     double its_multiplier = 0;
     for (;;) {
@@ -35,7 +35,7 @@ struct ActiveRows {
         const Packed<N> more = q.transposed_times(outside);
         inside.add(1, more), outside.add(-1, q.times(more));
       }
-      const Packed<N> fraction = inverse.times(inside);  // of each row that holds y in unit_row
+      const Packed<N> fraction = inverse.times(inside);  // coefficient in unit_row of each row that holds y
       const double squared = outside.dot(outside);
       const bool is_free = squared > kParallelSquared;
       double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared

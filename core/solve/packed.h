@@ -16,7 +16,7 @@ inline Pair pair_at(const double* p) {
   std::memcpy(&pair, p, sizeof pair);
   return pair;
 }
-// Both numbers, or the first alone.
+// Writes both numbers, or only the first.
 inline void put(Pair pair, bool two, double* p) {
   std::memcpy(p, &pair, two ? sizeof pair : sizeof(double));
 }
@@ -64,7 +64,7 @@ struct Square {
     for (int j = 0; j < N; ++j) result.set(j, column[j].dot(x));
     return result;
   }
-  // From the right: all rows in the hyperplane normal to v, of which factor is 2 / |v|^2.
+  // Reflects all rows (multiplication from the right) in the hyperplane normal to v; factor is 2 / |v|^2.
   void reflect(const Packed<N>& v, double factor) {
     const Packed<N> along = times(v);
     for (int j = 0; j < N; ++j) column[j].add(-factor * v[j], along);

@@ -15,7 +15,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMax = 1e150;         // its square is finite
 constexpr double kInfeasible = 5e-13;  // violations below may be the rounding of rows that nearly agree
 
-// How far two rows are violated, and the number of the first of them.
+// Violations of two rows; row: in each lane, the number of the first row of the pair it came from.
 struct PairOfRows {
   Pair distance = both(-kInfinite), row = both(0);
 };
@@ -60,7 +60,7 @@ bool QuadraticProgram<N>::add(const Vector& row, double bound) {
 
 namespace {
 
-// In the order in which Eigen adds them.
+// Adds the squares in the order in which Eigen adds them.
 template <int kFirst, int kCount>
 Pair sum_of_squares(const Pair* terms) {
   if constexpr (kCount == 1)
@@ -72,7 +72,7 @@ Pair sum_of_squares(const Pair* terms) {
 
 }  // namespace
 
-// Pairs of rows.
+// Processes rows in pairs.
 template <int N>
 bool QuadraticProgram<N>::add_all(const double* const (&column)[N], const double* bounds, int count) {
   if (count > capacity_ - count_ || count_ % 2 != 0) return false;

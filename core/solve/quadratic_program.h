@@ -20,9 +20,9 @@ template <int N>
 struct ProgramResult {
   ProgramStatus status = ProgramStatus::optimal;
   Eigen::Matrix<double, N, 1> y = Eigen::Matrix<double, N, 1>::Zero();
-  int active_count = 0;       // active rows: those that hold y, at most N; they are linearly independent
+  int active_count = 0;       // number of active rows, which hold y: at most N, linearly independent
   int active[N] = {};         // their numbers, counted from 0 in the order of add()
-  double multiplier[N] = {};  // of each, 0 or more: y - target = sum of multiplier x row
+  double multiplier[N] = {};  // 0 or more for each active row: y - target = sum of multiplier x row
   int iterations = 0;         // passes over all rows
 };
 
@@ -46,22 +46,23 @@ class QuadraticProgram {
   // above.
   bool add(const Vector& row, double bound);
   // The same for `count` rows at once, with the same bits: coordinate k of row i is column[k][i]. Returns
-  // false and adds none where one of them is zero or not finite, too large or small, or capacity() is not
-  // enough. pre: the columns and bounds are padded to pairs.
+  // false and adds none if one of them is zero or not finite, too large or small, if size() is odd, or if
+  // capacity() is not enough. pre: the columns and bounds are padded to pairs.
   bool add_all(const double* const (&column)[N], const double* bounds, int count);
-  // A target that is not finite, or beyond 1e150, gives stalled and y = 0. On infeasible, y is where the
-  // method found the contradiction, and the rows that held it there are the active ones.
+  // Returns stalled and y = 0 for a target that is not finite, or beyond 1e150. On infeasible, y is the
+  // position at which the method found the contradiction, and the rows that held it there are the active
+  // ones.
   ProgramResult<N> nearest(const Vector& target) const;
 
  private:
   struct Violation {
-    double distance;  // to the row's half space
+    double distance;  // distance to the row's half space
     int row;
   };
   Violation max_violation(const double* y) const;
 
   int capacity_, stride_, count_ = 0;
-  std::vector<double> rows_;    // of unit length; column after column, each of stride_ = padded capacity
+  std::vector<double> rows_;    // unit rows, column after column, each of stride_ = padded capacity
   std::vector<double> bounds_;  // divided by the row's length; minus infinity after the last
   std::vector<double> lengths_;
 };

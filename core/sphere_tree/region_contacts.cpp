@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// As many contacts as ContactThinning can sort without losing any.
+// Number of contacts that ContactThinning can sort without losing any.
 constexpr std::size_t kMaxToThin = ContactThinning::kMaxCells / 2;
 
 }  // namespace
@@ -36,22 +36,23 @@ void RegionContacts::reserve(std::size_t points) {
   collision_.reserve(points, points / RegionTree::kPatchPoints + 1);
 }
 
-// Of the smallest gap of a leaf: that to one region.
+// Returns an upper bound of the smallest gap of a leaf: its gap to one region.
 double RegionContacts::bound_m(const CloseLeaf& leaf, std::uint32_t region) const {
   if (region == kNone) return kInfinite;
   const Sphere& other = regions_->spheres().leaves()[region];
   return (leaf.sphere_W.centre - other.centre).norm() - leaf.sphere_W.radius_m - other.radius_m;
 }
 
-// In the tool frame.
+// Makes the contact of a pair, in the tool frame.
 ToolContact RegionContacts::contact(const ChosenPair& pair, const Eigen::Quaterniond& q_TW) const {
   const Vec3 n_T = q_TW * pair.n_W;
   const Sphere& leaf = tool_->leaves()[pair.leaf];
   return {leaf.centre - leaf.radius_m * n_T, n_T, -pair.gap_m, 1};
 }
 
-// What a leaf was deepest in a look ago, or its neighbour now, bounds how deep it is, and with that what is
-// worth a look: deep inside the half of all pairs. Which pairs are chosen does not depend on it.
+// The region in which a leaf was deepest at the last query, or its neighbour is deepest now, gives an upper
+// bound of its smallest gap. This limits the search: deep inside, to half of all pairs. The choice of pairs
+// does not depend on it.
 NearContacts RegionContacts::near(const ToolPose& pose, double, double) {
   choice_.begin();
   std::uint32_t neighbours = kNone;
@@ -70,7 +71,8 @@ NearContacts RegionContacts::near(const ToolPose& pose, double, double) {
   return {contacts_, -min_m};
 }
 
-// Where there are too many, half of the room is for the most urgent, which all hold a tool that is wedged.
+// If there are too many pairs, half of the room is for the most urgent ones, which all hold a tool that is
+// wedged.
 void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
   constexpr std::size_t kHalf = ContactThinning::kMaxCount / 2;
   const std::span<const ChosenPair> chosen = choice_.chosen();
@@ -82,7 +84,7 @@ void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
   contacts_.insert(contacts_.end(), others_.begin(), others_.end());
 }
 
-// Once a pair that touches is known, or one that is nearly as near, those farther away say nothing.
+// Once a pair that touches is known, or one that is nearly as near, pairs farther away have no effect.
 RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N_per_m) {
   RegionTouch touch{kInfinite, 0, 0, own_stiffness_N_per_m};
   double weights = 0, weighted = 0;

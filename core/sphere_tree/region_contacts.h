@@ -13,20 +13,20 @@
 
 namespace remote_touch {
 
-// What a tool touches at a pose.
+// Contact of a tool with regions at a pose.
 struct RegionTouch {
-  double nearest_distance_m;  // smallest gap, negative inside; infinite where none is within the look-ahead
-  int leaf_pairs = 0;         // with gaps of kTouch_m or less
+  double nearest_distance_m;  // smallest gap, negative inside; infinite if none is within the look-ahead
+  int leaf_pairs = 0;         // number of pairs with gaps of kTouch_m or less
   int max_tool_leaves = 0;    // number of tool leaves that have such a pair
   double stiffness_N_per_m;   // mean of k_s over these pairs, weighted by depth; the tool's own without any
 };
 
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless
-// another makes it redundant: see PairChoice. If more are left than the motion takes, and no leaf is deep,
-// those are dropped that only the longest motions can violate. While one is deep, half of the contacts are
-// the deepest, and for the other half ContactThinning keeps the deepest of every cell and octant of
-// directions, so that they are spread over the tool. Does not depend on the kernels' level. Allocates on
-// construction and in on_frame() only.
+// another makes it redundant: see PairChoice. If more pairs remain than the motion can handle, and no leaf is
+// deep, those are dropped that only the longest motions can violate. While one is deep, half of the contacts
+// are the deepest, and for the other half ContactThinning keeps the deepest of every cell and octant of
+// directions, so that they are spread over the tool. The result does not depend on the kernels' level.
+// Allocates on construction and in on_frame() only.
 class RegionContacts final : public NearContactSource {
  public:
   // A pair with a gap of this or less touches. Its weight rises linearly from 0 at this gap to 1 at minus
@@ -37,11 +37,11 @@ class RegionContacts final : public NearContactSource {
   RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m, const Kernels& kernels);
 
   void on_frame(std::shared_ptr<const RegionTree> regions);  // allocates unless reserved
-  void reserve(std::size_t points);                          // for clouds of so many points
+  void reserve(std::size_t points);                          // allocates for clouds of this number of points
   const RegionTree& regions() const { return *regions_; }
 
-  // within_m has no effect: they are always chosen among all pairs within the look-ahead. Nor has side: a
-  // region has only one outside. deepest_m is over all pairs, not only the contacts.
+  // within_m has no effect: the contacts are always chosen among all pairs within the look-ahead. side has no
+  // effect either: a region has only one outside. deepest_m is over all pairs, not only the contacts.
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
 
@@ -59,7 +59,7 @@ class RegionContacts final : public NearContactSource {
   std::shared_ptr<const RegionTree> regions_ = std::make_shared<RegionTree>();
   TreeCollision collision_;
   PairChoice choice_;
-  std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region at the last query
+  std::vector<std::uint32_t> deepest_;  // deepest region at the last query of every leaf of the tool
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, others_;
 };

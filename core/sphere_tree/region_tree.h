@@ -9,9 +9,9 @@
 
 namespace remote_touch {
 
-// A leaf for every measured point with r_f above 0, of that radius; world frame. A node of the lowest level
-// for every patch of 16 x 16 pixels with such points, in blocks of 4 x 4 patches; for a cloud without an
-// image, for every kPatchPoints of them along a space-filling curve.
+// Every measured point with r_f above 0 has a leaf of that radius, in the world frame. Every patch of 16 x 16
+// pixels with such points has a node of the lowest level, in blocks of 4 x 4 patches. In a cloud without an
+// image, every kPatchPoints of them along a space-filling curve have one.
 class RegionTree {
  public:
   static constexpr int kPatchSide_px = 16;
@@ -20,9 +20,9 @@ class RegionTree {
   void assign(const PointCloud& cloud);
 
   const SphereTree& spheres() const { return spheres_; }
-  // Of each leaf, the number of its point in the cloud.
+  // Number in the cloud of the point of each leaf.
   const std::vector<std::uint32_t>& points() const { return points_; }
-  // k_s of a leaf; NaN where its point has none.
+  // k_s of a leaf; NaN if its point has none.
   double stiffness_N_per_m(std::uint32_t leaf) const { return stiffness_N_per_m_[leaf]; }
 
  private:

@@ -1,5 +1,5 @@
-// Few spheres that cover many points: greedy, each next sphere is the one that covers most of the points
-// left.
+// Covers many points by few spheres with a greedy algorithm: each next sphere is the one that covers most of
+// the remaining points.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,13 @@ namespace remote_touch {
 
 class SphereCover {
  public:
-  // points, and spheres to choose from; cell_m: of the grid that finds points, about the size of a sphere.
+  // points: to be covered; choice: spheres to choose from; cell_m: cell size of the grid that finds points,
+  // about the size of a sphere.
   SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m);
 
-  // Spheres of the choice, grown by inflation_m, until all points are covered that any of them covers, or
-  // until there are more than max; of two that cover equally many, the one that comes first.
+  // Selects spheres of the choice, grown by inflation_m, until all points are covered that any of them
+  // covers, or until there are more than max. If two cover equally many, the one that comes first is
+  // selected.
   struct Result {
     std::vector<Sphere> spheres;
     std::size_t left = 0;  // points that are not covered
@@ -32,8 +34,8 @@ class SphereCover {
   double cell_m_;
   Vec3 low_;
   std::int64_t cells_[3];
-  std::vector<Vec3> points_;           // cell by cell
-  std::vector<std::uint32_t> starts_;  // of each cell, its first point; one more at the end
+  std::vector<Vec3> points_;           // sorted by cell
+  std::vector<std::uint32_t> starts_;  // first point of each cell; one more at the end
 };
 
 }  // namespace remote_touch

@@ -6,9 +6,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-12;  // of the distances: a bounding sphere is never too small
+constexpr double kRounding = 1 + 1e-12;  // factor on distances: a bounding sphere is never too small
 
-// (7.3) over count items; item(i) -> const Sphere&.
+// Bounding sphere (7.3) of count items; item(i) -> const Sphere&.
 template <class Item>
 Sphere around(std::size_t count, const Item& item) {
   Sphere all;
@@ -107,7 +107,7 @@ SphereRun SphereTree::run(std::size_t node) const {
 
 void SphereTree::finish() {
   while (level_count_ > 0 && top().size() > kBranching) {
-    std::vector<SphereNode>& level = new_level();  // it may move the others
+    std::vector<SphereNode>& level = new_level();  // this may move the other levels
     const std::vector<SphereNode>& below = levels_[level_count_ - 2];
     for (std::size_t first = 0; first < below.size(); first += kBranching) {
       const std::size_t count = std::min(kBranching, below.size() - first);

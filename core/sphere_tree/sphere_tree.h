@@ -1,4 +1,4 @@
-// Spheres under bounding spheres, 7.3.2 and 7.4: whatever is far away is skipped with one test.
+// Spheres under bounding spheres, 7.3.2 and 7.4: everything that is far away is skipped with one test.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,12 @@ struct Sphere {
   double radius_m = 0;
 };
 
-// Around the mean of the centres, (7.3): fast to compute, but not the smallest. pre: not empty.
+// Bounding sphere around the mean of the centres, (7.3): fast to compute, but not the smallest. pre: not
+// empty.
 Sphere bounding_sphere(std::span<const Sphere> spheres);
 
-// A box around the centres of spheres, and their largest radius: tighter than a bounding sphere where many
-// large spheres lie close together, as regions do.
+// A box around the centres of spheres, and their largest radius: tighter than a bounding sphere if many large
+// spheres lie close together, as regions do.
 struct SphereBox {
   Vec3 low, high;
   double max_radius_m;
@@ -32,24 +33,25 @@ struct SphereBox {
   }
 };
 
-// Its children are first .. first + count - 1 of the level below; on the lowest level, of the leaves.
+// The children of a node are first .. first + count - 1 of the level below, or of the leaves if the node is
+// on the lowest level.
 struct SphereNode {
   Sphere sphere;
-  SphereBox box;  // of all leaves below
+  SphereBox box;  // around all leaves below
   std::uint32_t first = 0, count = 0;
 };
 
 // NOLINTNEXTLINE(bugprone-reserved-identifier): a name that the compiler gives in a comparison of arrays
 class SphereTree {
  public:
-  // Bounding spheres above the lowest level hold this many each, as long as there are more.
+  // Number of nodes in each node above the lowest level, as long as there are more.
   static constexpr std::size_t kBranching = 8;
 
   void clear();  // keeps the memory
-  // One more node of the lowest level. Nodes added one after the other should be near each other, because
-  // they share a node of the next level. No leaves: adds no node.
+  // Adds a node of the lowest level. Nodes added one after the other should be near each other, because they
+  // share a node of the next level. Without leaves no node is added.
   void add(std::span<const Sphere> leaves);
-  // The levels above; once, after the last add().
+  // Makes the levels above. To be called once, after the last add().
   void finish();
 
   bool empty() const { return leaves_.empty(); }
@@ -68,15 +70,16 @@ class SphereTree {
   void pad_groups(std::size_t padding);
 
   std::vector<Sphere> leaves_;
-  std::vector<std::vector<SphereNode>> levels_;  // those that are used come first
+  std::vector<std::vector<SphereNode>> levels_;  // the first level_count_ are in use
   std::size_t level_count_ = 0;
-  // The leaves once more, as SphereRun has them: those of each node, and boxes around kLanes of them.
+  // The leaves once more, in the layout of SphereRun: the leaves of each node, and boxes around kLanes of
+  // them.
   struct RunStart {
     std::size_t leaf, group;
   };
   std::vector<double> x_, y_, z_, radius_;
   std::vector<double> low_[3], high_[3], max_radius_;
-  std::vector<RunStart> run_starts_;  // of each node, in these columns
+  std::vector<RunStart> run_starts_;  // start of each node in these columns
 };
 
 }  // namespace remote_touch

@@ -14,15 +14,15 @@
 
 namespace remote_touch {
 
-// The device holds the tool by its centre of mass. Only points with r_f above 0 have a region; a point's k_s,
-// where it has one, is the stiffness of the coupling while its region holds the tool, (5.3).
+// The device holds the tool by its centre of mass. Only points with r_f above 0 have a region. If a point has
+// a k_s, it is the stiffness of the coupling while its region holds the tool, (5.3).
 //
-// Of the output: nearest_distance_m is the smallest gap between a leaf of the tool and a region, infinite
-// beyond the look-ahead; contact_count is the number of leaf pairs that touch, contact_clusters that of the
-// tool's leaves among them; tool_penetration_m is the depth of the deepest leaf in a region.
+// Outputs: nearest_distance_m is the smallest gap between a leaf of the tool and a region, infinite beyond
+// the look-ahead; contact_count is the number of leaf pairs that touch, contact_clusters that of the tool's
+// leaves among them; tool_penetration_m is the depth of the deepest leaf in a region.
 class SphereTreeRenderer final : public Renderer {
  public:
-  // Uses only the parameters that region_parameters() lists. spheres: of the tool, in its frame. pre:
+  // Uses only the parameters that region_parameters() lists. spheres: leaves of the tool, in its frame. pre:
   // validate(parameters) is empty.
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                      const std::shared_ptr<const SphereTree>& spheres, const Kernels& kernels);
@@ -43,7 +43,7 @@ class SphereTreeRenderer final : public Renderer {
   LookAheadMotion motion_;
 
   ToolPose pose_;
-  Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the regions push the tool
+  Vec3 normal_W_ = Vec3::Zero();  // contact normal: direction in which the regions push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
   SlavePosition slave_;

@@ -1,4 +1,4 @@
-// Places of a mesh's surface.
+// Sample positions on a mesh's surface.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace remote_touch {
 
-// Places of every triangle no farther apart than spacing_m along its longest side and the height above it,
-// its corners among them.
+// Returns positions on every triangle, its corners among them. They are no farther apart than spacing_m along
+// its longest side and along the height above it.
 std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m);
 
-// Of the places in every cube of side spacing_m the first.
+// Keeps the first of the positions in every cube of side spacing_m.
 std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m);
 
 double surface_area_m2(const TriangleMesh& mesh);

@@ -15,17 +15,17 @@ namespace remote_touch {
 
 namespace {
 
-// Places of the surface that are to be covered, about: the finer the more leaves there are.
+// Approximate number of surface positions to be covered: it grows with the number of leaves.
 constexpr double kSamples = 60000, kSamplesOfLeaf = 100;
-constexpr double kDenser = 0.4;      // are the places that the result is measured at
+constexpr double kDenser = 0.4;      // relative spacing of the positions at which the result is measured
 constexpr double kDominated = 0.85;  // see inscribed_balls()
-constexpr int kBisections = 12;      // of the growth
-constexpr int kPlacesOfLeaf = 200;   // at which a leaf's distance from the mesh is measured
+constexpr int kBisections = 12;      // steps of the search for the growth
+constexpr int kPlacesOfLeaf = 200;   // positions on a leaf at which its distance from the mesh is measured
 constexpr std::size_t kLeavesOfNode = 8;
 
-// The largest balls inscribed in the tool: those around nodes of the field near its medial axis. From any
-// other place the distance to the surface grows by nearly the whole way to one of the neighbours, and the
-// ball there holds the ball here.
+// Returns the largest balls inscribed in the tool: those around nodes of the field near its medial axis. From
+// any other node the distance to the surface grows towards one of the neighbours by nearly the full distance
+// between them, and the ball there holds the ball here.
 std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& triangles) {
   const VoxelGrid& grid = tool.grid;
   const int n[3] = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
@@ -50,20 +50,21 @@ std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& t
             }
         if (steepest < kDominated) balls.push_back({grid.origin_T + grid.size_m * Vec3(i, j, k), here});
       }
-      // Deep inside the field can be too large by a voxel.
+      // Deep inside, the field can be too large by a voxel.
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::size_t i = 0; i < balls.size(); ++i)
     balls[i].radius_m = std::sqrt(triangles.nearest(balls[i].centre, 0).squared_m2);
   return balls;
 }
 
-// The least growth with which max_leaves cover the surface, by bisection between none and the whole tool.
+// Finds the least growth with which max_leaves cover the surface, by bisection between none and the whole
+// tool.
 SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, std::size_t max_leaves,
                              double& inflation_m) {
   double low = 0, high = 2 * tool.reach_m;
   SphereCover::Result best = cover.cover(high, max_leaves);
   for (int i = 0; i < kBisections; ++i) {
-    // Most of the way is far too much: the first steps divide by ten.
+    // Most of the range is far too much: the first steps divide by ten.
     const double middle = low == 0 ? 0.1 * high : 0.5 * (low + high);
     SphereCover::Result result = cover.cover(middle, max_leaves);
     if (result.left == 0 && result.spheres.size() <= max_leaves)
@@ -75,7 +76,8 @@ SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, st
   return best;
 }
 
-// Leaves that are near each other follow each other: halves along the longest side, and halves of these.
+// Sorts leaves so that those near each other follow each other: halves along the longest side, and halves of
+// these.
 void sort_by_place(std::span<Sphere> leaves) {
   if (leaves.size() <= 2) return;
   BoundingBox box;
@@ -84,7 +86,7 @@ void sort_by_place(std::span<Sphere> leaves) {
   box.sizes().maxCoeff(&axis);
   std::stable_sort(leaves.begin(), leaves.end(),
                    [axis](const Sphere& a, const Sphere& b) { return a.centre[axis] < b.centre[axis]; });
-  // Whole nodes in the first half.
+  // The first half has whole nodes only.
   const std::size_t nodes = (leaves.size() + kLeavesOfNode - 1) / kLeavesOfNode;
   const std::size_t half = leaves.size() > kLeavesOfNode ? (nodes / 2) * kLeavesOfNode : leaves.size() / 2;
   sort_by_place(leaves.first(half)), sort_by_place(leaves.subspan(half));
@@ -100,7 +102,7 @@ SphereTree tree_of(std::vector<Sphere> leaves) {
   return tree;
 }
 
-// The most that a sample of the surface lies outside all leaves.
+// Returns the largest distance of a sample of the surface outside all leaves.
 double max_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
   double max_distance = 0;
 #pragma omp parallel for reduction(max : max_distance)
@@ -112,7 +114,7 @@ double max_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leave
   return max_distance;
 }
 
-// The most that a place of a leaf lies outside the mesh, over places spread evenly on it.
+// Returns the largest distance of a position on a leaf outside the mesh, over positions spread evenly on it.
 double max_outside_m(const VoxelTool& tool, const TriangleTree& triangles, std::span<const Sphere> leaves) {
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
   double max_distance = 0;
@@ -146,7 +148,7 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   ToolSpheres made;
   std::vector<Sphere> leaves =
       tightest(cover, tool, static_cast<std::size_t>(max_leaves), made.inflation_m).spheres;
-  // Between the places that were covered some of the surface is left.
+  // Some of the surface between the covered positions is still outside the leaves.
   const double finer_m = kDenser * spacing_m;
   const std::vector<Vec3> dense = thinned(surface_samples(tool.mesh, finer_m), 0.5 * finer_m);
   const double remaining_m = std::max(0.0, max_inside_m(dense, leaves));
@@ -160,7 +162,7 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
 
 std::string text(const ToolSpheres& made) {
   const auto mm = [](double metres) {
-    const auto hundredths = static_cast<long>(std::ceil(1e5 * metres));  // never less than it is
+    const auto hundredths = static_cast<long>(std::ceil(1e5 * metres));  // never less than the true value
     const std::string part = std::to_string(100 + hundredths % 100);
     return std::to_string(hundredths / 100) + "." + part.substr(1);
   };

@@ -9,10 +9,10 @@ namespace {
 
 static_assert(SphereTree::kBranching <= 32, "the topmost nodes are the bits of a word");
 
-constexpr double kRoundingOfSums = 1 + 1e-12;  // of the sums: no region within the margin is passed over
+constexpr double kRoundingOfSums = 1 + 1e-12;  // factor on sums: no region within the margin is skipped
 
-// Whether some region below a node may be. Without a root, and without a branch more for what is no number:
-// such spheres are never near.
+// True if some region below a node may be within the margin. The test needs no root, and no extra branch for
+// NaN: spheres with NaN are never near.
 bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
   const SphereBox& box = node.box;
   const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRoundingOfSums;
@@ -108,7 +108,7 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
   return found;
 }
 
-// A heap with the shallowest of those that are kept on top, once there is no more room.
+// Keeps a heap once there is no more room: the shallowest of the kept pairs is on top.
 std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
   std::size_t count = 0;
   for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {

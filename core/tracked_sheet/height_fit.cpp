@@ -15,10 +15,10 @@ constexpr int kCells = HeightMap::kCells;
 constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
 
 constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
-constexpr double kConfidence = 3;                // of an interval, in standard errors
-constexpr double kTooUnsure = 0.25;              // standard error that tells no height, contact radii
-constexpr double kMinNoise = 0.01;               // what the planes themselves cannot follow counts as noise
-constexpr double kMinWindowPoints = 5;           // points of a window
+constexpr double kConfidence = 3;                // half width of an interval, in standard errors
+constexpr double kTooUnsure = 0.25;              // larger standard errors determine no height, contact radii
+constexpr double kMinNoise = 0.01;               // deviations that the planes cannot follow count as noise
+constexpr double kMinWindowPoints = 5;           // minimum number of points in a window
 
 int corner(double coordinate) {
   return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
@@ -89,7 +89,8 @@ PlaneFit HeightFit::plane_around(double u, double v, double half_side) const {
 
 double HeightFit::noise() const {
   constexpr double kEnough = 9, kMinOfBlock = 6, kLow = 0.4;
-  // The variance at that quantile in units of the mean one: of chi square with about 8 degrees of freedom.
+  // The variance at that quantile in units of the mean variance, for a chi square with about 8 degrees of
+  // freedom.
   constexpr double kOfMean = 0.85;
   double covered = 0;
   for (int j = 1; j < kCells; j += 2)
@@ -130,7 +131,7 @@ void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const 
     const PlaneFit fit = plane(window(2 * i, 2 * j, half), u, v);
     if (!fit.valid) continue;
     const double error = sigma * std::sqrt(fit.variance);
-    if (node.known && error > node.error) continue;  // one-sided: at the border of the points
+    if (node.known && error > node.error) continue;  // the window is one-sided: at the border of the points
     if (node.known && node.error > kTooUnsure) low = -kInfinity, high = kInfinity;
     low = std::max(low, fit.height - kConfidence * error);
     high = std::min(high, fit.height + kConfidence * error);

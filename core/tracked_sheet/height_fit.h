@@ -1,4 +1,4 @@
-// From points with noise to the heights of a sheet: local planes of least squares.
+// Fit of the heights of a sheet to points with noise: local planes of least squares.
 #pragma once
 
 #include <array>
@@ -12,18 +12,20 @@ namespace remote_touch {
 
 // A plane through the points of a window.
 struct PlaneFit {
-  double height = 0, slope_u = 0, slope_v = 0;  // at the queried place
-  double variance = 0;                          // of the height, in units of the noise's
+  double height = 0, slope_u = 0, slope_v = 0;  // values at the queried position
+  double variance = 0;                          // variance of the height, in units of the noise's variance
   double residual = 0;                          // sum of squares
-  double count = 0;                             // points
-  bool valid = false;                           // they do not lie on a line
+  double count = 0;                             // number of points
+  bool valid = false;                           // the points do not lie on a line
 };
 
-// Sums over the members of a patch, from which those over any window of whole cells follow in constant time.
+// Sums over the members of a patch, from which the sums over any window of whole cells follow in constant
+// time.
 class HeightFit {
  public:
   HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
-  // The members of points, which all lie on the map's square, less the trend: planes are fitted to the rest.
+  // Sums over the members of points, which all lie on the map's square, after the trend is subtracted: planes
+  // are fitted to the rest.
   void take(const PatchPoints& points, const Trend& trend = {});
 
   // half_side of the window, in contact radii, is rounded to whole cells.
@@ -31,11 +33,11 @@ class HeightFit {
   // Standard deviation of the heights about the planes of small blocks, a low quantile over the blocks, so
   // that blocks with edges have no effect.
   double noise() const;
-  // At each node the plane of the widest window that differs from the narrower ones by no more than noise of
-  // that standard deviation explains (Lepski's rule, by intersecting confidence intervals: Goldenshluger and
-  // Nemirovski 1997). Windows too narrow to determine a height are skipped.
+  // Sets each node of the map to the plane of the widest window that differs from the narrower ones by no
+  // more than noise of standard deviation sigma explains (Lepski's rule, by intersecting confidence
+  // intervals: Goldenshluger and Nemirovski 1997). Windows too narrow to determine a height are skipped.
   void fit(double sigma, HeightMap& map) const;
-  // Members in a square of one contact radius, the median over where there are any.
+  // Number of members in a square of one contact radius, the median over the squares that have any.
   double typical_density() const { return density_; }
 
  private:
@@ -52,7 +54,7 @@ class HeightFit {
 
   Trend trend_;
   double density_ = 0;
-  std::vector<Sums> sums_;  // at each corner of cells, of all points with smaller u and v
+  std::vector<Sums> sums_;  // sums at each corner of cells, over all points with smaller u and v
 };
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// How many points of a patch lie at which height.
+// Histogram of the heights of a patch's points.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class HeightProfile {
     if (bin >= 0 && bin < bins_) count_[static_cast<std::size_t>(bin)] += 1;  // NaN is neither
   }
 
-  // Adds points by the numbers of their bins; bins() stands for no bin.
+  // Adds points by the numbers of their bins; bins() means no bin.
   void add_bins(const std::int32_t* bin, std::size_t number);
 
   int bins() const { return bins_; }
@@ -31,19 +31,20 @@ class HeightProfile {
 
   // Counts per bin under a triangle of about this standard deviation.
   HeightProfile smoothed(double sigma) const;
-  // How far the other profile must be moved down to agree best with this one, at most reach either way: the
-  // largest sum of products. Of nearly equal ones the smallest.
+  // Returns the distance, at most reach either way, by which the other profile must be moved down to agree
+  // best with this one: the sum of products is the largest. Of nearly equal ones it is the smallest distance.
   double shift_of(const HeightProfile& other, double reach) const;
-  // How far from a height, upwards (1) or downwards (-1), another sheet begins: at the bottom of a valley
-  // that chance does not explain. Twice the range if there is none. pre: a smoothed profile.
+  // Returns the distance from a height, upwards (1) or downwards (-1), at which another sheet begins: the
+  // bottom of a valley that chance does not explain. Returns 2 half_range() if there is none. pre: a smoothed
+  // profile.
   double valley_from(double height, int direction) const;
 
  private:
   double half_range_ = 0;
-  double window_ = 1;  // how many bins a count is the mean of
+  double window_ = 1;  // number of bins that a count is the mean of
   int bins_ = 0;
   static constexpr int kMaxBins = 1024;
-  std::array<double, kMaxBins + 1> count_;  // of each bin; after the last, of points in no bin
+  std::array<double, kMaxBins + 1> count_;  // count of each bin; after the last, of points in no bin
 };
 
 }  // namespace remote_touch

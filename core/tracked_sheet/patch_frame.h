@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// A place of a patch: u and v along it, h along the normal, in contact radii.
+// A position in a patch: u and v along it, h along the normal, in contact radii.
 struct PatchPlace {
   double u, v, h;
 };
@@ -39,7 +39,7 @@ class PatchFrame {
   double unit_m() const { return unit_m_; }
   void move_along_normal(double units) { origin_W_ += units * unit_m_ * n_W_; }
 
-  // To a multiple of 2^-12, halves to even; x is below 2^39.
+  // Rounds x to a multiple of 2^-12, halves to even; pre: x is below 2^39.
   static double rounded(double x) { return (x + kRoundsToPatchGrid) - kRoundsToPatchGrid; }
 
  private:

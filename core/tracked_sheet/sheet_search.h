@@ -1,5 +1,5 @@
-// The points of a frame as a tracked sheet shows them: those of its patch without their noise, those beyond
-// as they are.
+// Search over the points of a frame that a tracked sheet shows: those of its patch without their noise, those
+// beyond unchanged.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@ namespace remote_touch {
 class SheetSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
-  // Begins with no points in the region. buffer: scratch for points of the frame while gather() runs, with
-  // radius and stiffness whether the frame has them or not.
+  // Begins with no points in the region. buffer: scratch memory for points of the frame while gather() runs.
+  // It has columns for radius and stiffness even if the frame has none.
   void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
              std::shared_ptr<GatheredPoints> buffer);
-  // Adds a point of the frame, given by its row in `gathered`, at the place where it is to be shown.
+  // Adds a point of the frame, given by its row in `gathered`, at the position where it is to be shown.
   void add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row);
   void finish();
 
@@ -31,7 +31,7 @@ class SheetSearch final : public NeighbourSearch {
   double max_fixture_radius_m() const override { return frame_->max_fixture_radius_m(); }
 
  private:
-  static constexpr int kCells = 20;  // along each side of the region
+  static constexpr int kCells = 20;  // number along each side of the region
   struct Columns {
     Buffer<double> x, y, z, radius, stiffness;
     Buffer<std::uint32_t> index;
@@ -41,7 +41,7 @@ class SheetSearch final : public NeighbourSearch {
   PatchRegion region_;
   std::shared_ptr<const NeighbourSearch> frame_;
   std::shared_ptr<GatheredPoints> buffer_;
-  Columns added_, sorted_;  // in the order of add(), and cell by cell
+  Columns added_, sorted_;  // added_: in the order of add(); sorted_: cell by cell
   Buffer<std::uint32_t> cell_of_;
   std::size_t count_ = 0;
   std::array<std::uint32_t, kCells * kCells + 1> start_{};

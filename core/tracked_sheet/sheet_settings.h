@@ -1,4 +1,4 @@
-// How a sheet is searched for, and what is shown of it.
+// Settings of the search for a sheet, and of the noise reduction of its points.
 #pragma once
 
 #include <string>

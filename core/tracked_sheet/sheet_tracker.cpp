@@ -15,12 +15,12 @@ namespace remote_touch {
 namespace {
 
 // Lengths in contact radii.
-constexpr double kNoisePart = 3.5;  // what lies further from a sheet than this many sigma is no noise of it
-constexpr double kThinnest = 0.5;   // half of a sheet without noise
-constexpr double kLost = 0.2, kDoubtful = 0.5;  // share of the members found again
+constexpr double kNoisePart = 3.5;  // points further from a sheet than this many sigma are not its noise
+constexpr double kThinnest = 0.5;   // half thickness of a sheet without noise
+constexpr double kLost = 0.2, kDoubtful = 0.5;  // shares of the members found again
 constexpr double kMiddle = 5;  // within this of the origin the patch shows all that the proxy touches
-constexpr double kResolution = 0x1p-12;  // of places; what is less is no motion
-constexpr double kTouching = 2.5;        // a proxy further away is held by something else
+constexpr double kResolution = 0x1p-12;  // resolution of positions: less is no motion
+constexpr double kTouching = 2.5;        // a proxy further away is held by another surface
 
 double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
@@ -37,7 +37,7 @@ void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiff
   sheet_.reserve(points);
   gathered_->reserve(points, with_radius, with_stiffness);
   if (shows_ == Shows::points) return;
-  buffer_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
+  buffer_->reserve(points, true, true);  // the shown frame may have other columns than the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
 }
 
@@ -45,7 +45,7 @@ void SheetTracker::swap_buffers() {
   reserve(newest_->size(), newest_->has_fixture_radius(), newest_->has_stiffness());
 }
 
-// Half of the height that is looked at besides what a gate asks for.
+// Half height of the region that is searched, without the gate.
 double SheetTracker::half_height() const {
   return std::max(4.0, 2 + kNoisePart * sigma_);
 }
@@ -65,7 +65,7 @@ void SheetTracker::forget() {
   sheet_.clear();
 }
 
-// From the middle of the patch outwards.
+// Builds the map from the middle of the patch outwards.
 void SheetTracker::grow(const PatchFrame& frame, double known, const Vec3& proxy_W) {
   region_ = {frame, HeightMap::kHalf, 0};
   gather(half_height());
@@ -96,7 +96,7 @@ void SheetTracker::begin(const Vec3& foot_W, const Vec3& normal_W, double sigma)
   show(proxy_W);
 }
 
-// By the hand's motion, or because the tracked sheet is not what holds the proxy.
+// True if the hand moved to another surface, or if the tracked sheet is not the one that holds the proxy.
 bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
   const PatchPlace p = patch().place(proxy.p_W);
   if (!(p.u * p.u + p.v * p.v < region_.radius * region_.radius)) return true;
@@ -106,7 +106,7 @@ bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
   return !map_.covers(p.u, p.v) || nearer_stray_;
 }
 
-// The map around another middle, or along another normal, from the members of the frame before.
+// Rebuilds the map around another middle, or along another normal, from the members of the frame before.
 void SheetTracker::recentre(const Vec3& middle_W) {
   constexpr double kOff = 1.5, kSteep = 0.2, kTooSteep = 2;
   const PatchPlace p = patch().place(middle_W);
@@ -130,7 +130,7 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   fit_.fit(0.3 * sigma_, map_);
 }
 
-// Brings the origin back to a sheet that has moved away from it, unforeseen, so far that it would soon leave
+// Moves the origin back to a sheet that has moved away from it, unforeseen, so far that it would soon leave
 // the region.
 void SheetTracker::level() {
   constexpr double kFar = 2;
@@ -141,7 +141,7 @@ void SheetTracker::level() {
   for (PatchPlace& q : sheet_) q.h -= height;
 }
 
-// From the last two shifts; of their change as much as is not noise.
+// Predicts the next shift from the last two: their change counts only as far as it is not noise.
 double SheetTracker::predicted_shift(double interval_s) const {
   if (age_ == 0 || !(interval_s_ > 0)) return 0;
   const double ratio = interval_s / interval_s_;
@@ -149,8 +149,8 @@ double SheetTracker::predicted_shift(double interval_s) const {
   return shift_ * ratio + surely(change, 1.5 * shift_error_) * ratio * ratio;
 }
 
-// Which points belong to the sheet that the map predicts: those within its noise, and nearer to it than to
-// another sheet. Returns their number.
+// Selects the points that belong to the sheet that the map predicts: those within its noise, and nearer to it
+// than to another sheet. Returns their number.
 double SheetTracker::find_members(const PatchPlace& proxy) {
   points_.set_residuals(map_);
   const HeightProfile smooth = points_.profile_near(proxy, kRegistrationReach, region_.half_height)
@@ -159,7 +159,7 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
   up_ = std::min(max, smooth.valley_from(0, 1)), down_ = std::min(max, smooth.valley_from(0, -1));
   double count = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const bool is_member = points_.residual(i) <= up_ && points_.residual(i) >= -down_;  // NaN is none
+    const bool is_member = points_.residual(i) <= up_ && points_.residual(i) >= -down_;  // false for NaN
     points_.set_member(i, is_member);
     count += is_member;
   }
@@ -172,7 +172,7 @@ void SheetTracker::fit_map(double weight_of_new_noise) {
   sigma_ += weight_of_new_noise * (fit_.noise() - sigma_);
 }
 
-// Finds the sheet in the newest frame; false when it is gone.
+// Finds the sheet in the newest frame. Returns false if it is not found.
 bool SheetTracker::follow(const Vec3& proxy_W) {
   const double before = static_cast<double>(sheet_.size());
   const double first = age_ >= 1 ? s_.gate_m : s_.initial_gate_m;
@@ -199,7 +199,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
   return false;
 }
 
-// From which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
+// Returns the distance at which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
 double SheetTracker::contact_distance(const PatchPlace& proxy) const {
   if (missed_ > 0) return pressed_distance_;
   const PointsView all = gathered_->view();
@@ -259,8 +259,8 @@ ShownPoint SheetTracker::shown(const Vec3& p_W) const {
   return shown;
 }
 
-// Points without their noise lie elsewhere when they are seen from another place: how far a proxy must then
-// go along the normal not to be in the sheet.
+// Points without their noise lie elsewhere when the patch is seen from another position. Returns the distance
+// by which the proxy must then move along the normal, so that it is not in the sheet.
 double SheetTracker::exit_distance(const Vec3& proxy_W) const {
   const PatchPlace p = patch().place(proxy_W);
   const double now = clearance(proxy_W);
@@ -268,8 +268,9 @@ double SheetTracker::exit_distance(const Vec3& proxy_W) const {
   return std::max(0.0, contact_distance(p) - now);
 }
 
-// A proxy that the sheet holds back keeps its clearance; a free one is moved only out of a sheet that swept
-// over it, and no further than the sheet moved. In contact radii, along the normal.
+// Returns the displacement of the proxy along the normal, in contact radii. A proxy that the sheet holds back
+// keeps its clearance. A free proxy is moved only out of a sheet that swept over it, and no further than the
+// sheet moved.
 double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearance_before) const {
   const double now = clearance(proxy.p_W), moved = clearance_before - now;
   if (!(std::abs(moved) > kResolution)) return 0;
@@ -278,7 +279,7 @@ double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearanc
   return map_.covers(p.u, p.v) ? std::clamp(contact_distance(p) - now, 0.0, std::max(0.0, moved)) : 0;
 }
 
-// Where the sheet was nowhere seen before.
+// Searches for a sheet anew. Its motion is 0, because it was not seen before.
 SheetUpdate SheetTracker::reacquire(const Vec3& proxy_W) {
   restart(proxy_W);
   return {show(proxy_W), Vec3::Zero(), 0, Vec3::Zero()};
@@ -288,7 +289,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
                                    double interval_s) {
   const Vec3 ahead = last_proxy_W_ ? Vec3(0.5 * (proxy.p_W - *last_proxy_W_)) : Vec3::Zero();
   last_proxy_W_ = proxy.p_W;
-  // From the frame before, whose points are still there.
+  // These are values of the frame before, whose points are still stored.
   const bool continues = tracks_ && !is_of_other_surface(proxy);
   const double held = continues ? contact_distance(patch().place(proxy.p_W)) : 1;
   newest_ = std::move(frame);
@@ -316,7 +317,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   return update;
 }
 
-// From how the clearance of a resting point changed.
+// Computes the velocity of the sheet, m/s, from the change of the clearance of a resting point.
 double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, double interval_s) {
   double moved = clearance_before - clearance(proxy_W);
   if (!std::isfinite(moved) || !(interval_s > 0)) return 0;
@@ -331,9 +332,9 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
 }
 
 bool SheetTracker::must_requery(const Vec3& proxy_W) const {
-  if (!newest_ || missed_ > 0) return false;  // where the sheet is missing there is nothing to be seen
+  if (!newest_ || missed_ > 0) return false;  // a missing sheet cannot be queried
   if (!tracks_) return (proxy_W - query_position_W_).norm() > unit_m_;
-  const double near_m = 0.999 * kMiddle * unit_m_;  // no place is farther off along the patch than in space
+  const double near_m = 0.999 * kMiddle * unit_m_;  // distances along the patch are not larger than in space
   if ((proxy_W - patch().origin_W()).squaredNorm() < near_m * near_m) return false;
   const PatchPlace p = patch().place(proxy_W);
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
@@ -354,7 +355,7 @@ SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
   return update;
 }
 
-// The members without their noise, of the others those that are surfaces.
+// Shows the members without their noise, and from the other points those that are surfaces.
 std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
   query_position_W_ = proxy_W;
   nearer_stray_ = false;

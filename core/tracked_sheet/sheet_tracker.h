@@ -1,5 +1,5 @@
-// Follows the sheet of surface in front of a proxy from frame to frame. A tool has several, each with a place
-// of the tool as its proxy: core/tracked_tool.
+// Follows the sheet of surface in front of a proxy from frame to frame. A tool has several trackers, each
+// with a place of the tool as its proxy: core/tracked_tool.
 #pragma once
 
 #include <memory>
@@ -15,76 +15,77 @@
 
 namespace remote_touch {
 
-// Where the proxy is, and whether a surface holds it back.
+// Position of the proxy; pressing: a surface holds it back.
 struct ProxyPlace {
   Vec3 p_W = Vec3::Zero();
   bool pressing = false;
 };
 
-// The points of a frame to show, and how the proxy is to follow; world frame.
+// The points of a frame to show, and the motion that the proxy has to follow; world frame.
 struct SheetUpdate {
-  std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet given up
+  std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet dropped
   Vec3 displacement_m = Vec3::Zero();
   double velocity_m_per_s = 0;
   Vec3 normal_W = Vec3::Zero();
 };
 
-// What a tracker shows a point of the newest frame as. In its region a point is of the sheet, of another
-// surface, or a stray; of the sheet it is moved onto it along the patch's normal.
+// The class that the tracker assigns to a point of the newest frame. In its region a point belongs to the
+// sheet, to another surface, or is a stray. A point of the sheet is moved onto it along the patch's normal.
 struct ShownPoint {
   enum class Kind { outside, sheet, surface, stray };
   Kind kind = Kind::outside;
-  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // of the sheet
-  double weight = 0;    // of the sheet: 1 in the middle of the patch, falling to 0 at its border
-  double residual = 0;  // how far it lay above the sheet, contact radii
+  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // values on the sheet
+  double weight = 0;    // points of the sheet: 1 in the middle of the patch, falling to 0 at its border
+  double residual = 0;  // height of the measured point above the sheet, contact radii
 };
 
 class SheetTracker {
  public:
-  // search: the points to show are a NeighbourSearch, and a fixture keeps the proxy at its distance; points:
-  // SheetUpdate::points is the frame as it came, or null, and shown() gives each point.
+  // search: the points to show are a NeighbourSearch, and a fixture keeps the proxy at its distance.
+  // points: SheetUpdate::points is the frame as it came, or null, and shown() gives each point.
   enum class Shows { search, points };
 
   SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
                Shows shows = Shows::search);
-  // For frames of so many points; allocates only if there was less capacity.
+  // Reserves memory for frames of this number of points; allocates only if there was less capacity.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
-  // A new frame, interval_s after the one before.
+  // Processes a new frame, interval_s after the one before.
   SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
                        double interval_s);
   // Keeps a frame for requery() while the proxy has no position yet, and shows it as it is.
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
-  // The proxy has left the middle of the patch.
+  // True if the proxy has left the middle of the patch.
   bool must_requery(const Vec3& proxy_W) const;
-  // Gives up a missing sheet and searches for one in the newest frame. No allocation.
+  // Drops a missing sheet and searches for one in the newest frame. No allocation.
   SheetUpdate reacquire(const Vec3& proxy_W);
-  // Or begins with a sheet that is known to pass near a place with this normal, which the patch then keeps.
+  // Begins with a sheet that is known to pass near a position with this normal, which the patch then keeps.
   // Its noise is about sigma, contact radii. No allocation.
   void begin(const Vec3& foot_W, const Vec3& normal_W, double sigma);
-  // The newest frame's points around the proxy's new place. No allocation.
+  // Updates the patch around the proxy's new position, from the newest frame's points. No allocation.
   SheetUpdate requery(const ProxyPlace& proxy);
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
 
-  // The sheet in the newest frame in which it was seen, if it tracks one; lengths in contact radii.
+  // The sheet in the newest frame in which it was seen, if the tracker has one; lengths in contact radii.
   bool tracks() const { return tracks_; }
   const PatchRegion& region() const { return region_; }
   const HeightMap& map() const { return map_; }
   double sigma() const { return sigma_; }
-  // How far a place lies above the sheet, along the patch's normal; NaN where the map knows no height.
+  // Height of a position above the sheet, along the patch's normal; NaN where the map has no height.
   double clearance(const Vec3& p_W) const;
-  // How far the newest frame moved the sheet at a place, along the patch's normal; 0 for less than the
-  // resolution of places, NaN where it is not known, as where the sheet was nowhere seen before.
+  // Motion of the sheet at a position in the newest frame, along the patch's normal. It is 0 if it is less
+  // than the resolution of positions, and NaN if it is not known, for example because the sheet was not seen
+  // before.
   double moved(const Vec3& p_W) const;
-  // Standard error of that.
+  // Standard error of that motion.
   double moved_error(const Vec3& p_W) const;
   ShownPoint shown(const Vec3& p_W) const;
-  // Members in a square of one contact radius.
+  // Number of members in a square of one contact radius.
   double density() const { return fit_.typical_density(); }
 
  private:
-  static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is left as it is
+  static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is not removed
   void gather(double half_height);
   const PatchFrame& patch() const { return region_.frame; }
   void swap_buffers();
@@ -123,20 +124,20 @@ class SheetTracker {
     PatchFrame frame;
     HeightMap map;
     bool known = false;
-  } before_;  // the newest frame: where the sheet was, over the same patch
+  } before_;  // position of the sheet before the newest frame, over the same patch
   HeightFit fit_;
   PatchPoints points_;
   StrayPoints strays_;
-  std::vector<PatchPlace> sheet_;  // the members at the places where they are shown
+  std::vector<PatchPlace> sheet_;  // the members at their shown positions
   HeightProfile profile_;
   double sigma_ = 0;
   double up_ = 0, down_ = 0;  // members lie no further above and below the sheet than this
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
-  int age_ = 0, missed_ = 0;     // shifts measured; frames without the sheet
+  int age_ = 0, missed_ = 0;     // number of measured shifts; number of frames without the sheet
   double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen
   bool nearer_stray_ = false;
   Vec3 query_position_W_ = Vec3::Zero();
-  std::optional<Vec3> last_proxy_W_;  // at the frame before
+  std::optional<Vec3> last_proxy_W_;  // position at the frame before
 };
 
 }  // namespace remote_touch

@@ -1,10 +1,10 @@
 // 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
 // frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
 //
-// Each frame: the sheet in front of the proxy is found again where its motion predicts it and registered to
-// the frame before; a proxy that it holds back moves with it, a free one only when the sheet swept over it;
-// its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of the
-// proxy, with the measured velocity in (4.15).
+// In each frame the sheet in front of the proxy is found again where its motion predicts it, and registered
+// to the frame before. A proxy that it holds back moves with it; a free one moves only if the sheet swept
+// over it. The sheet's points are moved onto the local planes that fit them, as far as noise explains. Ticks
+// are those of the proxy, with the measured velocity in (4.15).
 #pragma once
 
 #include <limits>
@@ -46,12 +46,12 @@ class TrackedSheetRenderer final : public Renderer {
   const int max_hold_frames_;
   ProxyRenderer proxy_;
   SheetTracker tracker_;
-  std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
-  double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
-  UsualInterval usual_interval_;                  // between such frames
-  double hold_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
+  std::shared_ptr<const NeighbourSearch> shown_;  // points that the proxy uses
+  double captured_s_ = 0;                         // time of the newest frame in which the sheet was seen
+  UsualInterval usual_interval_;                  // interval between such frames
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // finite while the sheet is missing
   bool has_frame_ = false;
-  bool placed_ = false;  // the proxy is where the HIP was
+  bool placed_ = false;  // the proxy has started at the HIP
 };
 
 }  // namespace remote_touch

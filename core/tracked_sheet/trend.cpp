@@ -7,11 +7,11 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kTerms = 6, kPlane = 3;  // of the quadratic; the first of them are its plane
+constexpr int kTerms = 6, kPlane = 3;  // number of terms of the quadratic; the first kPlane are its plane
 
-// Cholesky; false where the matrix is not safely positive. Solves in place.
+// Solves a x = b in place by Cholesky's method. Returns false if the matrix is not safely positive.
 bool solve(double a[kTerms][kTerms], double b[kTerms]) {
-  constexpr double kMinFraction = 1e-4;  // of a diagonal element that may be left
+  constexpr double kMinFraction = 1e-4;  // smallest part of a diagonal element that may be left
   for (int i = 0; i < kTerms; ++i) {
     const double own = a[i][i];
     for (int j = 0; j <= i; ++j) {
@@ -36,8 +36,9 @@ bool solve(double a[kTerms][kTerms], double b[kTerms]) {
   return true;
 }
 
-// By how much the curvature betters the fit, in units of the noise's variance, is a chi square of 3 degrees
-// of freedom where there is none: then nothing of it is kept (James and Stein's rule). a: the factor.
+// Returns the fraction of the curvature to keep (James and Stein's rule). The improvement of the fit by the
+// curvature, in units of the noise's variance, is a chi square of 3 degrees of freedom if there is no
+// curvature: then nothing of it is kept. a: the Cholesky factor.
 double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
   constexpr double kOfChance = 6;
   double betters = 0;
@@ -57,7 +58,7 @@ Trend fit_trend(const PatchPoints& points, double sigma) {
   const QuadraticSums sums = points.sums_of_quadratic(kTrendRadius);
   Trend trend;
   if (sums.power[0] < kMinPoints) return trend;
-  // Degrees of u and v in each term; products of the same degree follow each other, the powers of u falling.
+  // Degrees of u and v in each term. Products of the same degree follow each other, in falling powers of u.
   constexpr int of_u[kTerms] = {0, 1, 0, 2, 1, 0}, of_v[kTerms] = {0, 0, 1, 0, 1, 2};
   double a[kTerms][kTerms], b[kTerms];
   for (int i = 0; i < kTerms; ++i) {

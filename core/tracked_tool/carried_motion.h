@@ -1,4 +1,4 @@
-// How a tool moves with surfaces that are seen to move along their normals only.
+// Estimate of the motion of a tool with surfaces whose motion is measured along their normals only.
 #pragma once
 
 #include "core/geometry/vector.h"
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// A place where a surface holds the tool, and how far the surface moved there along its unit normal.
+// A place where a surface holds the tool, and the motion of the surface there along its unit normal.
 struct CarriedPlace {
   Vec3 p_W, normal_W;
   double moved_m = 0, error_m = 0;  // the error is a standard error
@@ -16,9 +16,9 @@ struct CarriedPlace {
 // Least squares over places p_k for a displacement t of their weighted middle c and a rotation vector w about
 // it: n_k . (t + w x (p_k - c)) = d_k. Directions that the places do not determine get no motion: those are
 // the directions in the space of (t, lever w) in which the mean square of the rows is below kObservable. So a
-// place alone gives a displacement along its normal, a row of places a rotation about one axis, a face about
-// two; displacement within a face and rotation about its normal remain zero. Sums in the order of add().
-// Allocates nothing.
+// single place gives a displacement along its normal, a row of places a rotation about one axis, a face about
+// two; displacement within a face and rotation about its normal remain zero. Places are summed in the order
+// of add(). Allocates nothing.
 class CarriedMotion {
  public:
   // lever_m: rotations count as the displacement of places this far from the middle.
@@ -29,11 +29,12 @@ class CarriedMotion {
   bool empty() const { return !(weight_ > 0); }
 
   struct Result {
-    Vector6 motion = Vector6::Zero();  // of a body at `about_W`: m and rad, world axes
-    Vector6 sure = Vector6::Zero();    // as expected, but for what noise does not explain
+    Vector6 motion = Vector6::Zero();  // motion of a body at `about_W`: m and rad, world axes
+    Vector6 sure = Vector6::Zero();    // `expected` plus the change that noise does not explain
     bool known = false;
   };
-  // As the displacement of a body whose centre is at about_W; expected: of the same body.
+  // Returns the motion as the displacement of a body whose centre is at about_W. expected: predicted motion
+  // of the same body.
   Result about(const Vec3& about_W, const Vector6& expected = Vector6::Zero()) const;
 
  private:

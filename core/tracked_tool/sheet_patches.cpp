@@ -10,11 +10,11 @@ namespace remote_touch {
 namespace {
 
 // Lengths in units of the patches (contact radii) unless they say otherwise.
-constexpr double kGroupRadius = 6.5;  // of the tool's places that one patch is for
-constexpr double kShownBeyond = 0.8;  // so far around the tool points have to be of the patch
+constexpr double kGroupRadius = 6.5;  // radius of the group of the tool's places for one patch
+constexpr double kShownBeyond = 0.8;  // points up to this distance around the tool must be in the patch
 constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;      // of the tool until patches are queried anew
-constexpr double kOnSheet = 0.5;         // a contact further from a sheet is not with it
+                 kContactReach = 3;      // motion of the tool until patches are queried anew
+constexpr double kOnSheet = 0.5;         // a contact further from a sheet does not belong to it
 constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
 constexpr double kSameDirection = 0.95;  // the same between contacts with a face
 constexpr int kEnoughAlike = 3;
@@ -96,7 +96,8 @@ SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& po
   return low;
 }
 
-// A contact radius above the lowest place, over the middle of the group if the sheet is seen there.
+// Returns the position of a patch's proxy: a contact radius above the lowest place, over the middle of the
+// group if the sheet is seen there.
 ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, bool held) const {
   ProxyPlace place{world(pose, patch.middle_T), holds(patch, held)};
   if (!patch.tracker->tracks()) return place;
@@ -109,7 +110,7 @@ ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, b
   return place;
 }
 
-// The number of the patch that a contact is with; -1: none.
+// Returns the number of the patch that a contact belongs to; -1: none.
 int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) const {
   const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
   double nearest = std::numeric_limits<double>::infinity();
@@ -131,7 +132,8 @@ void SheetPatches::count_contacts(const ToolHold& hold) {
   }
 }
 
-// Contacts at an edge of the tool have directions between those of its faces: several have to be alike.
+// Finds the deepest unexplained contact. Contacts at an edge of the tool have directions between those of its
+// faces: so several must have the same direction.
 void SheetPatches::count_unexplained(const ToolHold& hold) {
   unexplained_.alike = 0, unexplained_.depth_m = -kTouching_m;
   for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
@@ -161,7 +163,7 @@ void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSea
                  patch.tracker->region().frame.normal_W().dot(patch.normal_W) >= kSameSheet;
 }
 
-// Whether a sheet that was begun at a contact is a surface there and faces the tool: points beside an edge of
+// True if a sheet that was begun at a contact is a surface there and faces the tool. Points beside an edge of
 // the tool push it sideways, too, and so do those of a corner.
 bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
   constexpr double kAround = 3, kEnough = 0.4, kSteepest = 0.35;
@@ -177,7 +179,7 @@ bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
          tracker.sigma() <= 1.4 * sigma + 0.05;
 }
 
-// Where a contact is with none of the sheets that are tracked.
+// Starts a patch at a contact that belongs to none of the tracked sheets.
 void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {
   const auto unused =
       std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
@@ -196,8 +198,8 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
   unused->in_use = !is_known && is_face(tracker, sigma);
 }
 
-// How the surfaces that hold the tool take it along. Their velocity goes on as it was, but for what noise
-// does not explain.
+// Computes the motion of the tool with the surfaces that hold it. Their velocity stays as it was, apart from
+// changes that noise does not explain.
 ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
   CarriedMotion places(kLever * unit_m_);
   double interval_s = 0;
@@ -217,8 +219,8 @@ ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
   return {result.motion, rate_per_s_};
 }
 
-// A sheet that swept over places of a tool that it does not hold: how far the tool has to go along its
-// normal, no further than the sheet moved.
+// Returns the displacement out of a sheet that swept over places of a tool that it does not hold. It is along
+// the sheet's normal, and no longer than the sheet's motion.
 Vec3 SheetPatches::out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const {
   const SheetTracker& tracker = *patch.tracker;
   double out = 0;
@@ -291,7 +293,7 @@ Vector6 SheetPatches::requery(const ToolPose& pose, bool held) {
     patch.missing = false;
     note_query(patch, pose);
     if (!before.found || !tracker.changes_points() || before.clearance < kBehind) continue;
-    // Points without their noise lie elsewhere when they are seen from another place.
+    // Points without their noise lie elsewhere when the patch is seen from another position.
     const Lowest after = lowest(patch, pose);
     const double in = std::min(-after.clearance, before.clearance - after.clearance);
     if (after.found && in > 0) out.head<3>() += in * unit_m_ * tracker.region().frame.normal_W();
@@ -315,7 +317,8 @@ bool SheetPatches::concerns(const BoundingSphere& sphere) const {
   });
 }
 
-// On the sheet that it lies nearest to; where patches of that overlap, between them.
+// Moves a point onto the sheet that it lies nearest to. Where patches of that sheet overlap, the result lies
+// between them. Returns false for a stray point, which is not shown.
 bool SheetPatches::show(Point& point) const {
   const Vec3 measured_W = point.p_W;
   const auto each = [&](auto&& use) {
@@ -338,7 +341,7 @@ bool SheetPatches::show(Point& point) const {
   each([&](const SheetTracker& tracker, const ShownPoint& shown) {
     if (shown.kind != ShownPoint::Kind::sheet || shown.normal_W.dot(normal_W) < kSameSheet) return;
     const double w = shown.weight + 1e-9;
-    // Where noise along the sheet disorders the points, their disks have to be wider to leave no holes.
+    // If noise along the sheet disorders the points, their disks must be wider to leave no holes.
     const double spacing = 1 / std::sqrt(std::max(tracker.density(), 1.0));
     const double disorder = 1 + std::min(1.0, 2 * tracker.sigma() / spacing);
     sum.p_W += w * shown.p_W, sum.n_W += w * shown.normal_W;

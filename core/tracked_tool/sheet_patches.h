@@ -1,4 +1,4 @@
-// The patches of tracked sheets around a tool, and how the tool moves with them.
+// The patches of tracked sheets around a tool, and the motion of the tool with them.
 #pragma once
 
 #include <memory>
@@ -16,16 +16,16 @@
 
 namespace remote_touch {
 
-// What of the tool is in contact when a frame comes.
+// Contact of the tool at the arrival of a frame.
 struct ToolHold {
   ToolPose pose;
   bool held = false;                      // points push the tool
-  std::span<const ToolContact> contacts;  // what is near it, of the frame before
+  std::span<const ToolContact> contacts;  // contacts near the tool, with the points of the frame before
 };
 
-// One patch for each group of places of the tool: its proxy stands where the group's middle is, a contact
-// radius above the lowest of the group's places. The other patches are for contacts that none of these
-// explains, as a wall beside a tool on a floor: they begin there, and end when the tool has left them.
+// Each group of places of the tool has one patch: its proxy is at the group's middle, a contact radius above
+// the lowest of the group's places. The other patches are for contacts that none of these explains, such as a
+// wall beside a tool on a floor: they begin there, and end when the tool has left them.
 class SheetPatches final : public PointChange {
  public:
   // unit_m: the contact radius of the trackers, their unit of length.
@@ -33,29 +33,29 @@ class SheetPatches final : public PointChange {
                const Kernels& kernels);
   void reserve(std::size_t points);
 
-  // Keeps a frame for requery() while the tool has no place yet.
+  // Keeps a frame for requery() while the tool has no position yet.
   void keep(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
   struct Update {
-    bool missing = false;  // a surface that holds the tool is not seen, but not yet given up
+    bool missing = false;  // a surface that holds the tool is not seen, but not yet dropped
     ToolSurfaceMotion motion;
   };
-  // A new frame. Allocates nothing if reserve() was called for its size.
+  // Processes a new frame. Allocates nothing if reserve() was called for its size.
   Update on_frame(const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
                   double captured_s);
-  // The tool has left the middle of its patches.
+  // True if the tool has left the middle of its patches.
   bool must_requery(const ToolPose& pose) const;
-  // Searches for the sheets around the tool anew in the newest frame; gives up those that are missing.
-  // Returns how the tool has to move so that it is not in them.
+  // Searches for the sheets around the tool anew in the newest frame; drops those that are missing. Returns
+  // the displacement that brings the tool out of them.
   Vector6 requery(const ToolPose& pose, bool held);
 
-  // Whether any point is shown elsewhere than it was measured.
+  // True if points are shown at other positions than measured.
   bool changes_points() const;
-  // Around the tool's centre of mass, where points must be shown until the next requery.
+  // Radius around the tool's centre of mass within which points must be shown until the next requery.
   double shown_radius_m() const { return shown_radius_m_; }
   bool concerns(const BoundingSphere& sphere) const override;
   bool show(Point& point) const override;
 
-  // For tests and pages.
+  // Access for tests and pages.
   std::size_t size() const { return patches_.size(); }
   bool tracks(std::size_t patch) const { return patches_[patch].in_use && patches_[patch].tracker->tracks(); }
   const SheetTracker& tracker(std::size_t patch) const { return *patches_[patch].tracker; }
@@ -65,19 +65,19 @@ class SheetPatches final : public PointChange {
     std::unique_ptr<SheetTracker> tracker;
     std::span<const Vec3> places_T;
     Vec3 middle_T = Vec3::Zero();
-    double reach_m = 0;     // how far the tool may go before the patch shows too little
-    bool of_group = false;  // else of a contact
+    double reach_m = 0;     // distance that the tool may move before the patch shows too little
+    bool of_group = false;  // false: the patch of a contact
     bool in_use = false;
-    Vec3 normal_W = Vec3::Zero();           // of that contact
-    int contacts = 0;                       // that it explains
-    bool missing = false;                   // not seen in the newest frame
-    double captured_s = 0, interval_s = 0;  // of the newest frame that shows it, and since the one before
+    Vec3 normal_W = Vec3::Zero();           // normal of that contact
+    int contacts = 0;                       // number of contacts that it explains
+    bool missing = false;                   // the sheet was not seen in the newest frame
+    double captured_s = 0, interval_s = 0;  // time of the newest frame that shows it; interval before it
     Vec3 queried_W = Vec3::Zero();
   };
   struct Lowest {
     bool found = false;
-    double clearance = 0;  // above the sheet, units
-    // The mean of the places that are nearly as low, or the lowest one where the sheet is not seen below the
+    double clearance = 0;  // height above the sheet, units
+    // The mean of the places that are nearly as low, or the lowest one if the sheet is not seen below the
     // mean, as over a hole.
     Vec3 p_W = Vec3::Zero();
   };
@@ -100,14 +100,15 @@ class SheetPatches final : public PointChange {
   const ToolPlaces places_;
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;
-  Vector6 rate_per_s_ = Vector6::Zero();  // of a held tool, in the frame before
-  // The deepest contact that no patch explains, and how many are like it: where another patch is to begin.
+  Vector6 rate_per_s_ = Vector6::Zero();  // rate of a held tool in the frame before
+  // The deepest contact that no patch explains, and the number of contacts with its direction. Another patch
+  // begins there.
   struct {
     int alike = 0;
     Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
     double depth_m = 0;
   } unexplained_;
-  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // each contact's; -1: none
+  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // one per contact; -1: none
 };
 
 }  // namespace remote_touch

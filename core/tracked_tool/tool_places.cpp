@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// Vertices, and points of triangles no farther apart than that.
+// Returns the vertices, and points of triangles no farther apart than spacing_m.
 std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m) {
   std::vector<Vec3> points = mesh.vertices;
   for (const auto& corners : mesh.triangles) {
@@ -28,7 +28,7 @@ std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m) {
   return points;
 }
 
-// Of every point the distance to the nearest that was chosen.
+// Stores for every point the squared distance to the nearest chosen point.
 class FarthestPoints {
  public:
   explicit FarthestPoints(std::span<const Vec3> points)
@@ -73,7 +73,7 @@ ToolPlaces::ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::siz
   }
 }
 
-// Around places that are far from each other.
+// Divides the places into groups around places that are far from each other.
 void ToolPlaces::divide(std::size_t groups) {
   FarthestPoints seeds(places_T_);
   std::size_t seed = 0;

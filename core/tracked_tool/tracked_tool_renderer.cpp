@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 namespace {
-// The velocity is measured.
+// The velocity is measured, so it is not estimated.
 Parameters of_a_tracked_tool(Parameters list) {
   std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
   return list;
@@ -56,7 +56,7 @@ void TrackedToolRenderer::reserve(std::size_t points) {
   for (auto& cloud : changed_) cloud->reserve(padded);
 }
 
-// The points as they are, or those around the tool without their noise.
+// Returns the measured points, or a cloud in which those around the tool are without their noise.
 std::shared_ptr<const TiledCloud> TrackedToolRenderer::shown_points(const ToolPose& pose) {
   if (!patches_.changes_points()) return measured_;
   present_ ^= 1;
@@ -81,7 +81,7 @@ void TrackedToolRenderer::on_frame(const Frame& frame) {
     if (has_frame_) usual_interval_.add(frame.captured_s - captured_s_);
     captured_s_ = frame.captured_s, has_frame_ = true;
     hold_until_s_ = std::numeric_limits<double>::infinity();
-  } else {  // what holds the tool is missing: what was shown stays for a while
+  } else {  // the surface that holds the tool is missing: the shown points stay for a while
     newest_ = std::move(measured);
     if (std::isinf(hold_until_s_))
       hold_until_s_ =
@@ -100,8 +100,8 @@ void TrackedToolRenderer::requery(const ToolPose& pose, bool held) {
   if (placed_) tool_.displace(out);
 }
 
-// A tool without a place has none until the first pose; one that moved far needs the newest frame's points
-// where it is now.
+// A tool without a position gets one at the first pose. A tool that moved far needs the newest frame's points
+// around its new position.
 RenderOutput TrackedToolRenderer::step(const DeviceState& device, double time_s) {
   if (has_frame_) {
     if (!placed_) {

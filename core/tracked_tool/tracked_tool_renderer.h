@@ -1,10 +1,10 @@
 // 6-DOF rendering of tracked sheets: the tool of chapter 6 on surfaces that are followed from frame to frame
 // and freed of their noise. Not in the dissertation; its inputs are those of the tool, points and times.
 //
-// Each frame: the sheets around the tool are found again where their motion predicts them; a tool that they
-// hold moves with them, rotation included, a free one only when one swept over it; their points are moved
-// onto the sheets and get normals from them. Ticks are those of the tool on these points, with the measured
-// velocity and rotation rate in (4.15).
+// In each frame the sheets around the tool are found again where their motion predicts them. A tool that they
+// hold moves with them, rotation included; a free one moves only if a sheet swept over it. The sheets' points
+// are moved onto the sheets and get normals from them. Ticks are those of the tool on these points, with the
+// measured velocity and rotation rate in (4.15).
 #pragma once
 
 #include <limits>
@@ -54,15 +54,15 @@ class TrackedToolRenderer final : public Renderer {
   const int max_hold_frames_;
   ToolRenderer tool_;
   SheetPatches patches_;
-  std::shared_ptr<const TiledCloud> measured_, shown_;  // the points, and what the tool is given of them
-  std::shared_ptr<const TiledCloud> newest_;            // while what holds the tool is missing in them
+  std::shared_ptr<const TiledCloud> measured_, shown_;  // the measured points, and those that the tool uses
+  std::shared_ptr<const TiledCloud> newest_;            // newest points while the surface is missing
   std::shared_ptr<TiledCloud> changed_[2] = {std::make_shared<TiledCloud>(), std::make_shared<TiledCloud>()};
   int present_ = 0;
-  double captured_s_ = 0;                                          // of the newest frame that is shown
-  UsualInterval usual_interval_;                                   // between such frames
-  double hold_until_s_ = std::numeric_limits<double>::infinity();  // while what holds the tool is missing
+  double captured_s_ = 0;                                          // time of the newest frame that is shown
+  UsualInterval usual_interval_;                                   // interval between such frames
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // finite while the surface is missing
   bool has_frame_ = false;
-  bool placed_ = false;  // the tool is where the device was
+  bool placed_ = false;  // the tool has started at the device's pose
 };
 
 }  // namespace remote_touch

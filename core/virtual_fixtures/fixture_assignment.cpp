@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// A value that is reached is reached exactly.
+// Moves `from` towards `to` by the weight. A weight of 1 returns exactly `to`.
 double drawn(double from, double to, double weight) {
   return weight == 1 ? to : from + weight * (to - from);
 }
@@ -34,7 +34,7 @@ void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
   }
 }
 
-// Calls act() for what concerns one rule; what it throws is told to be of that rule.
+// Calls act(). An InputError that it throws is thrown again as an error of rule i.
 template <class Act>
 void about_rule(std::size_t i, const Act& act) {
   try {

@@ -1,4 +1,4 @@
-// From a frame to its columns of r_f and k_s, (5.2) and (5.3).
+// Assigns r_f and k_s to the points of a frame, (5.2) and (5.3).
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ class FixtureAssignment {
                              std::shared_ptr<const FixtureSwitches> switches = nullptr)
       : rules_(std::move(rules)), switches_(std::move(switches)) {}
 
-  // Throws InputError when the cloud lacks what a rule needs, also one that is off or of strength 0.
+  // Throws InputError if the cloud lacks data that a rule needs, even if that rule is off or has strength 0.
   void require(const PointCloud& cloud) const;
 
   // Fills the columns of the cloud. They start with the cloud's own values; without a column r_f is 0 and k_s
@@ -36,19 +36,20 @@ class FixtureAssignment {
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
   std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
 
-  // What assign() does, as numbers that an OpenCL device can apply: where every rule is a HueRange in the
-  // role forbidden. None: there is another rule, or no rule at all.
+  // Returns the work of assign() as numbers that an OpenCL device can apply. Empty unless there are rules and
+  // every rule is a HueRange in the role forbidden.
   std::optional<HueSteps> hue_steps(double captured_s, std::uint64_t off) const;
 
-  // The targets of all guidance rules in their order, each with the rule's strength; at strength 0 it is not
-  // visible. Throws as assign().
+  // Returns the targets of all guidance rules in their order, each with the strength of its rule. A target of
+  // strength 0 is not visible. Throws as assign().
   std::vector<GuidanceTarget> targets(const PointCloud& cloud, double captured_s) const;
 
-  // The numbers of the rules that select no point of the cloud: all its weights are 0. Throws as assign().
+  // Returns the indices of the rules that select no point of the cloud: all their weights are 0. Throws as
+  // assign().
   std::vector<std::size_t> without_points(const PointCloud& cloud) const;
 
   bool empty() const { return rules_.empty(); }
-  // Two frames of the same cloud can get different values.
+  // True if two frames of the same cloud can get different values.
   bool changes_with_time() const;
 
  private:

@@ -10,12 +10,13 @@
 
 namespace remote_touch {
 
-// Whether the tool is kept away from the points or guided to them.
+// The effect of a rule: it keeps the tool away from its points, or guides the tool to them.
 enum class FixtureRole { forbidden, guidance };
 
-// What every rule assigns to the points that it selects, and when. A guidance rule leaves r_f and k_s as they
-// are: its points define a target, see GuidanceTarget; its radius is the distance at which the goal counts as
-// reached, its stiffness that of the spring (-1: that of GuidanceSettings).
+// The values that every rule assigns to the points that it selects, and the schedule of its strength. A
+// guidance rule leaves r_f and k_s unchanged. Its points define a target, see GuidanceTarget; its radius is
+// the distance at which the goal counts as reached; its stiffness is that of the spring (-1: that of
+// GuidanceSettings).
 struct FixtureValues {
   double radius_m = 0.02;         // r_f of (5.2); -1: left as it is
   double stiffness_N_per_m = -1;  // k_s of (5.3); -1: left as it is
@@ -23,7 +24,7 @@ struct FixtureValues {
   // constant before the first and after the last. Empty: always 1.
   std::vector<double> schedule{};
   FixtureRole role = FixtureRole::forbidden;
-  std::string label{};  // by which a sequence names it
+  std::string label{};  // name of the rule in a sequence
 };
 
 Parameters parameters(FixtureValues& v);
@@ -34,14 +35,14 @@ class FixtureRule {
   explicit FixtureRule(const FixtureValues& values) : values_(values) {}
   virtual ~FixtureRule() = default;
 
-  // Throws InputError when the frame lacks what the rule needs: colours, or an image.
+  // Throws InputError if the frame lacks data that the rule needs: colours, or an image.
   virtual void require(const PointCloud& /*cloud*/) const {}
-  // The weight of the rule for each point, from 0, no effect, to 1; 0 for a point that was not measured.
-  // Throws as require().
+  // Returns the weight of the rule for each point, from 0 (no effect) to 1; 0 for a point that was not
+  // measured. Throws as require().
   virtual std::vector<double> weights(const PointCloud& cloud) const = 0;
 
   const FixtureValues& values() const { return values_; }
-  // The value of the schedule: locks, unlocks and fades the rule as a whole.
+  // Returns the value of the schedule, which locks, unlocks and fades the rule as a whole.
   double strength(double time_s) const;
   bool changes_with_time() const;
 

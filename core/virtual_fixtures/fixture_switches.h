@@ -1,4 +1,4 @@
-// Which fixtures are on: a task locks and unlocks them while it runs.
+// The switches of the fixtures: a task locks and unlocks fixtures while it runs.
 #pragma once
 
 #include <atomic>
@@ -7,8 +7,8 @@
 
 namespace remote_touch {
 
-// Fixtures are numbered by their place in the list. Set in the haptic loop, read where frames are processed;
-// a change takes effect with the next frame that is processed.
+// Fixtures are numbered by their index in the list. The switches are set in the haptic loop and read where
+// frames are processed. A change takes effect with the next frame that is processed.
 class FixtureSwitches {
  public:
   static constexpr std::size_t kMaxCount = 64;

@@ -6,12 +6,13 @@ namespace remote_touch {
 
 namespace {
 
-// A point that is nowhere has no share in a target, whatever its rule says.
+// True if the point has a share in the target. A point that was not measured has none, whatever its rule
+// says.
 bool counts(const PointCloud& cloud, const std::vector<double>& weights, std::size_t i) {
   return weights[i] > 0 && cloud.is_measured(i);
 }
 
-// About the mean; the sum of the weights is not divided by.
+// Returns the weighted scatter matrix about the mean, not divided by the sum of the weights.
 Eigen::Matrix3d scatter(const PointCloud& cloud, const std::vector<double>& weights, const Vec3& mean_W) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -27,7 +28,7 @@ Vec3 normal_of(const Eigen::Matrix3d& scatter, const Vec3& to_sensor_W) {
   const double across = axes.eigenvalues()[0], shorter = axes.eigenvalues()[1],
                longer = axes.eigenvalues()[2];
   constexpr double kFlat = GuidanceTarget::kFlat, kLine = GuidanceTarget::kLine;
-  // Of points in a line rounding alone would choose the plane.
+  // The plane of points in a line would be chosen by rounding alone.
   if (!(shorter > kLine * kLine * longer) || across > kFlat * kFlat * shorter) return Vec3::Zero();
   const Vec3 normal = axes.eigenvectors().col(0).normalized();
   return normal.dot(to_sensor_W) < 0 ? Vec3(-normal) : normal;

@@ -18,7 +18,7 @@ class HueRange final : public FixtureRule {
     double max_lightness = 0.9;
   };
   explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
-  // Colours.
+  // Throws InputError if the cloud has points but no colours.
   void require(const PointCloud& cloud) const override;
   std::vector<double> weights(const PointCloud& cloud) const override;
   const Settings& settings() const { return settings_; }
@@ -29,7 +29,7 @@ class HueRange final : public FixtureRule {
   const Settings settings_;
 };
 
-// A rule of forbidden regions at one moment. One after another they fill the columns of r_f and k_s as
+// A rule of forbidden regions at one moment. Such rules, applied in order, fill the columns of r_f and k_s as
 // FixtureAssignment::assign() does.
 struct HueStep {
   HueRange::Settings range;

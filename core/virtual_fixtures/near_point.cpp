@@ -28,7 +28,7 @@ std::string validate(const NearPoint::Settings& s) {
 
 namespace {
 
-// Of the pixels that saw something, the one nearest to (u, v); NaN where there is none.
+// Returns the point of the pixel that is nearest to (u, v) among those with a depth; NaN if there is none.
 Vec3 nearest_measured(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v) {
   const auto seen = [&](int x, int y) { return cloud.point(static_cast<std::size_t>(y) * camera.width + x); };
   if (seen(u, v).allFinite()) return seen(u, v);

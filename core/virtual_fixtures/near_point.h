@@ -18,8 +18,8 @@ class NearPoint final : public FixtureRule {
   explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
   // If a pixel is set, the cloud must be an image that contains it.
   void require(const PointCloud& cloud) const override;
-  // 1 up to inner_radius_m, then falling linearly to 0 over falloff_m. A selected pixel without a depth is
-  // replaced by the nearest one, in pixels, that has one; if there is none, all weights are 0.
+  // The weight is 1 up to inner_radius_m, then falls linearly to 0 over falloff_m. A selected pixel without a
+  // depth is replaced by the nearest one, in pixels, that has a depth. If there is none, all weights are 0.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

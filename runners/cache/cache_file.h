@@ -33,16 +33,17 @@ class CacheWriter final : public Packer {
 struct CacheKind {
   std::string name;
   int version;
-  std::size_t max_bytes = 0;  // of a file; 0: no maximum. A longer one is not read
+  std::size_t max_bytes = 0;  // maximum size of a file; 0: no maximum. A larger file is not read
 };
 
-// Whether the folder has a complete file of that kind and key, and take() read all its fields.
+// Returns true if the folder has a complete file of that kind and key, and take() read all its fields.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                      const std::function<void(Unpacker&)>& take);
 
-// Writes to a temporary name and renames, so that other processes see the whole file or none; creates the
-// folder, and removes from it what makes it too large (not for a file of a kind with a maximum: it is small).
-// Returns false if it cannot be written, which is not an error. Throws InputError as max_cache_bytes().
+// Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
+// Creates the folder. Then removes the files that make the folder too large, unless the kind has a maximum
+// size: such files are small. Returns false if the file cannot be written, which is not an error. Throws
+// InputError as max_cache_bytes() does.
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

@@ -1,11 +1,12 @@
-// Where the cache is.
+// The folder of the cache.
 #pragma once
 
 #include <filesystem>
 
 namespace remote_touch {
 
-// The folder REMOTE_TOUCH_CACHE; else remote-touch in XDG_CACHE_HOME, or in ~/.cache. Empty: there is none.
+// Returns the folder REMOTE_TOUCH_CACHE; else remote-touch in XDG_CACHE_HOME, or in ~/.cache. The path is
+// empty if there is none.
 std::filesystem::path cache_folder();
 
 }  // namespace remote_touch

@@ -84,7 +84,8 @@ ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
   return suite;
 }
 
-// What was compared; what was not has a verdict and no columns.
+// Returns the comparison of each check. A check without a comparison gets an entry with its verdict and
+// without columns.
 std::vector<ResultComparison> comparisons(const std::vector<BaselineCheck>& checks) {
   std::vector<ResultComparison> list;
   for (const BaselineCheck& check : checks) {
@@ -105,7 +106,7 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
     return std::any_of(checks.begin(), checks.end(), [&](const auto& check) { return check.state == state; });
   };
   const bool any_failed = any(State::changed) || any(State::missing);
-  if (!any(State::same) && !any_failed) return kBadInput;  // nothing was compared
+  if (!any(State::same) && !any_failed) return kBadInput;  // no baseline was compared
   return any(State::not_comparable) ? kBadInput : any_failed ? kCheckFailed : kDone;
 }
 

@@ -11,7 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Nothing where they were not measured: one level only, or always a forced one.
+// Prints the instruction set in use and the measured speeds. Prints nothing if the speeds were not measured:
+// the processor has one level only, or the level was always forced.
 void print_level_times(const std::filesystem::path& folder, const Kernels& in_use) {
   const auto times = read_level_times(folder, level_times_key(), supported_kernels().size());
   if (times)

@@ -14,8 +14,8 @@ namespace remote_touch {
 
 class ClaimsFile {
  public:
-  // Keeps the claims of an earlier call in the folder until their figure is made again. order: the figures'
-  // names.
+  // Keeps the claims of an earlier call in the folder until their figure is made again. order: names of the
+  // figures, in the order of the file.
   ClaimsFile(std::filesystem::path file, std::vector<std::string> order);
   ~ClaimsFile();
   ClaimsFile(const ClaimsFile&) = delete;
@@ -27,7 +27,7 @@ class ClaimsFile {
  private:
   std::filesystem::path file_;
   std::vector<std::string> order_;
-  std::unique_ptr<std::vector<nlohmann::ordered_json>> claims_;  // in that order; the last: of other figures
+  std::unique_ptr<std::vector<nlohmann::ordered_json>> claims_;  // a list per name; the last: other figures
 };
 
 }  // namespace remote_touch

@@ -10,10 +10,10 @@
 
 namespace remote_touch {
 
-// kChanged: of `compare` alone, where something differs and nothing got worse.
+// kChanged is returned only by `compare`: the results differ and nothing got worse.
 enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
 
-// What every command shares.
+// Options and signals that all commands share.
 struct CommandLine {
   bool quiet = false;
   bool force = false;                     // overwrite files that are not results of this program
@@ -164,7 +164,7 @@ struct LiveRequest {
   std::string record, output, report;  // files to write; empty: none
   std::optional<double> duration_s;    // none: until a signal comes
   bool strict = false;
-  bool view = false;  // in a browser
+  bool view = false;  // shows the run in a browser
   int view_port = 0;
 };
 int command_live(const CommandLine& line, const LiveRequest& request);
@@ -190,7 +190,7 @@ int command_jitter(const CommandLine& line, const JitterRequest& request);
 
 struct ViewRequest {
   std::vector<std::string> results;  // a trace, two to compare, or a sweep
-  std::vector<std::string> cells;    // of a sweep; empty: as sweep_page() chooses
+  std::vector<std::string> cells;    // cells of a sweep; empty: sweep_page() chooses them
   std::string output;
   double max_MB = 20;
   std::string claims = {};  // claims.json of figures; empty: none

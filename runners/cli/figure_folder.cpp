@@ -116,8 +116,8 @@ int FigureFolder::exit_code() const {
   return !all_hold_ ? kCheckFailed : made_ == 0 ? kBadInput : kDone;
 }
 
-// For scripts/plot --follow: in a program that does not end by itself nothing else says what is still to
-// come.
+// Writes the progress file for scripts/plot --follow. That program does not end by itself, and only this file
+// says which figures are still to come.
 void FigureFolder::write_progress(const FigureProgress& progress) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs_.size(); ++i) {

@@ -12,7 +12,7 @@ namespace remote_touch {
 
 struct FigureRun {
   const FigureEntry* entry;
-  int coarse = 1;  // of its maps
+  int coarse = 1;  // uses every coarse-th value of the axes of its maps
 
   double expected_s() const {
     return entry->has_map ? entry->expected_s / (coarse * coarse) : entry->expected_s;
@@ -25,13 +25,13 @@ struct FigureProgress {
   TimeLeft left;
 };
 
-// In the order in which they begin: the quickest first.
+// Returns the runs in the order in which they begin: the quickest first.
 std::vector<FigureRun> quickest_first(const std::vector<FigureRun>& runs);
 
-// make: makes the figure of one run. finish: takes the figure of a run, one at a time, in any order, on the
-// thread that made it. report: called twice a second by the calling thread, and once at the end. Both may
-// throw. If a figure fails the others are still made; then throws the exception of the first that failed, in
-// their order.
+// make: makes the figure of one run. finish: receives the figure of a run on the thread that made it, one at
+// a time, in any order. report: called twice a second by the calling thread, and once at the end. All three
+// may throw. If a figure fails, the others are still made. Then the exception of the first run that failed is
+// thrown, in the order of the runs.
 void make_figures(
     const CommandLine& line, const std::vector<FigureRun>& runs,
     const std::function<Figure(const FigureEntry& entry, const FigureContext& context)>& make,

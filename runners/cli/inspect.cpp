@@ -74,7 +74,7 @@ void print_states(const Column& column, const std::vector<std::int32_t>& values)
   std::puts("");
 }
 
-// How many are not empty, and the first of them.
+// Prints the number of texts that are not empty, and the first of them.
 void print_texts(const std::vector<std::string>& texts) {
   const auto is_empty = [](const std::string& text) { return text.empty(); };
   const auto first = std::find_if_not(texts.begin(), texts.end(), is_empty);
@@ -88,8 +88,8 @@ void print_hashes(const std::vector<std::uint64_t>& values) {
   std::puts("");
 }
 
-// How many runs of a sweep have each kind of note, see SweepResult::notes. kinds: their names, with a comma
-// between two of them.
+// Prints how many runs of a sweep have each kind of note, see SweepResult::notes. kinds: the names of the
+// kinds, separated by commas.
 void print_notes(const std::vector<std::int32_t>& all, const std::string& kinds) {
   const std::vector<std::string> names = split_names(kinds);
   for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 31); ++bit) {

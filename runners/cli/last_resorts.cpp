@@ -27,7 +27,7 @@ constexpr std::string_view kHdf5Failed =
   ::_exit(exit_code_of_last_resorts);
 }
 
-// Where no exception can leave: in a thread, or before main() begins.
+// Handles an exception that no caller can catch: one in a thread, or one before main() begins.
 [[noreturn]] void on_terminate() {
   try {
     if (std::current_exception()) throw;

@@ -75,8 +75,9 @@ std::string page_that_leads_to(const std::string& address) {
   return written ? file : std::string();
 }
 
-// Where there is a desktop, its browser, which Ctrl-C does not end. Whoever has none reads the address.
-// Returns a file to be removed at the end, or none.
+// Opens the address in the browser of the desktop; Ctrl-C does not end that browser. Without a desktop
+// nothing is opened, and the user reads the address. Returns a file that is to be removed at the end, or an
+// empty name.
 std::string show_in_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
   std::string program = "xdg-open", place = page_that_leads_to(address);

@@ -38,7 +38,7 @@ ShardFile read_part(const std::string& file) {
   return part;
 }
 
-// Of one sweep, one build and the same recordings.
+// Throws InputError unless both files are of one sweep, one build and the same recordings.
 void require_same_origin(const ShardFile& part, const ShardFile& first) {
   const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
   for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not

@@ -13,7 +13,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of a device there is nothing to lose.
+// True for a regular file that is not empty. A device holds no data that could be lost.
 bool holds_something(const std::string& file) {
   std::error_code absent;
   return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;

@@ -1,4 +1,4 @@
-// Which files a command may overwrite.
+// Checks which files a command may overwrite.
 #pragma once
 
 #include <initializer_list>
@@ -23,8 +23,7 @@ namespace remote_touch {
 void require_result(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs);
 
-// The same for a text report, without a lock: an existing file may be replaced if it begins with that
-// opening.
+// The same for a text report, without a lock: an existing file may be replaced if it begins with `opening`.
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
@@ -32,12 +31,13 @@ void require_report(const CommandLine& line, const std::string& output,
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
-// From now on a file that is no result of this program is not overwritten at this place. For a command that
-// has checked its output in another way.
+// Forbids later writes to this path to overwrite a file that is no result of this program. Used by a command
+// that has checked its output in another way.
 void replace_only_results(const std::string& output);
 
-// Options of one command and the files that they name, each empty where it was not given. Throws InputError
-// where two name one file, however its path is written: one result would be lost. /dev/null may come twice.
+// An option of one command and the file that it names; the file is empty if the option was not given.
+// require_distinct() throws InputError if two options name one file, however its path is written, because one
+// result would be lost. /dev/null may be named twice.
 struct OutputOption {
   const char* option;
   std::string file;

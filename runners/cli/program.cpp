@@ -66,7 +66,8 @@ int interrupted() {
   return kInterrupted;
 }
 
-// With entries of its own it is another program than the one that the sources describe.
+// Sets the catalog of the program. A program with entries of its own is not the one that the sources
+// describe, so results identify it by the name and the SHA-256 of its file.
 void take_catalog(Catalog catalog, const std::string& called) {
   if (!own_entries(catalog).is_empty())
     identify_program({std::filesystem::path(called).filename().string(), sha256_of_file("/proc/self/exe")});
@@ -76,8 +77,8 @@ void take_catalog(Catalog catalog, const std::string& called) {
 CommandLine with_signals() {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
-  std::signal(SIGXFSZ, SIG_IGN);  // then a write beyond a limit fails, and says so
+  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup had set SIG_IGN
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes then fails with an error
   std::signal(SIGUSR1, request_report);
   std::signal(SIGUSR2, request_rearm);
   CommandLine line;

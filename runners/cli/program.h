@@ -15,12 +15,14 @@
 
 namespace remote_touch {
 
-// Does what the arguments say and returns the exit code: 0 done, 1 a check failed, 2 an input that cannot be
-// used, 3 interrupted. Prints errors as one line on standard error; throws nothing. Takes SIGINT, SIGTERM,
-// SIGHUP, SIGUSR1 and SIGUSR2. If the catalog has entries that are not built in, results record the program's
-// name (argv[0] without its folder) and the SHA-256 of its file.
+// Executes the command line and returns the exit code: 0 done, 1 a check failed, 2 an input that cannot be
+// used, 3 interrupted, 4 `compare` found differences and nothing got worse. Prints errors as one line on
+// standard error; throws nothing. Handles SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGUSR2. If the catalog has
+// entries that are not built in, results record the program's name (argv[0] without its folder) and the
+// SHA-256 of its file.
 int command_line(Catalog catalog, int argc, char** argv);
-// With the built-in catalog and what the function adds. An exception of it is such an error, too.
+// The same with the built-in catalog and the entries that the function adds. An exception that the function
+// throws is handled as such an error, too.
 int command_line(const std::function<void(Catalog&)>& add_entries, int argc, char** argv);
 
 }  // namespace remote_touch

@@ -9,8 +9,8 @@ namespace remote_touch {
 
 // "25 %, 2.5 %/s, 30 s left"; without the time left while the fraction is 0.
 std::string progress_text(double fraction, double elapsed_s);
-// For counted things, of which `earlier` were done before this program began: "30 of 100 runs, 2/s, 35 s
-// left".
+// The same for counted things. `earlier` of them were done before this program began: "30 of 100 runs, 2/s,
+// 35 s left".
 std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
                           double elapsed_s);
 

@@ -27,7 +27,7 @@ namespace remote_touch {
 
 namespace {
 
-// For a shell to skip, whatever the text holds.
+// Prints the text as comments of a shell script. Every line begins with '#', so a shell executes none.
 void comment(const std::string& text) {
   std::string lines = "# ";
   for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
@@ -94,7 +94,7 @@ class Repro {
                                   " -o FOLDER makes again: expected a file of its runs/");
   }
 
-  // Whether this program's catalog has all that the configuration names.
+  // True if this program's catalog has every entry that the configuration names.
   bool is_known() const {
     try {
       if (kind_ == "sweep") stored_sweep();
@@ -134,7 +134,7 @@ class Repro {
     std::printf("%s\n", shell_command(words).c_str());
   }
 
-  // From the configuration alone.
+  // Prints commands that make the result again from its configuration alone, and the reason for this detour.
   void print_detour() const {
     if (of("command").find(" scorecard ") != std::string::npos)
       comment("it is of a scorecard, " + of("command") + " -o FOLDER; alone:");
@@ -158,7 +158,8 @@ class Repro {
       return false;
     }
   }
-  // What the recipe would make now; empty for what has no configuration of its own.
+  // Returns the configuration that the recipe would produce now. Empty for a result that has no configuration
+  // of its own.
   static std::string configuration_of(const Recipe& recipe) {
     if (recipe.action == "run") return Experiment::load(recipe.subject, recipe.overrides).to_json();
     if (recipe.action != "sweep" && recipe.action != "replay") return {};

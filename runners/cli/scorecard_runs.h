@@ -1,4 +1,4 @@
-// What the commands of a scorecard share: its runs.
+// Steps that the commands of a scorecard share: doing its runs, and reporting on them.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ void report_notes(const std::vector<BenchmarkSweep>& sweeps);
 // Prints how many runs ended with an error, and the first one; they count as no success. Returns kDone, or
 // kCheckFailed if there are any.
 int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps);
-// Says that the runs are kept. Returns kInterrupted.
+// Prints that the runs are kept. Returns kInterrupted.
 int report_interrupted(const std::string& folder);
 
 }  // namespace remote_touch

@@ -29,7 +29,7 @@ Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
   return scores_of(plan);
 }
 
-// Those that were asked for, or all that are stored.
+// Returns the requested names, or all stored names if none was requested.
 std::vector<std::string> wanted(const std::vector<std::string>& names,
                                 const std::vector<std::string>& stored) {
   return names.empty() ? stored : names;

@@ -17,7 +17,7 @@ CLI::App* Subcommands::declare(const char* name, const char* meaning, std::funct
   CLI::App* command = app.add_subcommand(name, meaning);
   command->callback([&act = act, &threads = threads, command, threads_wanted = std::move(threads_wanted),
                      start = std::move(start)] {
-    if (!command->get_subcommands().empty()) return;  // that one was asked for
+    if (!command->get_subcommands().empty()) return;  // a subcommand was requested instead
     threads = threads_wanted();
     act = start;
   });

@@ -34,7 +34,7 @@ std::string summary_of(const std::vector<double>& values, const std::vector<std:
   return text + (", of " + std::to_string(count)) + " of " + std::to_string(done.size()) + " runs";
 }
 
-// Which runs failed, as `replay` takes them, and why.
+// Prints which runs failed and why, each with the options by which `replay` selects it; at most 20 runs.
 void print_failures(const SweepResult& result, const std::vector<std::size_t>& failed) {
   constexpr std::size_t kMax = 20;
   for (std::size_t i = 0; i < std::min(kMax, failed.size()); ++i) {

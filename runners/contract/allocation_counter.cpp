@@ -8,13 +8,15 @@ namespace {
 std::atomic<std::size_t> count{0};
 }
 
-// In a file of its own: where the compiler sees both, it takes malloc and free for a mismatched pair.
+// The operators have a file of their own: a compiler that sees both these operators and their callers takes
+// malloc and free for a mismatched pair.
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-// Of std::stable_sort and others; a sanitizer's own would not fit the delete below.
+// std::stable_sort and others allocate with this operator. A sanitizer's own version would not match the
+// delete below.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++count;
   return std::malloc(size);

@@ -57,7 +57,7 @@ void weights_are_pure(const FixtureEntry& entry, const FillSettings& fill) {
   other.x[20] += 1, other.colour[30] = 0;
   const auto one = filled(entry, fill)->build(), fresh = filled(entry, fill)->build();
   const std::vector<double> first = one->weights(cloud);
-  one->weights(other);  // what it was asked before changes nothing
+  one->weights(other);  // an earlier query must not change a later result
   EXPECT_EQ(one->weights(cloud), first);
   EXPECT_EQ(fresh->weights(cloud), first);
 }

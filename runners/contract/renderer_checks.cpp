@@ -68,14 +68,16 @@ void pushes_the_hand_out_of_the_surface(const RendererEntry& entry, const FillSe
   EXPECT_GT(highest, 1) << entry.name;
 }
 
-// Where the HIP rests at a height above a flat cloud, until the force does too.
+// Holds the HIP at a height above a flat cloud for 300 ticks of 1 ms, until the force is steady too. Returns
+// the force along y, N.
 double resting_force(Renderer& renderer, double height, double start_s) {
   RenderOutput out;
   for (int tick = 0; tick < 300; ++tick) out = renderer.step({Vec3(0, height, 0)}, start_s + 0.001 * tick);
   return out.force_N.y();
 }
 
-// The gate of a device scales forces by it: a spring that is stiffer than its renderer says is unstable.
+// The gate of a device scales forces by this stiffness: a spring that is stiffer than its renderer states is
+// unstable.
 void is_as_stiff_as_it_says(const RendererEntry& entry, const FillSettings& fill) {
   const auto factory = filled(entry, fill);
   const double said = factory->stiffness_N_per_m();
@@ -167,7 +169,7 @@ void a_live_parameter_changed_before_the_start_is_a_setting(const RendererEntry&
   }
 }
 
-// In contact: it stays finite and bounded, and needs no memory.
+// The parameter changes in contact: the force stays finite and bounded, and no memory is allocated.
 void a_live_parameter_may_change_in_contact(const RendererEntry& entry, const FillSettings& fill) {
   const auto renderer = build(entry, fill);
   renderer->reserve(4000);
@@ -228,7 +230,7 @@ void a_prepared_frame_gives_the_same_answers_and_is_taken_without_allocating(con
   }
 }
 
-// With guidance and a task on top of it as well.
+// A step allocates nothing even if guidance and a task run on top of the renderer.
 void a_guided_step_allocates_nothing(const RendererEntry& entry, const FillSettings& fill) {
   std::vector<FixtureValues> fixtures(2);
   fixtures[0].label = "table";

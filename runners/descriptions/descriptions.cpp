@@ -26,7 +26,7 @@ void print(const Parameters& parameters, std::FILE* out) {
                  value_text(p).c_str(), allowed(p).c_str(), p.is_live ? "; live" : "");
 }
 
-// What a section takes: the entries of its catalog, or its parameters.
+// Prints the entries of the section's catalog, or the parameters of a section without a catalog.
 void print_section(const ExperimentSection& section, std::FILE* out) {
   for (const SectionEntry& entry : section.entries())
     if (section.heading)
@@ -45,7 +45,8 @@ bool describe_section(const std::string& name, std::FILE* out) {
   return false;
 }
 
-// Of the catalogs of all sections: a scenario and a trajectory may have the same name.
+// Searches the catalogs of all sections: a scenario and a trajectory may have the same name. Prints every
+// entry that has it. Returns false if there is none.
 bool describe_entry(const std::string& name, std::FILE* out) {
   bool found = false;
   for (const ExperimentSection& section : experiment_sections())
@@ -149,7 +150,7 @@ void print(const TraceColumn& column, std::FILE* out) {
     std::fprintf(out, "  %-24s            with a tool: %s\n", "", column.meaning_with_tool);
 }
 
-// What runs store, in the order of the file.
+// Prints the columns that a run stores, in the order of the file.
 bool describe_trace(const std::string& name, std::FILE* out) {
   if (name != "trace") return false;
   std::fputs(

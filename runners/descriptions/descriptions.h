@@ -9,11 +9,11 @@
 
 namespace remote_touch {
 
-// All parameters of an entry of a catalog, the configuration of an experiment, and so on, for every kind that
-// has the name. Throws InputError if none has; nothing is written then.
+// Prints all parameters of an entry of a catalog, the configuration of an experiment, and so on, for every
+// kind that has the name. Throws InputError if no kind has it, and then writes nothing.
 void describe(const std::string& name, std::FILE* out);
 
-// Meaning, unit, which way it gets better, and the runs that have it.
+// Returns the meaning, the unit, the better direction, and the runs that have the measure.
 std::string summary_of(const Measure& measure);
 
 // The names of one kind.
@@ -24,7 +24,7 @@ struct NamedKind {
   std::string kind;  // "renderers"
   std::vector<Row> rows;
 };
-// Of every kind, in the order in which `list` prints them.
+// Returns the names of every kind, in the order in which `list` prints the kinds.
 std::vector<NamedKind> named_kinds();
 
 }  // namespace remote_touch

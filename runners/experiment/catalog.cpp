@@ -161,7 +161,7 @@ std::vector<RendererEntry> built_in_renderers() {
   };
 }
 
-// Of an own entry: a name that --set, lists and files can hold.
+// True for a name that --set, lists and files can hold. Every entry must have one.
 bool is_name(const std::string& name) {
   return !name.empty() &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") == std::string::npos;
@@ -196,7 +196,7 @@ Catalog built_in_entries() {
   return catalog;
 }
 
-// What use_catalog() was given.
+// The catalog that use_catalog() has set; none before its first call.
 std::optional<Catalog>& chosen_catalog() {
   static std::optional<Catalog> catalog;
   return catalog;

@@ -16,7 +16,8 @@ namespace remote_touch {
 
 class Catalog {
  public:
-  // Each throws InputError for a name that is taken, or is not of lower case letters, digits, - and _.
+  // Each throws InputError if the name is taken, or has characters other than lower case letters, digits, -
+  // and _.
   Catalog& add(ScenarioEntry entry);
   Catalog& add(FixtureEntry entry);
   Catalog& add(TrajectoryEntry entry);
@@ -38,27 +39,27 @@ class Catalog {
   std::vector<Measure> measures_;
 };
 
-// What comes with this project.
+// The entries that come with this project.
 const Catalog& built_in_catalog();
 
-// Those of this catalog that the built-in one does not have.
+// Returns the entries of this catalog that the built-in one does not have.
 Catalog own_entries(const Catalog& catalog);
 
-// From now on the whole program uses this catalog; until then the built-in one. Before the first experiment,
-// and from one thread: what the functions below returned before is invalid afterwards.
+// Replaces the built-in catalog by this one for the whole program. Must be called before the first experiment
+// and from one thread: what the functions below returned before becomes invalid.
 void use_catalog(Catalog catalog);
 
 const Catalog& catalog_in_use();
 
-// Those of the catalog in use.
+// The entries of the catalog in use.
 std::span<const ScenarioEntry> scenarios();
 std::span<const FixtureEntry> fixtures();
 std::span<const TrajectoryEntry> trajectories();
 std::span<const RendererEntry> renderers();
 std::span<const Measure> measures();
-Directions directions();  // of these measures
+Directions directions();  // the better direction of each measure
 
-// The entry of that name; throws InputError with the known names.
+// Returns the entry of that name. Throws InputError with the known names if there is none.
 template <class Entry>
 const Entry& find_entry(std::span<const Entry> entries, const std::string& name, const std::string& path) {
   std::string known;

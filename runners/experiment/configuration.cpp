@@ -26,7 +26,7 @@ Parameters parameters(RunSettings& s) {
 
 namespace {
 
-// Of a rule that is not built: some read files when they are.
+// Returns the values of a rule without building it: some rules read files when they are built.
 FixtureValues values_of(const Part<FixtureEntry>& rule) {
   Json all = Json::object(), own = Json::object();
   write_parameters(rule.factory->settings(), all);

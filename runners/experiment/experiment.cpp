@@ -94,7 +94,8 @@ FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitch
 
 namespace {
 
-// Of a device that failed: results are the same without it.
+// The default DepthReport: prints the line that an OpenCL device has failed. The results are the same without
+// the device.
 void print_line(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }

@@ -16,9 +16,9 @@ namespace remote_touch {
 // A setting that may change while the experiment runs live.
 struct LiveParameter {
   enum class Of { renderer, scenario };
-  std::string name;  // as in --set: renderer.stiffness_N_per_m
+  std::string name;  // path as in --set: renderer.stiffness_N_per_m
   std::string help;
-  double value = 0;  // of the experiment; of a switch 0 or 1
+  double value = 0;  // value in the experiment; 0 or 1 for a switch
   double low = 0, high = 0;
   bool is_switch = false;
   Of of = Of::renderer;
@@ -26,13 +26,14 @@ struct LiveParameter {
 
 class Experiment {
  public:
-  // From JSON text; label names the source in errors. Overrides are "key=value" and come last; the title
-  // names them (changed_settings.h). Throws InputError for anything that cannot be run, so that no run starts
-  // that would fail because of its configuration, and for an override that a later one discards.
+  // Reads JSON text; label names the source in errors. Overrides are "key=value" and are applied last; the
+  // title names them (changed_settings.h). Throws InputError for anything that cannot be run, so that no run
+  // fails later because of its configuration, and for an override that a later one discards.
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
   static Experiment from_json(const nlohmann::ordered_json& configuration);
-  // From a name of data/experiments, a JSON file, or a recorded live session, which is run again.
+  // Reads an experiment of data/experiments by its name, a JSON file, or a recorded live session, which is
+  // run again.
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const RunSettings& settings() const { return configuration_.run; }
@@ -64,8 +65,8 @@ class Experiment {
   // of the renderer, a fixture rule or guidance. build_processing() checks each later frame.
   void check_needs(const Scenario& scenario) const;
   void check_needs(const SensorView& view) const;
-  // After build_processing(): adds `depth_device` to the provenance of a result, the name of the OpenCL
-  // device that processes its depth images; nothing where it is the CPU.
+  // Adds `depth_device` to the provenance of a result: the name of the OpenCL device that processes its depth
+  // images. Adds nothing if the CPU processes them. Must be called after build_processing().
   void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
   // The phases in the sections of the experiment itself: changes of the renderer, schedules of fixtures, and
@@ -76,11 +77,12 @@ class Experiment {
   // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
   // renderer or of a forbidden region, plus those of all guidance.
   double max_stiffness_N_per_m() const;
-  // Those of the renderer in the order of Renderer::live_parameters(), then those of the scenario.
+  // Returns the live parameters of the renderer, in the order of Renderer::live_parameters(), then those of
+  // the scenario.
   std::vector<LiveParameter> live_parameters() const;
-  // Where the point of the renderer lies that touches.
+  // The rest distance, spring and ball radius of the renderer's contact point.
   RenderedContact rendered_contact() const { return configuration_.renderer.factory->contact(); }
-  // For the live loop; offline runs ignore them.
+  // The settings of the live loop. Offline runs ignore them.
   LiveSettings live() const { return configuration_.live.value_or(LiveSettings{}); }
   SafetyLimits safety() const { return configuration_.safety.value_or(SafetyLimits{}); }
 

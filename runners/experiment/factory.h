@@ -34,19 +34,19 @@ template <class Seam, class... Arguments>
 class Factory : public Configurable {
  public:
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
-  // Of a renderer: max_stiffness_N_per_m() of its settings. 0 for all others.
+  // Returns max_stiffness_N_per_m() of the settings of a renderer; 0 for other products.
   virtual double stiffness_N_per_m() const = 0;
-  virtual RenderedContact contact() const = 0;  // of a renderer, too
+  virtual RenderedContact contact() const = 0;  // used only for renderers
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
-// For a product with a constructor (Settings, Arguments...). In the namespace of the settings are the
+// Builds a product that has a constructor (Settings, Arguments...). The namespace of the settings has the
 // functions
-//   Parameters parameters(Settings&)                  the settings by name
-//   std::string validate(const Settings&)             empty, or the first problem: "r1_m = 1: expected below
-//   r2_m" double max_stiffness_N_per_m(const Settings&)     of every renderer RenderedContact
-//   rendered_contact(const Settings&) of a renderer whose rest distance is known RecordingPart
-//   input_files(const Settings&)        if the settings name files
+// - Parameters parameters(Settings&): the settings by name
+// - std::string validate(const Settings&): empty, or the first problem: "r1_m = 1: expected below r2_m"
+// - double max_stiffness_N_per_m(const Settings&): only for renderers, and for every one
+// - RenderedContact rendered_contact(const Settings&): for a renderer whose rest distance is known
+// - RecordingPart input_files(const Settings&): if the settings name files
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -98,14 +98,17 @@ struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
 // Degrees of freedom that a renderer uses: six if its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };
 
-// What constrains the proxy or tool of a renderer. points: all points of a cloud. regions: only the regions
-// of points with r_f above 0. mesh: the triangles between neighbours in an organised frame, so the order of
-// the points matters. sheet: a sheet fitted to points in cells along the world's axes, so a rotated scene, or
-// one sent more often, gives similar outputs but not the same bits. nothing: points only push, and a HIP
-// pressed deeper passes them. oriented: points, but the direction to the sensor matters; the layout of an
-// image gives it, else a setting in the world's axes; forbidden regions do not count. resting_points: points,
-// but what a frame puts into the tool stays there, so on a surface that moves rounding decides when it
-// passes.
+// The parts of a frame that constrain the proxy or tool of a renderer.
+// - points: all points of a cloud.
+// - regions: only the regions of points with r_f above 0.
+// - mesh: the triangles between neighbours in an organised frame, so the order of the points matters.
+// - sheet: a sheet fitted to points in cells along the world's axes. A rotated scene, or one that is sent
+//   more often, gives similar outputs but not the same bits.
+// - nothing: points only push, and a HIP that is pressed deeper passes them.
+// - oriented: points, but the direction to the sensor matters. The layout of an image gives it, else a
+//   setting in the world's axes. Forbidden regions do not count.
+// - resting_points: points, but points that a frame puts into the tool stay there. Rounding therefore decides
+//   when a moving surface passes.
 enum class ContactModel { points, regions, mesh, sheet, nothing, oriented, resting_points };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz

@@ -20,20 +20,20 @@ namespace remote_touch {
 struct Transport {
   double latency_s = 0;         // shortest time from capture to arrival
   double jitter_s = 0;          // maximum added delay, uniformly distributed; frames may overtake each other
-  double drop_probability = 0;  // that a frame never arrives
+  double drop_probability = 0;  // probability that a frame never arrives
 };
 
 // Processing of a frame's points before they are sent.
 struct FrameProcessing {
   std::unique_ptr<DepthProcessor> depth;  // null: the points are sent as the scenario gives them
   FixtureAssignment fixtures;
-  RendererNeeds needs = {};  // of the frames that it has filled; who sends them on checks them
+  RendererNeeds needs = {};  // the renderer's needs; whoever sends a filled frame on checks them
 
   bool changes_points() const { return depth || !fixtures.empty(); }
-  // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is not
-  // a depth image as the pipeline needs, or a fixture rule cannot be applied to it.
+  // Gives the frame its points and targets, with these fixtures off. Throws InputError if the cloud is not a
+  // depth image, which the pipeline needs, or if a fixture rule cannot be applied to it.
   void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
-  // The same of cloud_of(sensed, view, X_WC).
+  // The same with the cloud cloud_of(sensed, view, X_WC).
   void fill(Frame& frame, const SensorFrame& sensed, const SensorView& view, const RigidTransform& X_WC,
             std::uint64_t off) const;
 
@@ -54,9 +54,8 @@ class FrameStream {
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
   // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the truth for
-  // oracles. pre: times never
-  // decrease. Throws InputError when a frame cannot be read, has no depth image to be processed, lacks what
-  // the renderer needs, or a fixture rule cannot be applied to it.
+  // oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks what
+  // the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
   void deliver_until(double time_s, Renderer& renderer);
   // Hash of the newest frame delivered; 0 before the first or without hash_frames.
   std::uint64_t newest_hash() const { return hash_; }
@@ -70,7 +69,7 @@ class FrameStream {
   int source_frame(int frame) const;  // the scenario's frame that this one shows
   double captured_s(int frame) const;
   void send(int frame);
-  void fill(Frame& frame) const;  // with its points and targets
+  void fill(Frame& frame) const;  // adds its points and targets
   std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
 
   const Scenario& scenario_;
@@ -79,7 +78,7 @@ class FrameStream {
   Transport transport_;
   NoiseKey key_;
   bool hash_frames_, generate_all_points_;
-  int next_ = 0;  // to be sent
+  int next_ = 0;  // the next frame to be sent
   std::vector<FrameInTransit> in_transit_;
   std::uint64_t hash_ = 0;
 };

@@ -27,7 +27,7 @@
 namespace remote_touch {
 
 struct RenderedContact {
-  double rest_distance_m = 0;  // of x from a flat, noise-free surface in contact; NaN: not known
+  double rest_distance_m = 0;  // distance of x from a flat, noise-free surface in contact; NaN: not known
   double spring_N_per_m = 0;   // above 0: there is no proxy, and x = HIP + F / k with this k
   // Above 0: the proxy is a ball of this radius that single points hold, as in chapter 4, so that it falls
   // through between points that are too far apart. 0: something else holds the proxy, such as a mesh, or
@@ -41,10 +41,10 @@ struct RenderedContact {
 // so that even noise of r_c = 5 mm shifts it by 0.42 mm (standard deviation), a sixth of this.
 inline constexpr double kMinSink_m = 0.0025;
 
-// How far behind the true surface x may lie and count as held in front of it, m. A ball counts as held until
-// its centre is behind the surface: it has then sunk by its rest distance. A position that rests on the
-// surface, or nearly, would be behind it by rounding alone, so it may sink by kMinSink_m. 0 if the rest
-// distance is not known.
+// Returns the distance, m, by which x may lie behind the true surface and still count as held in front of it.
+// A ball counts as held until its centre is behind the surface: it has then sunk by its rest distance. A
+// position that rests on the surface, or nearly, would be behind it by rounding alone, so it may sink by
+// kMinSink_m. Returns 0 if the rest distance is not known.
 inline double held_depth_m(const RenderedContact& contact) {
   return std::isnan(contact.rest_distance_m) ? 0 : std::max(0.0, kMinSink_m - contact.rest_distance_m);
 }

@@ -9,12 +9,12 @@
 
 namespace remote_touch {
 
-// Takes effect in the first tick at or after its time, before that tick's frame. Changes of the same time
-// take effect together; two of one parameter in one tick are refused.
+// A change takes effect in the first tick at or after its time, before that tick's frame. Changes of the same
+// time take effect together. Two changes of one parameter in one tick are refused.
 struct RendererChange {
   double time_s = 0;
   std::string parameter;  // "renderer.stiffness_N_per_m"; one that is marked live
-  double value = 0;       // of a switch: 0 or 1
+  double value = 0;       // 0 or 1 for a switch
 };
 
 Parameters parameters(RendererChange& change);
@@ -26,7 +26,7 @@ inline std::string validate(const RendererChange&) {
 inline std::string name_in_changes(const Parameter& parameter) {
   return "renderer." + parameter.name;
 }
-// The one of that name; null: none.
+// Returns the parameter that has this name in changes; null if there is none.
 const Parameter* find_in_changes(const Parameters& live, const std::string& name);
 
 // pre: a number or a switch, as all live parameters are. Allocates nothing.
@@ -38,7 +38,7 @@ class RendererChanges {
  public:
   // pre: the changes are sorted by time and name live parameters of the renderer, which outlives this.
   RendererChanges(const std::vector<RendererChange>& changes, Renderer& renderer);
-  // Those that are due.
+  // Makes the changes that are due at time_s.
   void make_until(double time_s);
 
  private:

@@ -58,7 +58,8 @@ double first_tick(const ExperimentConfiguration& configuration, const RendererCh
   return std::ceil(change.time_s * configuration.run.haptic_rate_hz);
 }
 
-// Of two changes of one parameter in one tick the first would have no effect, whatever it says.
+// Throws InputError if an earlier change sets the same parameter in the same tick: the earlier one would have
+// no effect, whatever its value.
 void refuse_change_without_effect(const ExperimentConfiguration& configuration, std::size_t later) {
   const std::vector<RendererChange>& changes = configuration.changes;
   for (std::size_t i = 0; i < later; ++i)

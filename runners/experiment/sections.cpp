@@ -132,7 +132,7 @@ bool has(const Parameters& parameters, const std::string& name) {
                      [&](const Parameter& p) { return p.name == name; });
 }
 
-// Whether the section, as it is in the configuration, has a parameter of that name.
+// True if the section, as it is in the configuration, has a parameter of that name.
 bool has(const Section& section, const Json& whole, const std::string& parameter) {
   const Json& own = given(whole, section.key);
   if (!own.is_object()) return false;
@@ -142,7 +142,7 @@ bool has(const Section& section, const Json& whole, const std::string& parameter
   return false;
 }
 
-// A key of a section that was given without it is told where it belongs.
+// Throws InputError for a key that was given without the section that it belongs to, and names that section.
 void refuse_misplaced(const Json& whole, const Parameters& own, const std::vector<std::string>& sections) {
   for (const auto& item : whole.items()) {
     const bool is_section = std::find(sections.begin(), sections.end(), item.key()) != sections.end();

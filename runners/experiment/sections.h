@@ -18,11 +18,11 @@ namespace remote_touch {
 struct SectionEntry {
   std::string name;
   std::string summary;
-  std::function<std::unique_ptr<Configurable>()> make;  // with default values
+  std::function<std::unique_ptr<Configurable>()> make;  // makes settings with default values
 };
 
 struct ExperimentSection {
-  const char* key;      // as in a file; if is_top_level, only a name
+  const char* key;      // key in a file; only a name if is_top_level
   const char* summary;  // continues "... of an experiment: "
   // Heading in a list of all that experiments can name; null if the section's entries have no names.
   const char* heading = nullptr;
@@ -43,7 +43,7 @@ struct ExperimentSection {
   void (*complete)(ExperimentConfiguration& configuration) = nullptr;
 };
 
-// In the order in which they are read and written.
+// The sections, in the order in which they are read and written.
 std::span<const ExperimentSection> experiment_sections();
 
 // Throws InputError for anything that cannot be run.

@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 struct ExportFormat {
-  const char* ending;  // of the output, ".csv"
+  const char* ending;  // ending of the output's name, ".csv"
   const char* meaning;
   bool traces_only;
   void (*write)(const ExportJob& job);
@@ -20,7 +20,8 @@ const std::vector<ExportFormat>& export_formats();
 // All of them in one line, for the help of the command.
 std::string known_formats();
 
-// By the ending of the output. Throws InputError naming the known ones.
+// Returns the format of the output's ending. Throws InputError, which names the known endings, if there is
+// none.
 const ExportFormat& export_format(const std::filesystem::path& output);
 
 // Writes all files of the export; they appear when job.files is finished. Throws InputError for a result of

@@ -1,4 +1,4 @@
-// What every format of an export gets.
+// The input of every format of an export: the result, the output and the files to write.
 #pragma once
 
 #include <atomic>

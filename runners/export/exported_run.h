@@ -33,9 +33,9 @@ struct ExportedRun {
 ExportedRun exported_run(const ExportJob& job);
 
 struct ExportedFrame {
-  int number = 0;  // from 0, of those in use
+  int number = 0;  // index among the frames in use, from 0
   double captured_s = 0, arrives_s = 0;
-  std::size_t first_tick = 0;  // that used it
+  std::size_t first_tick = 0;  // first tick that used the frame
   PointCloud points;           // the measured ones
 };
 // Every frame that a tick used, in order. Throws InputError when the frames cannot be made again or are not

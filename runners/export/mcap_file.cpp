@@ -35,7 +35,7 @@ std::string cloud_message(const ExportedFrame& frame) {
   if (cloud.has_normals())
     for (const char* name : {"normal_x", "normal_y", "normal_z"}) fields.push_back({name, kRosFloat32});
   if (!cloud.fixture_radius_m.empty()) fields.push_back({"fixture_radius", kRosFloat32});
-  constexpr std::uint32_t kNan = 0x7FC00000;  // of 32 bits
+  constexpr std::uint32_t kNan = 0x7FC00000;  // NaN of 32 bits
   std::string data;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (const double number : {cloud.x[i], cloud.y[i], cloud.z[i]}) put(data, static_cast<float>(number));
@@ -64,7 +64,7 @@ class RunMessages {
     add_ticks_before(frame.arrives_s);
     mcap_.message(cloud_, nanoseconds(frame.arrives_s), nanoseconds(frame.captured_s), cloud_message(frame));
   }
-  // In the order of time.
+  // Adds the messages of the ticks before time_s that are left, in the order of time.
   void add_ticks_before(double time_s) {
     for (; tick_ < run_.ticks() && run_.time_s[tick_] < time_s; ++tick_) {
       const std::uint64_t now = nanoseconds(run_.time_s[tick_]);

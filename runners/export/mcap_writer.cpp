@@ -41,7 +41,7 @@ std::string record(Record kind, const std::string& content) {
   return bytes + content;
 }
 
-// With its length before it.
+// Appends the length of the text, then the text.
 void put_text(std::string& bytes, const std::string& text) {
   put(bytes, static_cast<std::uint32_t>(text.size()));
   bytes += text;

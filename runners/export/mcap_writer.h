@@ -15,7 +15,7 @@ struct McapTopic {
   std::string schema, schema_encoding, schema_text, message_encoding;
 };
 
-// Hands on the bytes of the file as it grows. All topics come before the first message.
+// Passes the bytes of the file to `write` as it grows. All topics are added before the first message.
 class McapWriter {
  public:
   using Texts = std::vector<std::pair<std::string, std::string>>;
@@ -29,7 +29,7 @@ class McapWriter {
                const std::string& data);
   void finish();
 
-  // What a file of that profile and library begins with.
+  // Returns the bytes with which a file of that profile and library begins.
   static std::string opening(const std::string& profile, const std::string& library);
 
  private:
@@ -41,7 +41,7 @@ class McapWriter {
   struct Chunk {
     std::string records;
     Times times;
-    std::map<std::uint16_t, std::string> index;  // of each channel: time and place of its messages
+    std::map<std::uint16_t, std::string> index;  // time and position of each message, by channel
   };
   void emit(const std::string& bytes);
   void close_chunk();
@@ -49,11 +49,11 @@ class McapWriter {
 
   std::function<void(const std::string&)> write_;
   std::uint64_t size_ = 0;
-  std::uint32_t crc_ = 0;  // of all so far
+  std::uint32_t crc_ = 0;  // CRC-32 of all bytes so far
   Chunk chunk_;
   Times times_;
   std::map<std::string, std::uint16_t> schemas_;
-  std::map<std::uint16_t, std::uint64_t> messages_;  // of each channel
+  std::map<std::uint16_t, std::uint64_t> messages_;  // number of messages by channel
   // Records that are repeated at the end.
   std::string schema_records_, channel_records_, chunk_indexes_, metadata_indexes_;
   std::uint32_t chunks_ = 0, metadata_ = 0;

@@ -24,7 +24,7 @@ std::string npy_header(const std::string& type, const std::string& shape) {
   return header + text;
 }
 
-// How many bytes a character of UTF-8 has that begins so; 0: none begins so.
+// Returns the number of bytes of a UTF-8 character that begins with this byte; 0 if none does.
 std::size_t length_of_character(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first < 0xe0) return 2;
@@ -32,7 +32,7 @@ std::size_t length_of_character(unsigned char first) {
   return first >= 0xf0 && first < 0xf5 ? 4 : 0;
 }
 
-// What is not UTF-8 becomes U+FFFD, byte by byte.
+// Decodes UTF-8. Each byte that is not part of a valid character becomes U+FFFD.
 std::u32string characters(const std::string& text) {
   std::u32string all;
   for (std::size_t at = 0; at < text.size();) {

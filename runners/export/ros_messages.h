@@ -27,10 +27,10 @@ std::string wrench_message(std::uint64_t time_ns, const Vec3& force_N, const Vec
 
 struct RosField {
   std::string name;
-  std::uint8_t type;  // as sensor_msgs/PointField numbers it
+  std::uint8_t type;  // type number of sensor_msgs/PointField
 };
 inline constexpr std::uint8_t kRosFloat32 = 7;
-// fields: of four bytes each, one after the other in a point. data: of all points.
+// fields: four bytes each, one after the other in a point. data: the fields of all points.
 std::string point_cloud_message(std::uint64_t time_ns, const std::vector<RosField>& fields,
                                 const std::string& data);
 

@@ -14,7 +14,7 @@ namespace remote_touch {
 struct VtkArray {
   std::string name;
   const char* type;    // "Float64", "Int32", "UInt64", "UInt8", as VTK names them
-  int components = 1;  // of each value
+  int components = 1;  // number of components of each value
   std::string bytes;   // little-endian
 };
 
@@ -22,7 +22,7 @@ struct VtkPolyData {
   double time_s = 0;
   std::vector<Vec3> points;
   bool has_vertices = false;                       // each point is a cell, so that it is drawn
-  std::vector<std::vector<std::int64_t>> lines;    // of numbers of points
+  std::vector<std::vector<std::int64_t>> lines;    // the point indices of each line
   std::vector<std::array<std::int64_t, 3>> faces;  // triangles
   std::vector<VtkArray> of_points, of_cells;
 };

@@ -18,8 +18,8 @@ std::uint32_t crc_of(const std::string& bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// What the header of a member and its entry at the end of the archive have in common: from the version that
-// is needed to the length of its name.
+// Appends the fields that the header of a member and its entry at the end of the archive have in common: from
+// the version that is needed to the length of the extra field.
 void put_member(std::string& bytes, std::uint32_t crc, std::uint32_t size, const std::string& name) {
   put(bytes, kVersion);
   for (const int flags_method_time : {0, 0, 0}) put(bytes, static_cast<std::uint16_t>(flags_method_time));

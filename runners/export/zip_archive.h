@@ -8,7 +8,8 @@
 
 namespace remote_touch {
 
-// Hands on the bytes of the archive as it grows. Without times: equal members are equal bytes.
+// Passes the bytes of the archive to `write` as it grows. It stores no times, so that equal members give
+// equal bytes.
 class ZipArchive {
  public:
   explicit ZipArchive(std::function<void(const std::string& bytes)> write) : write_(std::move(write)) {}
@@ -16,7 +17,7 @@ class ZipArchive {
   void add(const std::string& name, const std::string& content);
   void finish();
 
-  // What an archive begins with that has this first member.
+  // Returns the bytes with which an archive begins that has this first member.
   static std::string opening(const std::string& name, const std::string& content);
 
  private:

@@ -62,7 +62,8 @@ std::vector<AccelerationBound> bounds(const MeasuredNoise& noise) {
   const auto refitted = [&noise](double noise_m, double less) {
     return bound_acceleration(kLift, noise.thickness.at(noise_m) - less, noise.normal_error.at(noise_m));
   };
-  // How far the proxy goes wrong when the velocity estimate is off by one standard deviation.
+  // Error of the predicted surface height over one frame if the velocity estimate is off by one standard
+  // deviation.
   const auto deviation = [&noise](double noise_m) {
     return noise.at(noise_m).velocity_sd_m_per_s / kLift.frame_rate_hz;
   };

@@ -1,4 +1,4 @@
-// How far the bounds of 4.4 agree with the simulated lifts.
+// Agreement of the bounds of 4.4 with the simulated lifts.
 #pragma once
 
 #include <functional>
@@ -9,18 +9,18 @@
 
 namespace remote_touch {
 
-// Counts of how (4.17) at an update agrees with the outcome of that update. (4.18) is the same, rewritten for
-// a cloud that moves along its normal.
+// Counts of the updates in which (4.17) agrees, or does not, with the outcome of the update. (4.18) is the
+// same, rewritten for a cloud that moves along its normal.
 struct Criterion {
   double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
   double agreement() const {
     return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
   }
 };
-// Over the updates with acceleration, until the proxy is below the plane, in lifts with noise in [low, high),
-// r_c.
+// Counts the updates with acceleration, until the proxy is below the plane, in lifts with noise in [low,
+// high), r_c.
 Criterion criterion_of(const LiftMap& lifts, double low, double high);
-// By ranges of noise.
+// The criterion for several ranges of noise.
 Table criterion_table(const LiftMap& lifts);
 
 // A bound as a function of the noise, m/s^2. It keeps a reference to the MeasuredNoise it was made from.

@@ -79,7 +79,7 @@ std::vector<ScenePart> proxy_in_cloud(const std::string& name, double point_m) {
           solid("force", "_bar_triangles", 3, kForceColour)};
 }
 
-// Points of a cloud in a box around a place, up to so far along each axis.
+// Returns the indices of the points of a cloud in a box around a position, up to reach_m along each axis.
 std::vector<std::size_t> points_near(const PointCloud& cloud, const Vec3& place_W, const Vec3& reach_m) {
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -88,7 +88,7 @@ std::vector<std::size_t> points_near(const PointCloud& cloud, const Vec3& place_
   return near;
 }
 
-constexpr double kInstant_4_10_s = 2.5;  // in the middle of the phase below the points
+constexpr double kInstant_4_10_s = 2.5;  // middle of the phase below the points
 constexpr double kShell_4_10_m = 1e-5;   // r_2 - r_c of Table 4.2
 constexpr double kSpring_4_10_N_per_m = 600;
 

@@ -52,7 +52,7 @@ double peak_to_peak(const Table& table) {
   return *high - *low;
 }
 
-// With one step a tick: how many from the jump until the proxy is within the contact shell.
+// Number of steps from the jump until the proxy is within the contact shell, in a run with one step per tick.
 double steps_to_contact(const Trace& single) {
   const std::size_t jump = jump_tick(single);
   std::size_t i = jump;
@@ -64,7 +64,7 @@ double steps_to_contact(const Trace& single) {
 
 Figure figure_4_11(const FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig4.11"));
-  // With a budget of one step per tick, the tick of the jump shows where the first step leads.
+  // A budget of one step per tick shows, in the tick of the jump, where the first step leads.
   const Trace single = context.run(Experiment::load("fig4.11", {"renderer.steps_per_tick=1"}));
   const std::size_t jump = jump_tick(trace);
 

@@ -12,8 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-// For each noise strength the acceleration at which half of the lifts survive, from the falling curve nearest
-// to the shares; and where the ends of their Wilson intervals cross one half.
+// Acceleration at which half of the lifts survive, for each noise strength, from the falling curve nearest to
+// the shares; and the accelerations at which the ends of their Wilson intervals cross one half.
 Table contour(const std::string& name, const Table& map, std::size_t columns) {
   const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration");
   const std::size_t rows = noise.size() / columns;  // the map runs through the accelerations first
@@ -41,7 +41,7 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
   return table;
 }
 
-// Where the second implementation has the contour, and how far ours lies from it in standard errors.
+// The contour in the second implementation, and its distance from ours in standard errors.
 Table second_table(const Table& contour) {
   const auto column = [](const char* name) { return second_column("chapter_4", "/map/contour/rows", name); };
   const std::vector<double> noise = column("noise"), second = column("acceleration"),
@@ -50,7 +50,7 @@ Table second_table(const Table& contour) {
   std::vector<double> acceleration, apart;
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const auto at = std::lower_bound(ours.begin(), ours.end(), noise[i] - 1e-9) - ours.begin();
-    const auto last = static_cast<std::ptrdiff_t>(ours.size()) - 1;  // of a coarse map
+    const auto last = static_cast<std::ptrdiff_t>(ours.size()) - 1;  // a coarse map has fewer rows
     acceleration.push_back(numbers(contour, "acceleration").at(static_cast<std::size_t>(std::min(at, last))));
     apart.push_back((acceleration.back() - second[i]) / std::hypot(error[i], our_error[i]));
   }

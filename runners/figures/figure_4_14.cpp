@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kSampling_m = 1e-5;  // of the exact profile; its corners are multiples of it
+constexpr double kSampling_m = 1e-5;  // sampling of the exact profile; its corners are multiples of it
 
 // The closing of the true profile, on samples from x = low.
 struct Oracle {

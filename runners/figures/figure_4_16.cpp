@@ -127,7 +127,7 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
   const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
   const Vec3 middle = trace.hip_position_m[trace.length() / 2];
-  const double slope = middle.y() / middle.z();  // of the plane through the camera and the scanned row
+  const double slope = middle.y() / middle.z();  // slope of the plane through camera and scanned row
   figure.tables.push_back(path_table(table, trace, 0, 2));
   figure.tables.push_back(slice_table(
       table + "_slice", cloud, 0, 2, [&](const Vec3& p) { return std::abs(p.y() - slope * p.z()) < 0.001; }));
@@ -146,7 +146,7 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
   add_claims(figure, title, trace);
 }
 
-// The panels from first on stand below each other in a column.
+// Places the panels from `first` on below each other in a column.
 void place_in_column(Figure& figure, std::size_t first, int column) {
   for (std::size_t i = first; i < figure.panels.size(); ++i)
     figure.panels[i].place = std::pair(static_cast<double>(i - first), static_cast<double>(column));

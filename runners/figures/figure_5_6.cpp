@@ -44,7 +44,7 @@ Table crossing_table(const std::string& name, const Crossing& c) {
   return table;
 }
 
-// Where the HIP is when the condition on the row holds for the first time.
+// Returns the x of the HIP when the condition on the row holds for the first time; NaN if it never holds.
 template <class Condition>
 double first_x(const Crossing& c, Condition&& holds) {
   for (std::size_t i = 0; i < c.hip_x.size(); ++i)
@@ -56,7 +56,7 @@ std::size_t max_force(const Crossing& c) {
   return static_cast<std::size_t>(std::max_element(c.force.begin(), c.force.end()) - c.force.begin());
 }
 
-// Mean force from x on.
+// Mean force while the HIP is between from_x and to_x.
 double mean_force(const Crossing& c, double from_x, double to_x) {
   double sum = 0;
   int count = 0;
@@ -128,7 +128,7 @@ double max_stiffness_error(const Crossing& c) {
 // later, 1e-5 m further on.
 constexpr double kForceAgrees_N = 1e-4, kPlaceAgrees_m = 1.1e-5;
 
-// As the second implementation has it.
+// Claims that a value agrees with the second implementation.
 Claim claim_second(const std::string& claim, double measured, const std::string& name) {
   const double expected = second_number("chapter_5", "/crossing/" + name);
   const bool is_force = name.ends_with("_N");

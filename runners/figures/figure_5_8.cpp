@@ -50,7 +50,7 @@ struct Deviation {
   double rms_m, max_m;
 };
 
-// Over the ticks in touch that are counted.
+// Deviation over the ticks in touch for which counts() is true.
 template <class Of, class Counts>
 Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
   double squares = 0, max = 0, count = 0;
@@ -59,14 +59,14 @@ Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
     const double error = of(run, i);
     squares += error * error, max = std::max(max, std::abs(error)), ++count;
   });
-  return {std::sqrt(squares / count), max};  // without a tick NaN, which fails
+  return {std::sqrt(squares / count), max};  // NaN if no tick counts; a claim on it fails
 }
 
 struct Summary {
   Deviation seen, at_update, moving;
   double min_beyond_fixture_m = kEnd_s, min_slave_beyond_fixture_m = kEnd_s;
   double touching_m = 0, held_m = 0, growth_m_per_s = 0;  // mean distances and slope of the phases
-  double max_speed_m_per_s = 0;                           // of the surface over the proxy
+  double max_speed_m_per_s = 0;                           // speed of the surface at the proxy
 };
 
 double mean_distance_m(const FixtureRun& run, double from_s, double until_s) {

@@ -189,7 +189,8 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
                               known_side_fraction(tracked), 0.5, "fraction")));
 }
 
-// At rest, moving, moving with the whole fixture from the start, and moving under the tracked sheet.
+// Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it
+// moves with the tracked sheet as renderer.
 std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
   std::vector<Experiment> experiments;  // the longest first: they go side by side
   experiments.push_back(Experiment::load("fig5.8-moving"));

@@ -17,15 +17,15 @@ namespace {
 constexpr double kWide_m = 0.025, kNarrow_m = 0.010;  // sigma_f as 6.3 prints it, and a smaller one
 constexpr double kWall_m = 0.8, kStep_m = 0.025, kNoise_m = 0.0015;
 constexpr int kBorder_px = 12, kEdge_px = 12;  // left out where they disturb a measurement
-constexpr double kNormal_m = 0.012;            // as drawn
+constexpr double kNormal_m = 0.012;            // length of a drawn normal
 constexpr int kEnoughNeighbours = 10;          // more than lie on a line of the window
-constexpr double kHand_m = 0.62, kForearm_m = 0.66, kRight_m = 0.02;  // what of the recording is the hand
+constexpr double kHand_m = 0.62, kForearm_m = 0.66, kRight_m = 0.02;  // limits of the hand in the recording
 
 struct NormalCount {
   double points = 0, with_neighbours = 0, wrong = 0, without_normal = 0;
 };
 
-// Whether enough measured points lie around the pixel, within the window and the radius of the normals.
+// True if enough measured points lie around the pixel, within the window and the radius of the normals.
 bool has_neighbours(const PointCloud& cloud, int u, int v, const DepthPipelineSettings& settings) {
   const CameraIntrinsics& camera = cloud.image->camera;
   const int half = settings.normal_window / 2;

@@ -24,7 +24,7 @@ const std::vector<std::pair<std::string, std::string>> kRules = {{"look_ahead", 
 const std::vector<int> kSpacings_mm = {3, 2, 1};
 
 struct BoxRun {
-  std::string name, tool, rule;  // in tables; of the experiment
+  std::string name, tool, rule;  // name in tables; tool and rule of the experiment
   int spacing_mm;
   Trace trace;
 };
@@ -41,7 +41,7 @@ double tool_deg(const Trace& trace, std::size_t i) {
   return rotated_deg(trace.tool_orientation[i]);
 }
 
-// Where the device has turned farthest.
+// Returns the first tick in which the device has turned farthest.
 std::size_t plateau(const Trace& trace) {
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
@@ -57,7 +57,7 @@ bool agrees(const Trace& t, std::size_t i) {
   return lag_m(t, i) <= kAgree_m && lag_rad(t, i) <= kAgree_rad;
 }
 
-// On its way into the box and out of it, the device is not turned.
+// True while the device is not turned: on its way into the box and out of it.
 bool moves_along(const Trace& t, std::size_t i) {
   return rotation_vector(t.hip_orientation[i]).norm() < kAgree_rad;
 }
@@ -66,7 +66,7 @@ bool any_count(const Trace& t, std::size_t i) {
   return t.contact_count[i] != 0 || t.active_constraints[i] != 0 || t.contact_clusters[i] != 0;
 }
 
-// Ticks for which it holds.
+// Number of ticks for which holds(i) is true.
 template <class Holds>
 double ticks_with(const Trace& trace, Holds&& holds) {
   double count = 0;
@@ -142,7 +142,7 @@ std::vector<BoxRun> box_runs(const FigureContext& context) {
   return runs;
 }
 
-// Along y, among the ticks without a point that touches.
+// Largest gap between device and tool along y, over the ticks without a point that touches.
 double max_gap_untouched_m(const Trace& t) {
   double gap = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
@@ -151,18 +151,19 @@ double max_gap_untouched_m(const Trace& t) {
   return gap;
 }
 
-// How far before and behind the walls a corner of the tool may stop, against the outline that the second
-// implementation turns in closed form. The mesh has corners of 8 mm, cut by chords of 2.5 mm: 0.1 mm less.
-// Its distance field is exact to a tenth of that. Voxels, at the angle at which the tool stops, are 0.65 mm
-// thick, so their surface is within half of that; a point may be a sub-step of 0.25 mm deep, and a corner
-// sinks 0.14 mm between points 3 mm apart.
+// Returns how far before and behind the walls a corner of the tool may stop, in mm, compared with the outline
+// that the second implementation turns in closed form. The mesh has corners of 8 mm, cut by chords of 2.5 mm,
+// which makes 0.1 mm less. Its distance field is exact to a tenth of that. Voxels are 0.65 mm thick at the
+// angle at which the tool stops, so their surface is within half of that. A point may be a sub-step of 0.25
+// mm deep, and a corner sinks 0.14 mm between points 3 mm apart.
 std::pair<double, double> plateau_slack_mm(const std::string& rule) {
   constexpr double kChord = 0.1, kField = 0.01, kVoxel = 0.65 / 2, kSubStep = 0.25, kSinks = 0.14;
   if (rule == "look-ahead") return {kField, kChord + kField};
   return {kVoxel, kChord + kVoxel + kSubStep + kSinks};
 }
 
-// Where the outline of a tool stops in the closed form. place: of the tool's numbers in the table.
+// Claims that a tool stops where its outline stops in the closed form. place: path of the tool's numbers in
+// the second implementation's results.
 Claim stop_claim(const std::string& name, const std::string& what, const BoxRun& run,
                  const std::string& place) {
   const auto [early, late] = plateau_slack_mm(run.rule);
@@ -197,7 +198,8 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
                               "ticks")));
 }
 
-// As many points touch as lie on the faces: more where they lie closer. runs: of one rule, 3, 2, 1 mm.
+// Claims that more points touch where they lie closer, because all points on the faces touch. runs: those of
+// one rule, with spacings of 3, 2 and 1 mm.
 void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
   std::string counts;
   double min_rise = 1e9;
@@ -212,7 +214,8 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
       "6 at an unknown spacing", min_rise, 1, "points"));
 }
 
-// Tools that were not made for this box. A block as long, wide and high as the husky stops elsewhere.
+// Claims for tools that were not made for this box. A block as long, wide and high as the husky stops
+// elsewhere.
 void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
   for (const BoxRun& run : runs)
     figure.claims.push_back(stop_claim(figure.name,
@@ -221,8 +224,8 @@ void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
                                        run, "/box/block"));
 }
 
-// And a bar of 80 x 10 mm, turned between two walls 40 mm apart. Its
-// corner is at a wall where 40 sin(a) + 5 cos(a) = 20.
+// Claims for a bar of 80 x 10 mm that turns between two walls 40 mm apart. Its corner is at a wall where 40
+// sin(a) + 5 cos(a) = 20.
 void add_slot_claim(Figure& figure, const FigureContext& context) {
   const double stops_deg =
       (std::asin(20 / std::hypot(40.0, 5.0)) - std::atan2(5.0, 40.0)) / kRadiansPerDegree;
@@ -240,8 +243,8 @@ void add_slot_claim(Figure& figure, const FigureContext& context) {
       "-", max_error_deg, 0.02, "deg"));
 }
 
-// The fifth side, 6.3.1: the device goes 20 mm deeper than the floor lets the tool. Its top is at -20 mm, and
-// half of the husky, or the block, is 10 mm high.
+// Claims for the fifth side, 6.3.1: the device moves 20 mm deeper than the floor allows the tool. The floor's
+// top is at -20 mm, and half of the husky, or the block, is 10 mm high.
 void add_floor_claims(Figure& figure, const FigureContext& context) {
   constexpr double kDevice_m = -0.03, kTool_m = -0.01, kSubStep_m = 0.5 * kBoxVoxel_m;
   std::vector<Experiment> experiments;
@@ -251,7 +254,7 @@ void add_floor_claims(Figure& figure, const FigureContext& context) {
                                     "trajectory.poses.1.1=" + std::to_string(kDevice_m), "duration_s=2"}));
   const std::vector<Trace> traces = context.run(experiments);
   for (std::size_t r = 0; r < kRules.size(); ++r) {
-    // As printed the floor is in the shell, whose upper side is within half a voxel of the surface.
+    // The printed rule has the floor in the shell, whose upper side is within half a voxel of the surface.
     const double deep_m = r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m + kSubStep_m;
     figure.claims.push_back(claim_between(figure.name,
                                           kRules[r].second + ": height at which the floor stops the block",

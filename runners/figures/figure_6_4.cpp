@@ -16,12 +16,12 @@ namespace {
 
 constexpr std::size_t kTableStride_6_4 = 5;        // ticks, in tables
 constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // phases of all three
-constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // what the pictures show
+constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // moments of the pictures
 constexpr double kVoxel_m = 5e-4;
 // A point in the shell is within 1.5 sqrt(3) voxels of the centre of a free voxel, which is outside the tool.
 constexpr double kDeepestInShell_m = 2.5981 * kVoxel_m;
 
-// How a run is drawn: the part of the recording around the object, and where it is seen from.
+// A picture of a run: the part of the recording around the object, and the viewpoint.
 struct DrawnMoment {
   const char *experiment, *table, *words;
   double remaining_m, right_m, top_m, bottom_m, max_depth_m;
@@ -70,7 +70,7 @@ struct TouchRun {
   Trace trace;
 };
 
-// Of the rule that is drawn, or as printed.
+// True for the rule as printed, false for the rule that is drawn.
 bool is_printed(const TouchRun& run) {
   return run.rule == "voxels";
 }

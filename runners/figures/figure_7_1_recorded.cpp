@@ -12,20 +12,21 @@ namespace remote_touch {
 
 namespace {
 
-// Where an object is in the colour image, drawn by eye: no truth for a pixel, but what lies outside is wrong.
+// Box around an object in the colour image, drawn by eye. It is no truth for a pixel, but a pixel picked
+// outside is wrong.
 struct Box {
   int left, top, right, bottom;
   bool holds(int u, int v) const { return u >= left && u < right && v >= top && v < bottom; }
-  // Two pixels wide, one of which a picture of every second pixel shows.
+  // The edge is two pixels wide, so that a picture of every second pixel shows one of them.
   bool on_edge(int u, int v) const {
     return u >= left - 2 && u < right + 2 && v >= top - 2 && v < bottom + 2 && !holds(u, v);
   }
 };
 
-// The ranges of hue were chosen on 0 and 40, among others; 12 and 52 were not looked at before.
+// The ranges of hue were chosen on frames 0 and 40, among others; 12 and 52 had not been viewed before.
 struct SegmentedFrame {
   int frame;
-  Box box[2];  // of each rule's object
+  Box box[2];  // boxes of the rules' objects
 };
 constexpr SegmentedFrame kSegmentedFrames[] = {
     {0, {{340, 138, 534, 318}, {452, 280, 582, 382}}},
@@ -40,8 +41,8 @@ constexpr PictureCrop kCrop{0, 60, 640, 480, 2};
 
 struct MaskNumbers {
   double picked = 0, in_box = 0, max_component = 0, in_pieces_of_100 = 0;
-  double mean_shift_m = 0;     // by what lies outside the box
-  double mean_to_point_m = 0;  // from the mean to the nearest picked point
+  double mean_shift_m = 0;     // shift caused by the pixels outside the box
+  double mean_to_point_m = 0;  // distance of the mean to the nearest picked point
 };
 
 Vec3 mean_of(const PointCloud& cloud, const std::vector<char>& picked) {
@@ -114,7 +115,8 @@ std::vector<std::uint32_t> overlay(const PointCloud& cloud, const std::vector<st
   return picture;
 }
 
-// How far the mean of a mask wanders while nothing moves: the target of a guidance fixture does as much.
+// Largest distance between means of a mask while nothing moves. The target of a guidance fixture moves as
+// much.
 double wander_m(const Scenario& scenario, const FixtureRule& rule) {
   std::vector<Vec3> means;
   for (int frame = 0; frame < kAtRest; ++frame) {

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kValveRegion_m = 0.04;
-constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // in the middle of the two pushes
+constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // middles of the two pushes
 constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
 constexpr double kStart_s = 0.25;
 
@@ -20,7 +20,7 @@ const char* const kOffCentre =
     "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
     "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
 
-// Runs of ticks with force.
+// Number of pushes: runs of ticks with force.
 int pushes(const Trace& t) {
   int count = 0;
   for (std::size_t i = 1; i < t.length(); ++i)
@@ -28,7 +28,7 @@ int pushes(const Trace& t) {
   return count;
 }
 
-// While no leaf is within the look-ahead of a region.
+// Largest force while no leaf is within the look-ahead of a region.
 double max_free_force_N(const Trace& t) {
   double max = 0;
   for (std::size_t i = 0; i < t.length(); ++i)

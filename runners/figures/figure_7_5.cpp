@@ -13,7 +13,7 @@ namespace {
 constexpr double kRegion_m = 0.04;
 constexpr double kPressed_s = 3;
 constexpr double kClamp_N = 4;       // guidance.max_force_N of the experiment
-constexpr double kLittle_Nm = 2e-3;  // what the target's noise makes of torque
+constexpr double kLittle_Nm = 2e-3;  // torque caused by the noise of the target
 constexpr double kPushed_s = 2.8, kArrived_s = 5.9;
 
 // The first tick in which guidance pulls.
@@ -22,7 +22,7 @@ std::size_t first_pull(const Trace& t) {
   return static_cast<std::size_t>(first - t.guidance_active.begin());
 }
 
-// Means over the last tenth of a second, of the size of each part.
+// Mean magnitude of each component about the handle, over the last tenth of a second.
 Vec3 residual_Nm(const Trace& t) {
   Vec3 sum = Vec3::Zero();
   const std::size_t from = tick_of(t, kArrived_s);

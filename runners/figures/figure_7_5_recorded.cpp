@@ -57,7 +57,7 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   return min;
 }
 
-// From the first to the last place that guidance led to.
+// Largest distance of a goal of guidance from the first one.
 double goal_wander_m(const Trace& t) {
   double wander = 0;
   Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

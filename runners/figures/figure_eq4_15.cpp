@@ -30,7 +30,7 @@ Experiment steady_fall() {
                                "eq4.15");
 }
 
-// From when the velocity estimate has settled.
+// Returns the part of the trace from 1 s on, when the velocity estimate has settled.
 Trace settled(const Trace& trace) {
   Trace part;
   for (std::size_t i = 0; i < trace.length(); ++i) {

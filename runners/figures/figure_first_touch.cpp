@@ -11,10 +11,10 @@ namespace remote_touch {
 namespace {
 
 const std::string kTouchFigure = "first-touch";
-constexpr double kSpacing_m = 0.0015;  // of the points, as in Table 4.2
+constexpr double kSpacing_m = 0.0015;  // spacing of the points, as in Table 4.2
 constexpr int kHandPhases = 9;         // start times for each speed of a hand that moves
 
-// The place of the proxy over the grid.
+// Position of the proxy over the grid.
 enum class Over { between_points, point };
 
 FirstTouch touch_at(double frame_rate_hz, Over over) {

@@ -1,5 +1,5 @@
-// How far a fixture is violated when frames arrive late, at irregular times or not at all. Chapter 8 names
-// this question and does not measure it.
+// Violation of a fixture when frames arrive late, at irregular times or not at all. Chapter 8 names this
+// question and does not measure it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,17 +10,17 @@ namespace remote_touch {
 
 namespace {
 
-// Of the experiments late-surface and late-heart.
+// Settings of the experiments late-surface and late-heart.
 constexpr double kLatencyRadius_m = 0.02, kFrameRate_hz = 30;
 constexpr double kSpeed_m_per_s = 0.1, kLatency_s = 0.05;
-// By then an estimate of the velocity has settled.
+// The velocity estimate has settled by this time.
 constexpr double kSettled_s = 1.5;
 
-// How deep the contact point of the slave, sent to the proxy, is at most inside the region of the surface as
-// it is at that moment.
+// Largest depth of the slave's contact point inside the region of the surface as it is at that moment. The
+// slave is sent to the proxy.
 struct Violation {
-  double max_m = 0;      // of the whole run
-  double settled_m = 0;  // of its last part
+  double max_m = 0;      // maximum of the whole run
+  double settled_m = 0;  // maximum from kSettled_s on
 };
 
 Violation violation(const Trace& trace) {
@@ -33,7 +33,8 @@ Violation violation(const Trace& trace) {
   return {kLatencyRadius_m + kContactRadius_m - min, kLatencyRadius_m + kContactRadius_m - settled};
 }
 
-// A frame shows the surface as it was; until the next one comes it is older by a frame's interval.
+// A frame shows the surface as it was at its capture. It is older by one frame interval when the next one
+// comes.
 double predicted_m(double speed_m_per_s, double latency_s) {
   return speed_m_per_s * (latency_s + 1 / kFrameRate_hz);
 }
@@ -184,7 +185,7 @@ std::vector<Panel> panels() {
   return list;
 }
 
-// In the cells where the predicted violation is below the limit.
+// Largest error over the cells in which the predicted violation is below the limit.
 template <class Error>
 double max_error(const Table& map, double limit_mm, Error&& error) {
   const auto& predicted = numbers(map, "predicted");
@@ -202,7 +203,7 @@ double fraction_known(const Table& map) {
   return agree / static_cast<double>(measured.size());
 }
 
-// How far outside its bounds any jittered run is.
+// Largest amount by which a jittered run is outside its bounds.
 double max_outside(const Table& jitter) {
   double max = 0;
   for (std::size_t i = 0; i < numbers(jitter, "max").size(); ++i)

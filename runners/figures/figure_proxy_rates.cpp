@@ -1,5 +1,5 @@
-// Whether (4.23), (4.24) and the 16 r_c/s of the predecessor [1] can come from one machine: a sweep over the
-// number of proxy steps that a machine makes in a frame.
+// Examines whether (4.23), (4.24) and the 16 r_c/s of the predecessor [1] can come from one machine: a sweep
+// over the number of proxy steps that a machine makes in a frame.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kFrames_hz = 30, kPrinted_rc_per_s = 16;
-constexpr int kFastSteps = 1000;  // of the dissertation's own 30 kHz
+constexpr int kFastSteps = 1000;  // steps in a frame at the dissertation's own 30 kHz
 
 // --- h and e_n over lifts without acceleration ---
 
@@ -20,7 +20,7 @@ struct NoiseMeans {
   double thickness_m = 0, at_end = 0, in_time = 0;  // h; e_n before an update, and over all steps
 };
 
-// From the sixth update after the rise on, while the proxy is above the plane.
+// Means from the sixth update after the rise on, while the proxy is above the plane.
 NoiseMeans noise_means(const Trace& t) {
   double frames = 0, ticks = 0;
   NoiseMeans sum;
@@ -35,7 +35,7 @@ NoiseMeans noise_means(const Trace& t) {
 
 // One machine: a row for each noise, the mean of the lifts.
 struct Machine {
-  int steps = 0;  // in a frame
+  int steps = 0;  // number of steps in a frame
   std::vector<double> noise_m, thickness_m, at_end, in_time;
 };
 
@@ -71,10 +71,10 @@ std::vector<Machine> all_machines(const FigureContext& context) {
   return list;
 }
 
-// Where the fits say most: below, the printed digits allow next to nothing, and (4.23) is up to 0.2 mm above
-// every machine.
+// Noise from which the fits say most. The printed digits allow next to nothing below it, and (4.23) is up to
+// 0.2 mm above every machine there.
 constexpr double kFromNoise_m = kContactRadius_m - 1e-9;
-constexpr int kStrengths = 6;  // of the sweep, from there on
+constexpr int kStrengths = 6;  // noise strengths of the sweep from kFromNoise_m on
 
 // Noise strengths from r_c to 2 r_c at which the means lie in what the printed digits allow.
 int strengths_in_band(const PrintedFit& printed, const std::vector<double>& noise_m,
@@ -88,7 +88,7 @@ int strengths_in_band(const PrintedFit& printed, const std::vector<double>& nois
   return inside;
 }
 
-// The fewer of those of h and those of e_n.
+// The smaller of the two counts, for h and for e_n.
 int strengths_as_printed(const Machine& m, const std::vector<double>& normal_error) {
   return std::min(strengths_in_band(printed_thickness(), m.noise_m, m.thickness_m),
                   strengths_in_band(printed_normal_error(), m.noise_m, normal_error));
@@ -122,7 +122,7 @@ struct Predecessor {
   double holds = 0, pops = 40;  // velocities, r_c/s: the largest tried without pop-through, the smallest with
 };
 
-// By bisection.
+// Finds the velocities by bisection.
 std::vector<Predecessor> predecessors(const FigureContext& context, const std::vector<int>& steps) {
   std::vector<Predecessor> list;
   for (const int count : steps) {

@@ -15,9 +15,9 @@ namespace remote_touch {
 namespace {
 
 const std::string kForcesFigure = "tool-forces";
-constexpr double kBlockHalf_m = 0.02, kBlockHalfHeight_m = 0.005;  // of slab-10
-constexpr double kBallRadius_m = 0.01;                             // of ball
-constexpr double kAbove_m = 0.002, kDeep_m = 0.006;                // where a press begins, and ends
+constexpr double kBlockHalf_m = 0.02, kBlockHalfHeight_m = 0.005;  // half extents of slab-10
+constexpr double kBallRadius_m = 0.01;                             // radius of ball
+constexpr double kAbove_m = 0.002, kDeep_m = 0.006;                // start above the touch, end below it
 
 struct ToolMethod {
   const char *column, *label, *renderer;
@@ -35,7 +35,7 @@ constexpr ToolMethod kOfCoupling{"look_ahead", "look-ahead, M of the coupling",
 
 // A press, and the exact wrench for a pose of the device.
 struct ModelPress {
-  double setting;  // what its table is over
+  double setting;  // value of the axis of its table
   std::string tool, scenario, poses;
   std::function<Wrench(const DeviceState&)> wrench;
 };
@@ -114,9 +114,9 @@ ModelPress in_slot() {
           }};
 }
 
-// Of one vector over a press, over the ticks in which the exact one is not small: the mean deviation of its
-// magnitude, as a fraction of the mean exact magnitude; the fraction of ticks without any vector, and the
-// mean angle between both over the others. NaN without such ticks.
+// Deviation of one vector over the ticks of a press in which the exact vector is not small. magnitude: mean
+// deviation of its magnitude, as a fraction of the mean exact magnitude. missing: fraction of ticks without
+// any vector. direction_deg: mean angle between both vectors over the other ticks. NaN without such ticks.
 struct Deviation {
   double magnitude = 0, missing = 0, direction_deg = 0;
 };
@@ -138,10 +138,10 @@ Deviation deviation(const Vectors& rendered, const Vectors& exact, double small)
           angle_rad / (ticks - missing) / kRadiansPerDegree};
 }
 
-// What one run gives.
+// Results of one run.
 struct PressResult {
   Deviation force, torque;
-  double stray_torque_Nm = 0;  // mean where none is exact
+  double stray_torque_Nm = 0;  // mean of |torque - exact torque|
   std::vector<double> angle_deg, torque_Nm, exact_torque_Nm;
 };
 PressResult result_of(const ModelPress& press, const Trace& trace) {
@@ -273,9 +273,9 @@ std::vector<Claim> plane_claims(const Table& planes) {
                    max_in(planes, "voxmap_force_direction"), 5, "deg")};
 }
 
-// At a corner the torque has to be that of the force. The constrained motion (6.4) ends where the
-// displacement that is left, times M, is held by the contacts. The coupling gives the hand k times that
-// displacement, and k r^2 times the angle. Both agree if M is that of the coupling.
+// The torque at a corner has to be that of the force. The constrained motion (6.4) ends where the contacts
+// hold the displacement that is left, times M. The coupling gives the hand k times that displacement, and k
+// r^2 times the angle. Both agree if M is that of the coupling.
 std::vector<Claim> block_claims(const Table& blocks, const Table& of_coupling) {
   return {at_most("god-object, M of the coupling, tilted block: deviation of the force",
                   max_in(blocks, "god_object_force"), kGapFraction, "1"),

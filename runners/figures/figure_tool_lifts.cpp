@@ -15,8 +15,9 @@ namespace {
 const std::string kLiftFigure = "tool-lifts";
 constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
 
-// What one frame may move a surface by against a plate: 6.2.4, with the shell on either side; all of the
-// plate, where the side of the last contact is known; how far a held tool is moved out.
+// Largest distance by which one frame may move a surface against a plate. Printed rule: 6.2.4, with the shell
+// on either side. Look-ahead: the whole plate, if the side of the last contact is known. Continuous rule: the
+// larger of that and the distance by which a held tool is moved out.
 double max_jump_m(Carrier rule, double thickness_m) {
   switch (rule) {
     case Carrier::voxels:
@@ -28,7 +29,7 @@ double max_jump_m(Carrier rule, double thickness_m) {
   }
 }
 
-// Limits over a setting, and bound(), what is derived for it; each rule in columns of its own.
+// Limits over a setting, and bound(), the limit that is derived for it; each rule has columns of its own.
 template <class Bound>
 Table limit_table(const std::string& name, const std::string& title, const CarrySweep& sweep, Column setting,
                   const std::string& units, Bound&& bound) {

@@ -15,10 +15,10 @@ namespace remote_touch {
 namespace {
 
 const std::string kShapeFigure = "tool-shapes";
-constexpr double kFirstSpeed_m_per_s = 0.03, kWallTilt_deg = 80;  // of the sweeps
+constexpr double kFirstSpeed_m_per_s = 0.03, kWallTilt_deg = 80;  // values of the sweeps
 const std::vector<double> kThickness_m = {0.005, 0.01, 0.02};
 
-// How the strengths of a sweep become what is drawn, and jumps too.
+// Conversion of a sweep's strengths, and of jumps, to the drawn quantity.
 struct Scale {
   std::string units, y_label;
   double offset = 0, factor = 1, per_jump = kJumpFrames_hz;
@@ -31,7 +31,7 @@ Scale sideways() {  // a wall comes nearer along its normal by less than it move
 
 struct Family {
   std::string table, title;
-  Column setting;  // of the sweep, from the setting `first` on
+  Column setting;  // axis of the sweep, from the setting `first` on
   std::string x_label;
   std::size_t first = 0;
   Scale scale = kSpeed;
@@ -195,7 +195,7 @@ FamilySweep noise_sweep() {
 
 // --- claims ---
 
-// In how many settings of several tables.
+// Claims that the limit is between the derived ones in every setting of several tables, and counts the rest.
 Claim claim_bounded(const std::vector<Table>& tables, Carrier rule, const std::string& claim,
                     const std::string& paper = "-") {
   const std::string column = column_of(rule);

@@ -22,7 +22,8 @@ struct TrackedMethod {
 };
 constexpr TrackedMethod kTrackedTool{"tracked", "tracked sheets",
                                      R"(renderer={"name": "tracked-tool", "tool_mesh": "slab-10"})"};
-// As they are by default, and with the velocity estimate that sweep tool-noise gives them.
+// The rival rules with their default parameters, and with the velocity estimate that sweep tool-noise gives
+// them.
 constexpr TrackedMethod kToolRivals[] = {
     {"voxels", "as printed",
      R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "voxels", "velocity_estimate": true})"},
@@ -34,7 +35,7 @@ constexpr TrackedMethod kLookAheadAsIs{
     "look_ahead_plain", "look-ahead, no velocity estimate",
     R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "look-ahead"})"};
 
-// The renderer's parameters were fixed with seeds 1 to 20; no run of these had been looked at then.
+// The renderer's parameters were fixed with seeds 1 to 20, before any run with these seeds had been viewed.
 constexpr int kTrackedSeeds[] = {101, 102, 103, 104, 105, 106, 107, 108, 109, 110};
 constexpr int kOtherSeed = 101;
 
@@ -194,7 +195,7 @@ double mean_height_over(const Trace& trace) {
   return sum / count;
 }
 
-// How much higher noise holds the plate than the same renderer without noise; in r_c.
+// Height by which noise raises the plate, compared with the same renderer without noise; in r_c.
 std::vector<double> raised_by_noise(const FigureContext& context, const TrackedMethod& method) {
   std::vector<Experiment> runs;
   for (const char* shape : kToolShapes)

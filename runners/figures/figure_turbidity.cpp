@@ -1,4 +1,4 @@
-// How well hue finds the two valves of 7.5.1 in ever more turbid water, where the truth is known.
+// Segmentation by hue of the two valves of 7.5.1 in ever more turbid water, where the truth is known.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kLevels_per_m[] = {0, 0.3, 0.6, 1, 1.5, 2, 3};
 constexpr double kDefault_per_m = 0.6;
-constexpr std::size_t kShownLevels[] = {0, 2, 4};  // of the levels
+constexpr std::size_t kShownLevels[] = {0, 2, 4};  // indices in kLevels_per_m
 constexpr int kFrames = 5;
-constexpr int kEnoughPicked = 100;  // for a precision to mean anything
+constexpr int kEnoughPicked = 100;  // minimum for a meaningful precision
 constexpr PictureCrop kCrop{205, 195, 435, 290};
 
-// What is drawn of a mask.
+// Colours of a drawn mask.
 constexpr std::uint32_t kBack = 0x3C4654, kNoDepth = 0x000000, kMissed = 0xFF00FF, kWrong = 0xFFFFFF;
 constexpr std::uint32_t kFound[] = {0xE03A30, 0xF0C020};
 
@@ -30,8 +30,8 @@ constexpr const char* kNames[] = {"red", "yellow"};
 
 struct Level {
   double turbidity_per_m = 0;
-  SegmentationScore score[2];          // of all frames
-  std::vector<std::uint32_t> picture;  // of the first: the mask against the truth
+  SegmentationScore score[2];          // scores over all frames
+  std::vector<std::uint32_t> picture;  // first frame: the mask against the truth
   PointCloud first;
 };
 
@@ -128,7 +128,7 @@ void add_pictures(Figure& figure, const std::vector<Level>& levels) {
   }
 }
 
-// From each level to the next. 0 where it never rises.
+// Largest rise of the fraction from one level to the next; 0 if it never rises.
 double max_rise(const std::vector<Level>& levels, std::size_t k,
                 double (SegmentationScore::*fraction)() const) {
   double rise = 0;

@@ -30,7 +30,7 @@ class FigureContext {
       : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
 
   Trace run(const Experiment& experiment) const;
-  // For an experiment whose frames are used without a run.
+  // Records an experiment whose frames are used without a run.
   void uses(const Experiment& experiment) const {
     note(experiment.to_json());
     inputs_.add(experiment.inputs());

@@ -14,16 +14,16 @@ inline constexpr double kProxyContactRadius_m = 0.005;
 
 struct FixtureRun {
   Trace trace;
-  std::unique_ptr<Scenario> scenario;  // of the run, for its ground truth
-  std::vector<double> radius_m;        // of each tick: r_f of the frame in use
+  std::unique_ptr<Scenario> scenario;  // scenario of the run, for its ground truth
+  std::vector<double> radius_m;        // r_f of the frame in use in each tick
 
-  // When the frame that the renderer has in tick i was captured.
+  // Capture time of the frame that the renderer has in tick i.
   double frame_captured_s(std::size_t i) const { return scenario->captured_s(trace.frame_index[i]); }
   // Correct distance of the proxy's centre from the surface, r_f + r_c.
   double boundary_m(std::size_t i) const { return radius_m[i] + kProxyContactRadius_m; }
 };
 
-// In parallel. pre: every point has the same r_f, and no scene ends before its run.
+// Runs the experiments in parallel. pre: every point has the same r_f, and no scene ends before its run.
 std::vector<FixtureRun> run_fixtures(const FigureContext& context,
                                      const std::vector<Experiment>& experiments);
 

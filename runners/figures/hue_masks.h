@@ -1,4 +1,4 @@
-// Which pixels of an image colour rules select, and pictures of images.
+// Pixels of an image that colour rules select, and pictures of images.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment)
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
 std::vector<char> measured_points(const PointCloud& cloud);
 
-// Which pixels of an image a picture shows: every step'th of columns left .. right - 1, rows top .. bottom
-// - 1.
+// Pixels of an image that a picture shows: every step'th of the columns left .. right - 1 and of the rows
+// top .. bottom - 1.
 struct PictureCrop {
   int left, top, right, bottom, step = 1;
 };
@@ -27,7 +27,7 @@ struct PictureCrop {
 // Columns column, row and colour; the colours of all pixels, 0xRRGGBB. pre: the cloud has an image.
 Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                     const std::vector<std::uint32_t>& colours, const PictureCrop& crop);
-// That table as an image.
+// The table of picture_table() as an image.
 Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
                     const PictureCrop& crop);
 

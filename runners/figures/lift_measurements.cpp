@@ -14,7 +14,7 @@ namespace {
 // Updates in which the velocity estimate has reached its level.
 constexpr SettledFrom kSettled{kRiseFrames + 5};
 
-// Where the grid lies below the proxy, in units of its spacing: one of eight places.
+// Position of the grid below the proxy, in units of its spacing: one of eight.
 double phase_of(std::size_t step) {
   return 0.125 * static_cast<double>(step);
 }

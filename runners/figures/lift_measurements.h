@@ -24,7 +24,7 @@ Phases critical_over_phases(const FigureContext& context);
 inline constexpr double kFitted_m = 0.01;
 struct MeasuredNoise {
   std::vector<double> sigma_m;
-  std::vector<NoiseEffect> effect;  // of each strength
+  std::vector<NoiseEffect> effect;  // one for each of sigma_m
   PolynomialFit thickness, normal_error;
 
   NoiseEffect at(double noise_m) const;  // linear between the measured strengths

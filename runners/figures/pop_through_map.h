@@ -33,22 +33,23 @@ Table region_table(const std::string& name, const Table& map);
 
 // A share of lifts that another implementation computed too: how far two shares may lie apart by chance.
 struct SharedLifts {
-  double survived = 0;  // by the other implementation
-  double variance = 0;  // of one lift about the probability of its node
+  double survived = 0;  // share in the other implementation
+  double variance = 0;  // variance of one lift about its node's probability
   double nodes = 0, lifts_a_node = 0;
   // Standard error of the difference to a share of as many nodes, with so many lifts at each. Where no lift
   // differed from its node's others the variance is that of one that did.
   double standard_error(double our_lifts_a_node) const;
 };
-// Of chance one in a thousand: for one comparison, and for the largest of n. Normal distribution, two-sided.
+// Differences in standard errors that chance exceeds once in a thousand: for one comparison, and for the
+// largest of n. Normal distribution, two-sided.
 inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1;
-// Within what chance allows of the other implementation's share.
+// Claims that a share differs from the other implementation's by no more than chance allows.
 Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
                    double measured, const SharedLifts& other, double our_lifts_a_node);
-// Of a column apart, in standard errors.
+// Largest magnitude in the column `apart`, in standard errors. NaN if a value is NaN, or if there is none.
 double max_apart(const Table& table);
-// A share of the second implementation, of one lift at each node: "/map/whole", "/map/coarse" (every third
-// noise and second acceleration).
+// Returns a share of the second implementation, of one lift at each node: "/map/whole", "/map/coarse" (every
+// third noise and second acceleration).
 SharedLifts second_fraction(const std::string& place);
 
 // Noise from 0 to 3 r_c, for curves over it.
@@ -58,7 +59,7 @@ void add_bound(Table& table, const std::string& column, const std::string& meani
                const std::function<double(double noise_m)>& bound_m_per_s2);
 double printed_bound(double noise_m);  // (4.25) with (4.23), (4.24), m/s^2
 
-Table bound_table();  // that, named "bound"
+Table bound_table();  // printed_bound() over noise, named "bound"
 
 // A map's panel: x noise, y acceleration, the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kAround_px = 10;  // 1 cm at 0.6 m
 
-// Where a frame is in the recording: 0 1 2 3 2 1 0 1 ...
+// Index of a frame in the recording, which plays forwards and backwards: 0 1 2 3 2 1 0 1 ...
 int place_of(int frame, int count) {
   const int cycle = std::max(1, 2 * count - 2), place = frame % cycle;
   return place < count ? place : cycle - place;
@@ -49,7 +49,7 @@ double hidden_m(const Vec3& p, const PointCloud& cloud) {
   return p.z() - cloud.z[static_cast<std::size_t>(at.v) * camera.width + at.u];
 }
 
-// From one place of the recording to the next.
+// Motion from one frame of the recording to the next.
 struct Motion {
   double camera_position_m = 0, surface_m = 0;
 };
@@ -85,7 +85,7 @@ int places(const Experiment& experiment) {
 
 }  // namespace
 
-// In the order of the recording, so that each of its frames is read once.
+// Goes through the frames in the order of the recording, so that each is read once.
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run) {
   const Trace& trace = run.trace;
   std::vector<FrameOutcome> outcomes = last_ticks(trace);
@@ -124,7 +124,7 @@ std::vector<PopThrough> pop_throughs(const FixtureRun& run) {
     if (std::isnan(distance_m)) continue;
     if (known_m >= 0 && distance_m < 0) {
       PopThrough pop{i, kUnknown};
-      // Where the proxy stood when the frame came in, before its first step.
+      // The second distance is that of the proxy when the frame arrived, before its first step.
       if (trace.frame_update(i) && !std::isnan(trace.signed_distance_m[i - 1]))
         pop.surface_motion_m =
             trace.signed_distance_m[i - 1] -

@@ -8,11 +8,11 @@
 
 namespace remote_touch {
 
-// The last tick before the next frame came in, and that frame.
+// Outcome of a frame, in the last tick before the next frame arrived.
 struct FrameOutcome {
   std::size_t tick = 0;
-  double nearest_distance_m = 0;  // from the proxy to the nearest measured point
-  double hidden_m = 0;            // how far the proxy lies behind the depth of its own pixel; NaN at a hole
+  double nearest_distance_m = 0;  // distance of the proxy to the nearest measured point
+  double hidden_m = 0;            // depth of the proxy behind that of its own pixel; NaN at a hole
   double camera_motion_m = 0;     // median over the image: how far a pixel's point moved since the last frame
   double surface_motion_m = 0;    // around the pixel that the HIP presses: towards the camera, likewise
 };

@@ -17,9 +17,9 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kEvery = 5;            // ticks, in tables
-constexpr std::size_t kClearanceEvery = 10;  // ticks, where clearance is looked for
+constexpr std::size_t kClearanceEvery = 10;  // ticks, in the search for the least clearance
 constexpr double kSettled_m = 1e-4;
-constexpr std::size_t kRegionsEvery = 25;  // of the regions, in pictures
+constexpr std::size_t kRegionsEvery = 25;  // stride of the regions in pictures
 constexpr int kRaysOfRegion = 60;
 constexpr std::uint32_t kRegionColour = 0xC0392B;
 
@@ -27,7 +27,7 @@ Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
   return t.proxy_position_m[tick] + t.tool_orientation[tick] * p_T;
 }
 
-// How far a ray from a place in the regions goes before it leaves them all.
+// Distance along a ray from a position in the regions until it leaves them all.
 double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
   double out = 0, before = -1;
   while (out > before) {
@@ -41,7 +41,7 @@ double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& 
   return out;
 }
 
-// Places on the boundary of the union of the regions.
+// Positions on the boundary of the union of the regions.
 std::vector<Vec3> boundary(const SphereTree& regions) {
   std::vector<Vec3> places;
   const double golden = 2.399963229728653;

@@ -12,7 +12,7 @@
 namespace remote_touch {
 
 struct ValveTask {
-  std::string name, words;  // for tables; for readers
+  std::string name, words;  // name in tables; words for readers
   Experiment experiment;
   Trace trace;
   std::shared_ptr<const ValveTank> tank;
@@ -24,7 +24,7 @@ struct NamedTask {
   std::vector<std::string> overrides = {};
 };
 
-// In parallel. tank is null for other scenarios.
+// Runs the tasks in parallel. tank is null for other scenarios.
 std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks);
 
 // Distance from the tool's mesh to the true surface of a valve: at the vertices and the centres of the

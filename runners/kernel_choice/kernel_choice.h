@@ -15,9 +15,9 @@ namespace remote_touch {
 // Measures all levels that this machine has: about 6 ms, 10 ms on a slow machine.
 LevelTimes time_supported_levels();
 
-// Those of the level `forced`, or, if that is empty, of the fastest level: as measured before, which the
-// cache folder tells, else as measured now, which it is told. A cache that cannot be used is no error. Throws
-// InputError if the machine does not have the forced level.
+// Returns the kernels of the level `forced` or, if that is empty, of the fastest level. The times are read
+// from the cache folder; if it has none, they are measured now and stored there. A cache that cannot be used
+// is no error. Throws InputError if the machine does not have the forced level.
 const Kernels& choose_kernels(const std::string& forced, const std::filesystem::path& cache_folder,
                               const std::function<LevelTimes()>& measure = time_supported_levels);
 
@@ -25,10 +25,10 @@ const Kernels& choose_kernels(const std::string& forced, const std::filesystem::
 // and version, sources, compiler and flags of this program.
 std::string level_times_key();
 
-// None if the folder has no such file, or it is damaged or not of this number of levels.
+// Returns nothing if the folder has no such file, or if it is damaged or has another number of levels.
 std::optional<LevelTimes> read_level_times(const std::filesystem::path& folder, const std::string& key,
                                            std::size_t levels);
-// False if it cannot be written, which is not an error.
+// Returns false if the file cannot be written, which is not an error.
 bool write_level_times(const std::filesystem::path& folder, const std::string& key, const LevelTimes& times);
 
 // "x86-64 1.00, x86-64-v3 2.31": how many times as fast as the lowest level each is. pre: as many times as

@@ -92,7 +92,7 @@ struct ToolDisks {
     out.radius = disk[9].data(), out.distance = disk[10].data(), out.slope = disk[11].data();
     out.lower = disk[12].data(), out.bound = disk[13].data(), out.cell = disk[14].data();
     out.extent = disk[15].data();
-    constexpr DiskLimits kLimits{4e-3, 2e-3, 3e-4, 4e-3};  // as of a look-ahead of 2 mm
+    constexpr DiskLimits kLimits{4e-3, 2e-3, 3e-4, 4e-3};  // limits for a look-ahead of 2 mm
     std::size_t outside_count = 0;
     kernels.tool.disks_in_field(points, kPoints, 0.5, 1000, field, kLimits, nearest.data(), true, out,
                                 outside_count);

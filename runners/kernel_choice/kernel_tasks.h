@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// What the tasks read is made once; they share nothing and write to memory of their own.
+// Returns the tasks. Their inputs are made once. The tasks share nothing and write to memory of their own.
 std::vector<KernelTask> representative_tasks();
 
 }  // namespace remote_touch

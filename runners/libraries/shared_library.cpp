@@ -11,14 +11,15 @@ namespace remote_touch {
 
 namespace {
 
-// Of the loader, for the last name it tried; without that name.
+// Returns the loader's error for the last name that it tried, without that name.
 std::string loader_says(const std::string& name) {
   const char* told = dlerror();
   const std::string text = told != nullptr ? told : "no reason given";
   return text.rfind(name + ": ", 0) == 0 ? text.substr(name.size() + 2) : text;
 }
 
-// Of names that fail for the same reason one after the other, and there are many, the middle is left out:
+// Successive names that fail for the same reason are put together. If there are more than three of them, the
+// middle ones are left out:
 // "a.so, a.so.9 to a.so.1: no such file; b.so: not for this machine".
 std::string failed_names(const std::vector<std::pair<std::string, std::string>>& failures) {
   std::string text;

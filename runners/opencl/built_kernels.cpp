@@ -18,14 +18,14 @@ std::string options(const OpenClDevice& device, const DepthPipelineSettings& set
   return text;
 }
 
-// `mutex` is not locked while something is built or released. The kernels of one platform are built one after
-// another, by whoever has a deadline: compilers in drivers are not all safe in two threads, and the second
-// one may find what it needs. A driver that hangs holds up no other one.
+// `mutex` is not locked while kernels are built or released. The kernels of one platform are built one after
+// another, by threads with a deadline: not all compilers in drivers are safe in two threads, and the second
+// thread may find its kernels already built. A driver that hangs does not delay other platforms.
 struct Cache {
   using Key = std::pair<cl_device_id, std::string>;
   std::mutex mutex;
   std::map<Key, std::shared_ptr<const BuiltKernels>> built;
-  std::map<int, std::mutex> one_at_a_time;  // of each platform
+  std::map<int, std::mutex> one_at_a_time;  // one mutex for each platform
 
   std::mutex& turn_of(int platform) {
     const std::lock_guard lock(mutex);
@@ -34,7 +34,7 @@ struct Cache {
 };
 
 Cache& cache() {
-  // Never freed: at the end of the process the driver may have gone before.
+  // The cache is never freed, because the driver may be unloaded earlier at the end of the process.
   static Cache& one = *new Cache;
   return one;
 }

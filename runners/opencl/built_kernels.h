@@ -1,5 +1,5 @@
-// The kernels of the depth pipeline, built for a device once in a process, however many runs use them. Inside
-// of this room only.
+// The kernels of the depth pipeline, built once in a process for each device, however many runs use them.
+// Only for use inside this folder.
 #pragma once
 
 #include <memory>
@@ -10,19 +10,19 @@
 
 namespace remote_touch {
 
-// For the windows of some settings; from any thread.
+// Kernels built for the window sizes of the settings. Any thread may use them.
 class BuiltKernels {
  public:
   using Kernel = OpenClObject<cl_kernel>;
 
-  // May take seconds. Throws OpenClError.
+  // Builds the kernels, which may take seconds. Throws OpenClError.
   BuiltKernels(const OpenClLibrary& library, const OpenClDevice& device,
                const DepthPipelineSettings& settings);
 
   const OpenClLibrary& library() const { return cl_; }
   cl_device_id device() const { return device_; }
   cl_context context() const { return context_.get(); }
-  // A new one, since a kernel keeps its arguments. Throws OpenClError.
+  // Returns a new kernel object, because a kernel keeps its arguments. Throws OpenClError.
   Kernel kernel(const char* name) const;
 
  private:
@@ -32,11 +32,12 @@ class BuiltKernels {
   OpenClObject<cl_program> program_;
 };
 
-// Built now, unless they are there, after those that other threads build. Throws OpenClError.
+// Returns the kernels; builds them if they do not exist, after other threads have built theirs. Throws
+// OpenClError.
 std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, const OpenClDevice& device,
                                                   const DepthPipelineSettings& settings);
-// Those of a device that failed are built again by who asks next. Returns the old ones: to release them may
-// hang.
+// Removes the kernels of a device that failed, so that the next call of built_kernels() builds them again.
+// Returns the old ones, because their release may hang.
 [[nodiscard]] std::vector<std::shared_ptr<const BuiltKernels>> forget_kernels(cl_device_id device);
 
 }  // namespace remote_touch

@@ -6,7 +6,7 @@
 namespace remote_touch {
 
 DeadlineThread::DeadlineThread() : shared_(std::make_shared<Shared>()) {
-  // Detached: one that hangs can never be joined.
+  // The thread is detached, because a thread that hangs can never be joined.
   std::thread([shared = shared_] { serve(shared); }).detach();
 }
 

@@ -1,4 +1,4 @@
-// Work with a deadline: a driver that hangs holds up its own thread only.
+// Work with a deadline: a driver that hangs blocks only its own thread.
 #pragma once
 
 #include <chrono>
@@ -13,13 +13,13 @@ namespace remote_touch {
 class DeadlineThread {
  public:
   DeadlineThread();
-  // Does not wait for work that was given up.
+  // Does not wait for work that has missed its deadline.
   ~DeadlineThread();
   DeadlineThread(const DeadlineThread&) = delete;
   DeadlineThread& operator=(const DeadlineThread&) = delete;
 
-  // Whether the work was done in time; throws what it throws. Work that was not goes on in its thread, so it
-  // must own all that it uses, and run() is not called again.
+  // Returns true if the work was done in time; throws what the work throws. Late work continues in its
+  // thread, so it must own all that it uses, and run() must not be called again.
   bool run(std::function<void()> work, std::chrono::milliseconds limit);
 
  private:

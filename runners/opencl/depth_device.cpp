@@ -20,7 +20,7 @@ struct Address {
   int platform = -1, number = -1;  // -1: any
 };
 
-// Of "opencl" or "opencl:0:1"; none for other texts.
+// Parses "opencl" or "opencl:0:1"; returns none for other texts.
 std::optional<Address> address_of(const std::string& text) {
   if (text == "opencl") return Address{};
   if (text.rfind("opencl:", 0) != 0) return std::nullopt;
@@ -42,7 +42,7 @@ std::string inexact(const OpenClDevice& device, const DepthTrial& trial) {
   throw InputError("depth_pipeline.device = " + settings.device, why);
 }
 
-// Whether the kernels of a device know how to compute these normals.
+// True if the kernels can compute these normals.
 bool is_for_devices(const DepthPipelineSettings& s) {
   return s.normal_step == 1 && s.normal_fit == NormalFit::total_least_squares;
 }
@@ -59,7 +59,7 @@ std::vector<OpenClDevice> devices_or_none(std::string& why_none) {
   }
 }
 
-// The fastest one that keeps the bits and is faster than the CPU.
+// Returns the fastest device that keeps the bits and is faster than the CPU; none if there is none.
 std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
   std::string why_none;
   std::optional<OpenClDevice> best;
@@ -93,7 +93,7 @@ OpenClDevice asked_device(const DepthDeviceSettings& settings, const Kernels& ke
   refuse(settings, why.empty() ? "there is no such device: `remote-touch devices` lists them" : why);
 }
 
-// What depth_device_of() tells.
+// The devices that depth_device_of() reports, by settings.
 struct Choices {
   std::mutex mutex;
   std::vector<std::pair<DepthDeviceSettings, std::string>> all;

@@ -1,4 +1,5 @@
-// Where the depth pipeline of an experiment runs: on the CPU, or on an OpenCL device with the same bits.
+// Choice of the device that runs the depth pipeline of an experiment: the CPU, or an OpenCL device with the
+// same bits.
 #pragma once
 
 #include <functional>
@@ -25,23 +26,23 @@ struct DepthDeviceSettings : DepthPipelineSettings {
 Parameters parameters(DepthDeviceSettings& s);
 std::string validate(const DepthDeviceSettings& s);
 
-// Throws InputError, about depth_pipeline.device, where a device was asked for that is not there, does not
-// work, or must be exact and is not.
+// Throws InputError, about depth_pipeline.device, if the requested device does not exist, does not work, or
+// must be exact and is not.
 std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& settings,
                                                      const Kernels& kernels, const DepthReport& report);
 
-// For the provenance of results: the OpenCL device of the newest processor that this process made with these
-// settings, "opencl:0:0 (NAME, PLATFORM)", and whether it failed. Empty: the CPU alone.
+// Returns, for the provenance of results, the OpenCL device of the newest processor that this process made
+// with these settings, "opencl:0:0 (NAME, PLATFORM)", and whether it failed. Empty: the CPU alone.
 std::string depth_device_of(const DepthDeviceSettings& settings);
 
 struct FoundDepthDevice {
   std::string address, name;
-  std::string inexact_because;  // as it says itself, or as the trial showed; empty: it keeps the bits
+  std::string inexact_because;  // reported by the device, or found in the trial; empty: it keeps the bits
   DepthTrial trial;
   bool is_usable() const { return trial.failure.empty() && inexact_because.empty(); }
 };
 
-// Every OpenCL device, tried. If there is none, why_none says why.
+// Tries every OpenCL device. If there is none, why_none is the reason.
 std::vector<FoundDepthDevice> try_depth_devices(const Kernels& kernels, std::string& why_none);
 
 }  // namespace remote_touch

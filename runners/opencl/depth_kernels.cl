@@ -1,16 +1,17 @@
 // The depth pipeline of core/depth in OpenCL C 1.2: the operations of core/kernels/depth_rows.cpp,
 // depth_filter.cpp and plane_normals.cpp, and of the hues of core/virtual_fixtures, for each pixel, in the
-// same order, so that the bits are the same. Who changes one changes the other; tests/runners/opencl compares
-// them.
+// same order, so that the bits are the same. A change of one must be made in the other too;
+// tests/runners/opencl compares them.
 //
-// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes.
-// What is uploaded in integers, and the columns of the cloud, have rows of the camera's `width`. The columns
-// lie one after another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as
-// well. Only of the depths there are planes: the point is z (ray_x, ray_y, 1). Built with FILTER_HALF and
-// NORMAL_HALF, half the windows' widths; with DIVIDE_IN_DOUBLE where single division and root are not rounded
+// A work item is a pixel. Images have rows of `stride` pixels. Those beyond the camera's width are holes.
+// Integer inputs, and the columns of the cloud, have rows of the camera's `width`. The columns lie one after
+// another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as well. Only the
+// depths are stored as planes: the point is z (ray_x, ray_y, 1). The build options are FILTER_HALF and
+// NORMAL_HALF, half the windows' widths, and DIVIDE_IN_DOUBLE if single division and root are not rounded
 // correctly.
 //
-// Without vectors and without what C++ lacks: the test double of an OpenCL library compiles it as C++.
+// The code uses no vectors and nothing that C++ lacks, because the test double of an OpenCL library compiles
+// it as C++.
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -19,8 +20,8 @@
 #define THINNEST 1e-4f
 #define MAX_DEPTH_M 1000.0
 
-// Double has more than twice the digits of single, and two digits more: a quotient or a root that is rounded
-// to double first and to single then is the one that is rounded once.
+// Double has more than twice the digits of single, plus two. So a quotient or a root that is rounded first to
+// double and then to single equals the one that is rounded once.
 #ifdef DIVIDE_IN_DOUBLE
 float divided(float a, float b) { return (float)((double)a / (double)b); }
 float root(float a) { return (float)sqrt((double)a); }
@@ -29,7 +30,7 @@ float divided(float a, float b) { return a / b; }
 float root(float a) { return sqrt(a); }
 #endif
 
-// As the processor's instructions choose where one is NaN.
+// If one argument is NaN, smaller() and larger() choose as the processor's instructions do.
 float smaller(float a, float b) { return a < b ? a : b; }
 float larger(float a, float b) { return a > b ? a : b; }
 int measured(double z_m) { return (z_m > 0) & (z_m < MAX_DEPTH_M); }
@@ -38,12 +39,12 @@ size_t in_plane(size_t u, size_t v, size_t plane_stride) {
   return (v + BORDER) * plane_stride + BORDER + u;
 }
 
-// One NaN for all: which one an operation gives differs between devices.
+// Always returns the same NaN, because devices differ in the NaN that an operation gives.
 double or_none(int is_there, double value) { return is_there ? value : as_double(0x7ff8000000000000UL); }
 
-// From a sensor's numbers to depths along the optical axis, by way of the points in the base frame, as
-// cloud_from_depth() and DepthProcessor::frame_of() compute them. The sums are those of Eigen. camera: cx, cy,
-// fx, fy; X: a row-major 3 x 4 matrix, then the third row of its inverse.
+// Converts a sensor's numbers to depths along the optical axis, through the points in the base frame, as
+// cloud_from_depth() and DepthProcessor::frame_of() compute them. The sums are in the order of Eigen. camera:
+// cx, cy, fx, fy; X: a row-major 3 x 4 matrix, then the third row of its inverse.
 __kernel void units_to_depths(__global const unsigned short* restrict units, double metres_per_unit,
                               int width, __global const double* restrict camera, __constant double* X,
                               __global double* restrict depth_m) {
@@ -74,7 +75,8 @@ float gaussian(float s) {
   return p8 * p8;
 }
 
-// (7.1): what the filter adds to each depth, in units of raw_z, and the plane of the filtered depths.
+// (7.1): computes the change of each depth by the filter, in units of raw_z, and the plane of the filtered
+// depths.
 __kernel void filter_depths(__global const double* restrict depth_m, __global const float* restrict ray_x,
                             __global const float* restrict ray_y, __global const float* restrict raw_z,
                             double change_unit_m, double smooth_scale, __global float* restrict change,
@@ -220,7 +222,7 @@ Normal smallest_eigenvector(Symmetric m, float z, float ray_x, float ray_y) {
   return n;
 }
 
-// Normals of the points of plane z, whose unit is the radius, into their columns of the cloud.
+// Writes the normals of the points of plane z, whose unit is the radius, into their columns of the cloud.
 __kernel void plane_normals(__global const float* restrict ray_x, __global const float* restrict ray_y,
                             __global const float* restrict z_plane, float step_x, float step_y,
                             __constant double* X, int width, __global double* restrict columns) {
@@ -259,7 +261,7 @@ __kernel void plane_normals(__global const float* restrict ray_x, __global const
   }
   const Symmetric m = covariance(w_sums, k_sums, l_sums, z0, rays_x[0], rays_y[0], step_x, step_y);
   const Normal n = smallest_eigenvector(m, z0, rays_x[0], rays_y[0]);
-  // The length is 1 to single precision; one of Newton's steps makes it so to double.
+  // The length is 1 in single precision; one Newton step makes it 1 in double precision.
   const double x = n.x, y = n.y, along = n.z, one = 1.5 - 0.5 * (x * x + y * y + along * along);
   const size_t column = width * get_global_size(1);
   __global double* const normals = columns + 3 * column;
@@ -269,7 +271,8 @@ __kernel void plane_normals(__global const float* restrict ray_x, __global const
   normals[to + 2 * column] = or_none(n.is_plane, (X[8] * x + X[9] * y + X[10] * along) * one);
 }
 
-// Points in the base frame into their columns of the cloud. is_filtered: change is added to the depths.
+// Writes the points in the base frame into their columns of the cloud. is_filtered: change is added to the
+// depths.
 __kernel void place_points(__global const double* restrict depth_m, __global const float* restrict change,
                            int is_filtered, double change_unit_m, __global const double* restrict wide_ray_x,
                            __global const double* restrict wide_ray_y, __constant double* X, int width,
@@ -290,7 +293,7 @@ typedef struct {
   double hue_deg, saturation, lightness;
 } Colour;
 
-// As hue_saturation_lightness() in core/cloud/colour.cpp.
+// Computes the same as hue_saturation_lightness() in core/cloud/colour.cpp.
 Colour colour_of(unsigned int rgb) {
   const int red = rgb >> 16 & 0xFF, green = rgb >> 8 & 0xFF, blue = rgb & 0xFF;
   const int more = red > green ? red : green, less = red < green ? red : green;
@@ -306,14 +309,14 @@ Colour colour_of(unsigned int rgb) {
   return colour;
 }
 
-// As FixtureAssignment's: a value that is reached is reached exactly.
+// Interpolates as FixtureAssignment does: weight 1 gives exactly `to`.
 double drawn(double from, double to, double weight) {
   return weight == 1 ? to : from + weight * (to - from);
 }
 
 // 7.3.2: rules of forbidden regions by hue fill the columns of r_f and k_s. Each step has 8 numbers: first and
-// last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: as they are), strength.
-// keeps_points: the points of the cloud are those that were measured, else those of place_points.
+// last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: unchanged), strength.
+// keeps_points: the points of the cloud are the measured ones, else those of place_points.
 __kernel void fixture_columns(__global const unsigned int* restrict rgb,
                               __global const double* restrict depth_m, int keeps_points,
                               __global const double* restrict steps, int count, int width,

@@ -11,8 +11,6 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kBorder = 7, kGroup = 64;  // BORDER of the kernels; pixels of a row in a work group
-
-// Of pixels -kBorder .. count + kBorder - 1.
 std::vector<double> rays(std::size_t count, double centre, double focal) {
   std::vector<double> all(count + 2 * kBorder);
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -51,7 +49,7 @@ void DeviceFrames::write(const Buffer& to, const std::vector<Value>& values) {
           "clEnqueueWriteBuffer");
 }
 
-// All borders, and the columns right of the image, stay as they are filled here: holes.
+// All borders, and the columns right of the image, are filled with holes here and never change.
 void DeviceFrames::resize(const CameraIntrinsics& camera) {
   const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
   stride_ = (width + kGroup - 1) / kGroup * kGroup;
@@ -63,20 +61,20 @@ void DeviceFrames::resize(const CameraIntrinsics& camera) {
   ray_y_ = buffer((height + 2 * kBorder) * sizeof(float));
   wide_ray_x_ = buffer(stride_ * sizeof(double)), wide_ray_y_ = buffer(height * sizeof(double));
   centre_and_focal_ = buffer(4 * sizeof(double)), X_ = buffer(16 * sizeof(double));
-  // In memory that the host reads without a copy of the driver, where there is such.
+  // The columns lie in memory that the host reads without a copy by the driver, if there is such memory.
   columns_ = buffer(DeviceFrame::kColumns * width * height * sizeof(double),
                     CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
   write(depth_m_, std::vector<double>(pixels, 0.0));
   for (const Buffer* each : {&raw_, &smooth_}) write(*each, std::vector<float>(plane, kNowhere));
 }
 
-// What stays as long as the camera does.
+// Writes the data that change only with the camera.
 void DeviceFrames::aim(const CameraIntrinsics& camera) {
   const bool same_size = camera.width == camera_.width && camera.height == camera_.height;
   if (same_size && camera.fx == camera_.fx && camera.fy == camera_.fy && camera.cx == camera_.cx &&
       camera.cy == camera_.cy)
     return;
-  camera_ = {};  // until all is done
+  camera_ = {};  // stays empty if one of the calls throws
   if (!same_size) resize(camera);
   const std::vector<double> x = rays(stride_, camera.cx, camera.fx);
   const std::vector<double> y = rays(static_cast<std::size_t>(camera.height), camera.cy, camera.fy);

@@ -1,5 +1,5 @@
-// The depth pipeline on one OpenCL device: uploads, then its kernels, then one download. Inside of this room
-// only.
+// The depth pipeline on one OpenCL device: uploads, then its kernels, then one download. Only for use inside
+// this folder.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace remote_touch {
 
-// A frame with all that the device reads and writes: it belongs to the call, so that a caller who gives up
-// waiting leaves nothing behind that is written later.
+// A frame with all that the device reads and writes. It belongs to the call: if a caller stops waiting, none
+// of the caller's own memory is written later.
 struct DeviceFrame {
-  // In the order in which they are downloaded.
+  // Columns of the cloud, in the order in which they are downloaded.
   enum Column { x, y, z, nx, ny, nz, fixture_radius, stiffness, kColumns };
 
   CameraIntrinsics camera;
   double X_WC[12];              // row-major
   double X_CW_z[4];             // third row of its inverse
-  std::vector<double> depth_m;  // empty: units
+  std::vector<double> depth_m;  // empty: `units` has the depths
   std::vector<std::uint16_t> units = {};
   double metres_per_unit = 0;
-  bool keep_points = false;  // x, y, z are not written
-  // By the steps the columns fixture_radius and stiffness are written; without colours they are not.
+  bool keep_points = false;  // true: columns x, y, z are not written
+  // The columns fixture_radius and stiffness are written according to `steps`; not without colours.
   std::vector<std::uint32_t> colour = {};
   HueSteps steps = {};
   std::vector<double> columns[kColumns] = {};
@@ -34,10 +34,11 @@ struct DeviceFrame {
 
 class DeviceFrames {
  public:
-  // With kernels that were built for these settings. Throws OpenClError.
+  // kernels: built for these settings. Throws OpenClError.
   DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings);
-  // The same bits as DepthPipeline's and FixtureAssignment's. Throws OpenClError; after that it is of no use,
-  // and the device may read the frame until drain() is over.
+  // Fills the columns of the frame with the same bits as DepthPipeline and FixtureAssignment. Throws
+  // OpenClError; after that this object cannot be used any more, and the device may read the frame until
+  // drain() has returned.
   void run(DeviceFrame& frame);
   void drain() noexcept;
 

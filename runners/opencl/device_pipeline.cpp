@@ -64,7 +64,7 @@ bool DevicePipeline::process_all(PointCloud& cloud, const HueSteps& steps) {
   return process_depths(frame_of(cloud), &steps, cloud);
 }
 
-// Points that are kept are those of cloud_from_depth() on the CPU.
+// Requires the filter, because points that are kept must be those of cloud_from_depth() on the CPU.
 bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) {
   const DepthFrame size{nullptr, raw.camera, raw.X_WC};
   const bool fits = raw.colour.size() == size.pixels() || (raw.colour.empty() && steps == nullptr);
@@ -87,7 +87,7 @@ bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* ste
   return true;
 }
 
-// All of the frame but its depths. steps: null: no columns of fixtures.
+// Prepares frame_, except for its depths. steps: null if no columns of fixtures are needed.
 void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
                            std::span<const std::uint32_t> colour) {
   frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;
@@ -110,8 +110,8 @@ bool DevicePipeline::on_device() {
   return in_time;
 }
 
-// What the hanging thread still uses is its own. To release objects of a device that failed may hang too: a
-// thread of its own does it, and nobody waits for it.
+// The thread that hangs owns all objects that it still uses. The release of objects of a device that failed
+// may hang too, so a separate thread does it, and nothing waits for that thread.
 void DevicePipeline::give_up(const std::string& why) {
   forget_trials(device_);
   struct Last {

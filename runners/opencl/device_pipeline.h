@@ -1,4 +1,4 @@
-// The depth pipeline on an OpenCL device, beside one on the CPU that takes over when the device fails.
+// The depth pipeline on an OpenCL device, with one on the CPU that takes over if the device fails.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ struct DeviceFrame;
 class DevicePipeline final : public DepthProcessor {
  public:
   static constexpr std::chrono::milliseconds kFrameLimit{2000};
-  static constexpr std::chrono::milliseconds kBuildLimit{120000};  // of kernels, and of the first frame
+  static constexpr std::chrono::milliseconds kBuildLimit{120000};  // limit of the build and the first frame
 
   // Builds the kernels unless this process has them, and processes a small frame for their first call. Throws
   // OpenClError if that fails, OpenClTimeout if it takes longer than kBuildLimit.
@@ -48,7 +48,7 @@ class DevicePipeline final : public DepthProcessor {
   const std::function<void(const std::string&)> report_;
   const std::chrono::milliseconds frame_limit_;
   DepthPipeline cpu_;
-  std::shared_ptr<DeviceFrames> frames_;  // null: given up
+  std::shared_ptr<DeviceFrames> frames_;  // null after the device has failed
   std::shared_ptr<DeviceFrame> frame_;
   std::unique_ptr<DeadlineThread> thread_;
 };

@@ -68,8 +68,8 @@ FixtureAssignment trial_rules() {
   return FixtureAssignment(std::move(rules));
 }
 
-// The same as a sensor's image with all colours and two rules, from a camera that is turned. What the device
-// leaves to the CPU is the same.
+// Compares the same image, as a sensor's image with all colours and two rules, from a rotated camera. If the
+// device leaves it to the CPU, the bits are the same.
 bool same_bits_at_once(DevicePipeline& on_device, DepthPipeline& on_cpu, DepthImage image) {
   constexpr double kUnit_m = 0.001;
   const RigidTransform X_WC(Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(0.7, Vec3::UnitX()));
@@ -126,8 +126,8 @@ DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settin
   DepthTrial trial;
   trial.failure = device.unfit_because;
   if (!trial.failure.empty()) return trial;
-  // One after another, so that each is timed alone, and threads that begin at once all have one answer. Never
-  // freed: a thread may wait when the process ends.
+  // Trials run one after another, so that each is timed alone, and threads that start together share one
+  // result. The mutex is never freed, because a thread may be waiting for it when the process ends.
   static std::mutex& one_at_a_time = *new std::mutex;
   const std::lock_guard alone(one_at_a_time);
   {

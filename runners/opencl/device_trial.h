@@ -1,4 +1,5 @@
-// One frame on an OpenCL device and on the CPU: whether it works, has the same bits, and is faster.
+// Trial of one frame on an OpenCL device and on the CPU: checks that the device works, whether it gives the
+// same bits, and whether it is faster.
 #pragma once
 
 #include <string>
@@ -12,15 +13,15 @@ struct OpenClDevice;
 
 // A frame of 320 x 240 pixels with holes, processed on the device and on the CPU.
 struct DepthTrial {
-  std::string failure;  // of the device; empty: it works
+  std::string failure;  // failure of the device; empty: it works
   bool same_bits = false;
-  double device_ms = 0, cpu_ms = 0;  // min of five
+  double device_ms = 0, cpu_ms = 0;  // minimum of five
 };
 
-// Tried now, after those of other threads, or as it was found in this process with these settings. A failure
-// is found anew each time, except that of a device that was not opened in time.
+// Tries the device, after the trials of other threads, or returns the earlier result of this process for
+// these settings. Failures are not kept, except that of a device that was not opened in time.
 DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels);
-// Forgets what was found of a device that failed since.
+// Forgets the results for a device that has failed since.
 void forget_trials(const OpenClDevice& device);
 
 }  // namespace remote_touch

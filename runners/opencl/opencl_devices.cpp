@@ -30,7 +30,8 @@ std::string text_info(const char* function, const Ask& ask) {
   return text;
 }
 
-// Of a precision, single or double: what IEEE arithmetic needs that the device lacks; empty: nothing.
+// Returns the property of IEEE arithmetic that the device lacks in this precision, single or double; empty:
+// none.
 std::string lacks(cl_device_fp_config has, const char* precision) {
   const std::string of = std::string(" in ") + precision + " precision";
   if (!(has & CL_FP_ROUND_TO_NEAREST)) return "does not round to nearest" + of;
@@ -96,9 +97,9 @@ std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
     std::atomic<bool> is_over = false;
   };
   static std::mutex mutex;
-  static std::shared_ptr<const Listing> late;  // the last one that was given up
-  // Loaders and drivers begin at the first call, not all of them safely in two threads. Never freed: a driver
-  // that hangs may hold it when the process ends.
+  static std::shared_ptr<const Listing> late;  // the last listing that was late
+  // Loaders and drivers initialise at the first call, not all of them safely in two threads. The mutex is
+  // never freed, because a driver that hangs may hold it when the process ends.
   static std::mutex& one_at_a_time = *new std::mutex;
   const OpenClTimeout no_answer("its drivers did not list their devices in " +
                                 std::to_string(limit.count() / 1000) + " s");

@@ -1,4 +1,4 @@
-// The OpenCL devices of this machine, and whether their arithmetic can keep the bits of the CPU.
+// The OpenCL devices of this machine, with the ability of their arithmetic to keep the bits of the CPU.
 #pragma once
 
 #include <chrono>
@@ -10,27 +10,28 @@
 namespace remote_touch {
 
 struct OpenClDevice {
-  int platform = 0, number = 0;  // as in opencl:PLATFORM:DEVICE
+  int platform = 0, number = 0;  // the numbers in opencl:PLATFORM:DEVICE
   cl_platform_id platform_id = nullptr;
   cl_device_id id = nullptr;
   std::string name;  // "pthread-..., Portable Computing Language"
   bool is_gpu = false;
   bool has_double = false;       // IEEE double with subnormal numbers
   bool rounds_division = false;  // single division and root are rounded correctly, as double ones always are
-  // Why it cannot keep the bits; empty: its arithmetic is IEEE's.
+  // Reason why it cannot keep the bits; empty: its arithmetic is that of IEEE 754.
   std::string inexact_because;
-  // Why it cannot compute the pipeline at all; empty: it can.
+  // Reason why it cannot compute the pipeline at all; empty: it can.
   std::string unfit_because;
 
   std::string address() const { return "opencl:" + std::to_string(platform) + ":" + std::to_string(number); }
   std::string full_name() const { return address() + " (" + name + ")"; }
 };
 
-// In the order of platforms and devices; empty where no driver is installed. Throws OpenClError.
+// Returns the devices in the order of platforms and devices; empty if no driver is installed. Throws
+// OpenClError.
 std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library);
 
-// The same of the library of this process. To load it and its drivers may take kListLimit; after that, and as
-// long as they do not answer, this throws OpenClTimeout. Throws InputError where there is no library.
+// Returns the same for the library of this process. Loading it and its drivers may take `limit`; after that,
+// and as long as they do not answer, throws OpenClTimeout. Throws InputError if there is no library.
 inline constexpr std::chrono::milliseconds kListLimit{20000};
 std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit = kListLimit);
 

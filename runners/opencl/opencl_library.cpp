@@ -26,7 +26,7 @@ constexpr NamedCode kCodes[] = {
     {CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE"},
     {CL_INVALID_VALUE, "CL_INVALID_VALUE"},
     {CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE"},
-    {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},  // of the loader, where no driver is installed
+    {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},  // the loader returns it if no driver is installed
 };
 
 }  // namespace
@@ -38,7 +38,7 @@ OpenClLibrary::OpenClLibrary() : library_(kOpenClLibrary) {
 }
 
 const OpenClLibrary& opencl_library() {
-  // Never freed: drivers leave threads behind, and objects may be released late.
+  // The library is never freed, because drivers leave threads behind, and objects may be released late.
   static std::mutex mutex;
   static const OpenClLibrary* one = nullptr;
   const std::lock_guard lock(mutex);

@@ -1,5 +1,5 @@
-// The functions of OpenCL 1.2 that the depth pipeline calls, loaded when a device is asked for: the program
-// needs no OpenCL to be built with, but its headers, and none to start. Inside of this room only.
+// The functions of OpenCL 1.2 that the depth pipeline calls, loaded when a device is requested: the program
+// needs only the headers of OpenCL to be built, and no OpenCL to start. Only for use inside this folder.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -24,7 +24,7 @@ class OpenClTimeout : public OpenClError {
   using OpenClError::OpenClError;
 };
 
-// Each is null until the constructor found it, and is named as in the library.
+// Each is null until the constructor has found it. Its name is that in the library, without cl.
 #define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \
   each(GetPlatformIDs) each(GetPlatformInfo) each(GetDeviceIDs) each(GetDeviceInfo) each(CreateContext)     \
       each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
@@ -35,7 +35,7 @@ class OpenClTimeout : public OpenClError {
 
 class OpenClLibrary {
  public:
-  // Throws InputError where there is no library, or not the right one.
+  // Throws InputError if there is no library, or if it lacks a function.
   OpenClLibrary();
 
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared takes none.
@@ -47,10 +47,10 @@ class OpenClLibrary {
   SharedLibrary library_;
 };
 
-// The one of this process. Throws as the constructor, each time until it is there.
+// Returns the library of this process. Throws as the constructor does, at each call until it is loaded.
 const OpenClLibrary& opencl_library();
 
-// Throws OpenClError unless the code is that of success.
+// Throws OpenClError unless the code is CL_SUCCESS.
 void require(cl_int code, const char* function);
 
 // An object of OpenCL, released with its owner.

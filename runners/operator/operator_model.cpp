@@ -7,7 +7,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kMaxTick_s = 0.01;  // of the haptic rates that an experiment may have
+constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
 // The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to it, and a stiffer
 // hand would swing five times in a tick.
 constexpr double kMaxNormalisedStiffness = 1000;
@@ -97,7 +97,7 @@ DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wr
     motion << moving.displacement, turning.displacement;
     const Eigen::Quaterniond before = pose_.q_WT;
     pose_ = moved(pose_, motion);
-    if (turning.displacement.isZero(0)) pose_.q_WT = before;  // to which rounding would add
+    if (turning.displacement.isZero(0)) pose_.q_WT = before;  // rounding would change it
   } else {
     pose_ = intended;
   }

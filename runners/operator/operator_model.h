@@ -41,9 +41,9 @@ class OperatorModel {
   // pre: validate(settings) is empty.
   OperatorModel(const OperatorSettings& settings, double tick_s);
 
-  // Returns the hand's pose at time_s. intended: where the path is then. device_wrench: what the device has
-  // exerted since the last call. If the last call was n ticks ago, the hand makes one step of n ticks. The
-  // first call puts the hand onto the path, at rest. Buttons come from the settings.
+  // Returns the hand's pose at time_s. intended: the path's pose at time_s. device_wrench: the wrench that
+  // the device has exerted since the last call. If the last call was n ticks ago, the hand makes one step of
+  // n ticks. The first call puts the hand onto the path, at rest. Buttons come from the settings.
   DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
 
   // Returns the energies of the last step, translation plus rotation; zero before the second call. A change
@@ -57,7 +57,7 @@ class OperatorModel {
 
   const OperatorSettings s_;
   const double tick_s_;
-  ToolPose pose_, intended_;  // of the last call
+  ToolPose pose_, intended_;  // poses at the last call
   Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
   std::optional<double> last_time_s_;
 

@@ -13,8 +13,8 @@ namespace remote_touch {
 
 class SimulatedHand {
  public:
-  // Without an operator the device follows the script exactly; without motor settings it exerts the whole
-  // command.
+  // If there is no operator, the device follows the script exactly. If there are no motor settings, it exerts
+  // the whole command.
   SimulatedHand(const std::optional<OperatorSettings>& operator_settings,
                 const std::optional<MotorSettings>& motors, double tick_s);
 

@@ -17,7 +17,7 @@ static_assert(REMOTE_TOUCH_SHEET == static_cast<int>(ContactModel::sheet) &&
               REMOTE_TOUCH_ENTRENCHED == static_cast<int>(ContactState::entrenched) &&
               REMOTE_TOUCH_DEVICE_NOT_FINITE == static_cast<int>(RenderStatus::device_not_finite));
 
-// What a function of the library says about its failure, without an allocation before there is one.
+// The text in which a function of the library reports its failure. Nothing is allocated before a failure.
 class Problem {
  public:
   char* text() { return text_.data(); }
@@ -34,7 +34,8 @@ class Problem {
   std::array<char, 256> text_{};
 };
 
-// Not allowed by the interface, but possible: libraries in C++ can throw through it.
+// Makes a call of the library. An exception becomes an InputError: the interface does not allow exceptions,
+// but libraries in C++ can throw them.
 template <class Call>
 auto guarded(const remote_touch_renderer& functions, const char* name, Call&& call) {
   try {
@@ -53,7 +54,7 @@ const double* start_of(const std::vector<double>& column) {
   return column.empty() ? nullptr : column.data();
 }
 
-// What the library made of a frame.
+// The result of the library's prepare() for a frame.
 struct Prepared final : FramePreparation {
   Prepared(const remote_touch_renderer& of, void* made) : functions(of), handle(made) {}
   ~Prepared() override { functions.release(handle); }

@@ -12,10 +12,11 @@
 
 namespace remote_touch {
 
-// on_frame() and step() throw InputError where the library reports a problem or throws.
+// All methods throw InputError if the library throws. prepare(), on_frame() and step() also throw it if the
+// library reports a problem.
 class PluginRenderer final : public Renderer {
  public:
-  // functions outlives this. Throws InputError if the library makes none of these values.
+  // functions must outlive this object. Throws InputError if the library makes no renderer of these values.
   PluginRenderer(const remote_touch_renderer& functions, const std::vector<double>& values,
                  double haptic_rate_hz, const Kernels& kernels);
   ~PluginRenderer() override;
@@ -31,15 +32,15 @@ class PluginRenderer final : public Renderer {
   const remote_touch_renderer& functions_;
   const Kernels& kernels_;
   std::vector<double> values_;
-  PointCloud buffer_;  // for frames that are not stored as a cloud
+  PointCloud buffer_;  // the points of a frame that is not stored as a cloud
   void* renderer_ = nullptr;
   FrameOrder order_;
-  std::shared_ptr<const FramePreparation> prepared_;  // of the newest frame: the library may point into it
+  std::shared_ptr<const FramePreparation> prepared_;  // newest frame's: the library may point into it
 };
 
 using RendererFactory = Factory<Renderer, double, const Kernels&>;
 
-// With the default values of the settings.
+// Returns a factory with the default values of the settings.
 std::unique_ptr<RendererFactory> plugin_factory(const remote_touch_renderer& functions);
 
 }  // namespace remote_touch

@@ -71,11 +71,11 @@ std::string in_one_line(const std::string& name) {
 
 namespace {
 
-// What the lines say, by path.
+// Returns the rest of each line, after the path, by path.
 std::map<std::string, std::string> by_path(const std::string& text) {
   std::map<std::string, std::string> lines;
   std::istringstream stream(text);
-  stream.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
   for (std::string line; std::getline(stream, line);) {
     const std::size_t end = std::min(line.rfind(": "), line.size());
     lines[line.substr(0, end)] = line.substr(std::min(end + 2, line.size()));

@@ -1,4 +1,4 @@
-// Hashes of the recordings that a result was made from: the attribute `inputs` of result files.
+// Hashes of the recordings that a result was made from: the attribute `input_digests` of result files.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ class InputHashes {
     std::string sha256;
     std::uintmax_t size = 0;
   };
-  std::map<std::string, std::map<std::string, Known>> recordings_;  // by path, then by name
+  std::map<std::string, std::map<std::string, Known>> recordings_;  // keys: path, then name
   std::set<RecordingPart> parts_;
 };
 
@@ -55,7 +55,7 @@ std::string in_one_line(const std::string& name);
 
 // The recordings whose lines differ between two such texts.
 struct ChangedInput {
-  std::string path;         // in one line
+  std::string path;         // written as in_one_line() does
   std::string before, now;  // the rest of the line: "71 file(s), ..."; "absent" where there is none
 };
 std::vector<ChangedInput> changed_inputs(const std::string& before, const std::string& now);

@@ -12,8 +12,8 @@ namespace remote_touch {
 // program made it, or one with the same plug-ins.
 std::string other_maker(const TextAttributes& result);
 
-// What read() makes of the configuration of a result. Where it throws InputError and another program made the
-// result, the error names that program instead of the entry that is unknown here.
+// Calls read(), which reads the configuration of a result, and returns its value. If it throws InputError and
+// another program made the result, the error names that program instead of the entry that is unknown here.
 template <class Read>
 auto read_configuration(const TextAttributes& result, const std::string& file, Read&& read) {
   try {

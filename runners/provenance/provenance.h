@@ -10,20 +10,20 @@
 namespace remote_touch {
 
 std::string version();   // "0.3.0"
-std::string cpu_name();  // as the system reports it; empty if it does not
+std::string cpu_name();  // name that the system reports; empty if it reports none
 
-// What made a result beside the sources of this project.
+// The program and the plug-ins that made a result, in addition to the sources of this project.
 struct ProgramIdentity {
   struct Plugin {
     std::string file, sha256;
   };
   std::string name = "remote-touch";
-  std::string sha256 = {};  // of the program's file, if its catalog has entries of its own; else empty
+  std::string sha256 = {};  // hash of the program's file if its catalog has entries of its own; else empty
   std::vector<Plugin> plugins = {};  // shared libraries with renderers
 };
-// From now on every result has the attributes `program` and `program_sha256` if there is a SHA-256, and
-// `plugins` (a line "FILE: sha256 HASH" for each) if there are any; commands begin with program_words().
-// Before the first result.
+// Sets the identity for all results. They have the attributes `program` and `program_sha256` if there is a
+// SHA-256, and `plugins` (a line "FILE: sha256 HASH" for each) if there are any; commands begin with
+// program_words(). Must be called before the first result.
 void identify_program(ProgramIdentity identity);
 const ProgramIdentity& program_identity();
 // "remote-touch", "--plugin", "mine.so"

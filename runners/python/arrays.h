@@ -27,12 +27,12 @@ pybind11::array owning_array(std::vector<Number> values, std::vector<pybind11::s
 // width) if the shape is empty; a list of texts for a column of texts.
 pybind11::tuple to_python(Column column, std::vector<pybind11::ssize_t> shape = {});
 pybind11::list to_python(std::vector<Column> columns);
-pybind11::list to_python(const TextAttributes& attributes);  // of (name, value)
+pybind11::list to_python(const TextAttributes& attributes);  // list of (name, value)
 
-// Such a tuple back, for comparisons; copies the numbers. Throws InputError naming the column.
+// Converts such a tuple back, for comparisons; copies the numbers. Throws InputError, which names the column.
 Column column_of(const pybind11::handle& tuple);
 
-// Names what is wrong, only when something is: "renderer mine: Mine.step: force_N".
+// Returns the subject of an error; called only if there is one: "renderer mine: Mine.step: force_N".
 using Subject = std::function<std::string()>;
 
 // Three finite numbers, or any with any_number. Throws InputError.

@@ -16,7 +16,7 @@ void bind_sweeps(pybind11::module_& module);
 void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
 
-// What a function writes that prints to a file of C.
+// Returns the text that print() writes to its file of C.
 std::string printed(const std::function<void(std::FILE*)>& print);
 
 }  // namespace remote_touch

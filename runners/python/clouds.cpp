@@ -157,7 +157,7 @@ py::array_t<double> uniforms_of(const NoiseKey& key, int use, std::uint32_t fram
   return rows;
 }
 
-// In the order of NoiseUse.
+// The names of the uses, in the order of NoiseUse.
 constexpr const char* kUses[] = {"point_position", "depth",        "transport",    "motion",    "colour",
                                  "dropout",        "sensor_point", "sensor_frame", "sensor_ray"};
 

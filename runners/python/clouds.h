@@ -1,4 +1,4 @@
-// What classes of Python are given, and give back: clouds, frames, outputs, scenes.
+// The objects that classes of Python receive and return: clouds, frames, outputs, scenes.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,7 +14,7 @@
 
 namespace remote_touch {
 
-// A cloud that does not change, and shares what it shows with its arrays.
+// A cloud that does not change. Its arrays in Python share the memory of its points.
 struct PythonCloud {
   std::shared_ptr<const NeighbourSearch> source =
       nullptr;  // keeps what `shown` points to, if that is not `own`
@@ -36,7 +36,7 @@ struct PythonFrame : PythonCloud {
 // An array of points, or a Cloud. Throws InputError.
 PointCloud cloud_of(const pybind11::handle& value, const Subject& subject);
 
-// What step() returns: an output whose proxy is the HIP unless it was given.
+// The output that step() returns. Its proxy is the HIP unless it was given.
 struct PythonOutput {
   RenderOutput output;
   bool has_proxy = false;
@@ -44,8 +44,8 @@ struct PythonOutput {
   std::optional<Eigen::Quaterniond> tool_orientation = {};
 };
 
-// A scenario of the catalog, for classes of Python. Its own, or one that is lent to a trajectory and taken
-// back.
+// A scenario of the catalog, for classes of Python. The scene owns it, or it is lent to a trajectory and
+// taken back.
 class PythonScene {
  public:
   PythonScene(std::unique_ptr<const Scenario> scenario) : own_(std::move(scenario)), scenario_(own_.get()) {}

@@ -40,7 +40,7 @@ SimulationOptions options_of(const LongWork& work) {
   return options;
 }
 
-// What a run gives to Python.
+// The result of a run for Python.
 struct RunResult {
   std::vector<Column> columns, measures, timing;
   TextAttributes attributes;

@@ -20,7 +20,7 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // how often signals are looked for
+constexpr std::chrono::milliseconds kLook{50};  // time between two checks for signals
 
 std::atomic<int> works_going_on{0};
 
@@ -129,7 +129,7 @@ const Kernels& chosen_python_kernels() {
 
 namespace {
 std::mutex file_mutex;
-bool sweep_is_written = false;  // under the mutex
+bool sweep_is_written = false;  // guarded by file_mutex
 
 void require_no_sweep() {
   if (sweep_is_written)
@@ -144,7 +144,7 @@ FileTurn::FileTurn(For duration) : duration_(duration) {
   if (duration == For::a_sweep)
     sweep_is_written = true;
   else
-    lock.release();  // until the destructor
+    lock.release();  // locked until the destructor
 }
 
 FileTurn::~FileTurn() {

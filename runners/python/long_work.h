@@ -10,17 +10,17 @@
 
 namespace remote_touch {
 
-// What the work is given.
+// The inputs of the work.
 struct LongWork {
   const Kernels& kernels;
   const std::atomic<bool>& stop;         // set by Ctrl-C: the work ends with Interrupted
   std::function<void(double)> progress;  // takes the fraction that is done; from any thread
 };
 
-// Does the work in a thread of its own, with so many threads of OpenMP (0: as it decides), while this thread
-// waits without the lock and looks for signals. report: a callable that is told the fraction about 20 times a
-// second, or None. Throws what the work throws; error_already_set if a signal or the report raised an
-// exception.
+// Does the work in a thread of its own, with this number of OpenMP threads (0: OpenMP decides), while this
+// thread waits without the lock and checks for signals. report: a callable that receives the fraction about
+// 20 times a second, or None. Throws the exception of the work; error_already_set if a signal or the report
+// raised an exception.
 void do_long_work(const pybind11::object& report, int threads,
                   const std::function<void(const LongWork&)>& work);
 
@@ -33,8 +33,8 @@ void choose_python_kernels(const std::string& forced);
 const Kernels& chosen_python_kernels();
 
 // The HDF5 library is not made for several threads: one call reads or writes at a time, and none while a
-// sweep or a scorecard is written. Throws InputError instead of waiting for that, since a class in Python may
-// be what asks.
+// sweep or a scorecard is written. Throws InputError instead of waiting for that, because the caller may be a
+// class in Python that the sweep itself runs.
 class FileTurn {
  public:
   enum class For { a_moment, a_sweep };

@@ -14,11 +14,12 @@ namespace py = pybind11;
 
 namespace {
 
-PyObject* input_error_type = nullptr;  // of the module, which is never unloaded
+PyObject* input_error_type = nullptr;  // belongs to the module, which is never unloaded
 
 void bind_errors(py::module_& module) {
   input_error_type = py::register_exception<InputError>(module, "InputError", PyExc_ValueError).ptr();
-  // Asked before the one above: what a class raised is the cause.
+  // Called before the translator above. The exception that a class raised becomes the cause of the
+  // InputError.
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));

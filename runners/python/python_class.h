@@ -1,4 +1,4 @@
-// A class of Python that takes a place in the catalog: its settings, its objects, and calls of their methods.
+// A class of Python that has an entry in the catalog: its settings, its objects, and calls of their methods.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,7 +15,7 @@
 
 namespace remote_touch {
 
-// What a class raised: one line, with the exception as its cause.
+// An exception that a class raised: one line, with the exception as its cause.
 class PythonProblem : public InputError {
  public:
   PythonProblem(const std::string& subject, const std::string& problem, pybind11::error_already_set raised)
@@ -30,7 +30,7 @@ class PythonProblem : public InputError {
 // Says what an exception was: "ValueError: the spring broke (mine.py, line 12)".
 std::string problem_text(const pybind11::error_already_set& raised);
 
-// A number of Python; throws error_already_set where it is none, with Python's own words.
+// Converts a number of Python. Throws error_already_set, with Python's own message, if it is none.
 double real_of(const pybind11::handle& value);
 int integer_of(const pybind11::handle& value);
 
@@ -48,7 +48,7 @@ class PythonSettings {
   // settings: objects with name, value, low, high, help, live and integer; see rt.Setting. Throws InputError.
   PythonSettings(const std::string& subject, const pybind11::list& settings);
   Parameters parameters();
-  void give_to(const pybind11::object& object) const;  // as attributes
+  void give_to(const pybind11::object& object) const;  // sets each as an attribute
 
  private:
   std::vector<PythonSetting> all_;
@@ -67,7 +67,8 @@ class PythonClass {
   enum class Made { settings_only, yes };
   pybind11::object object(const PythonSettings& settings, Made made, const pybind11::dict& given = {}) const;
 
-  // work(), with the interpreter's lock; what it raises becomes a PythonProblem of the method.
+  // Calls work() with the interpreter's lock. An exception that it raises becomes a PythonProblem of the
+  // method.
   template <class Work>
   auto call(const char* method, Work&& work) const {
     const pybind11::gil_scoped_acquire lock;

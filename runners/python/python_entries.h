@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// A class as it is registered: its place in the catalog, and what its objects are made with.
+// A class as it is registered: its name in the catalog, and the settings of its objects.
 struct PythonEntry {
   std::string name, summary;
   std::shared_ptr<const PythonClass> type;
@@ -27,13 +27,13 @@ RendererEntry renderer_entry_of(PythonEntry entry, DegreesOfFreedom degrees_of_f
 ScenarioEntry scenario_entry_of(PythonEntry entry);
 TrajectoryEntry trajectory_entry_of(PythonEntry entry);
 
-// What all factories of such classes have in common.
+// The common part of all factories of such classes.
 template <class Seam, class... Arguments>
 class PythonFactory : public Factory<Seam, Arguments...> {
  public:
   explicit PythonFactory(const PythonEntry& entry) : type_(entry.type), settings_(entry.settings) {}
   Parameters settings() override { return settings_.parameters(); }
-  // As the class says of its settings; None: they are valid.
+  // Returns the problem that the class reports of its settings; empty if it returns None: they are valid.
   std::string validate() const override {
     return type_->call("validate", [&]() -> std::string {
       const pybind11::object said =

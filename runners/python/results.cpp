@@ -28,7 +28,7 @@ std::vector<Column> all_columns(const ColumnSource& source) {
   std::vector<Column> list;
   for (const std::string& name : source.columns()) {
     list.push_back(source.column(name));
-    list.back().name = name;  // of a figure with its table
+    list.back().name = name;  // the name in a figure includes its table
   }
   return list;
 }

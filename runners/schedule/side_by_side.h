@@ -10,7 +10,7 @@ namespace remote_touch {
 // ended. If some threw, it then throws the exception of the one with the lowest number.
 using SideBySide = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
-// With the number of threads that OpenMP uses.
+// Uses as many threads as OpenMP does.
 void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace remote_touch

@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kPrior_s =
     2;  // so much of expected work has to be done before this machine's speed counts fully
-constexpr double kAtLeast = 0.05;  // of its time a job that takes longer than expected still takes
+constexpr double kAtLeast = 0.05;  // least share of its time that a job has left, even if it is late
 
-// How much longer than expected jobs take here.
+// Returns the factor by which jobs take longer here than expected.
 double slowness(const std::vector<double>& expected_s, const std::vector<JobProgress>& progress) {
   double expected = kPrior_s, spent = kPrior_s;
   for (std::size_t i = 0; i < progress.size(); ++i)

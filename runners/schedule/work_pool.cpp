@@ -14,7 +14,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// That a thread does, or did last.
+// The job that this thread does, or did last.
 thread_local std::size_t own_job = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -38,7 +38,7 @@ void WorkPool::run(const std::vector<std::function<void()>>& jobs, double every_
 
 void WorkPool::work() {
   omp_set_num_threads(
-      1);  // what a job does in parallel inside a piece would only take turns with the other jobs
+      1);  // parallel loops inside a piece of a job would only take turns with those of the other jobs
   std::unique_lock lock(mutex_);
   while (ended_jobs_ < jobs_->size()) {
     if (next_job_ < jobs_->size())

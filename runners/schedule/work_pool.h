@@ -16,7 +16,7 @@ enum class JobState { waiting, running, done };
 
 struct JobProgress {
   JobState state = JobState::waiting;
-  double spent_s = 0;  // by all threads
+  double spent_s = 0;  // time of all threads
 };
 
 class WorkPool {
@@ -53,7 +53,7 @@ class WorkPool {
   std::vector<JobProgress> progress_;
   std::vector<double> began_s_;
   std::size_t next_job_ = 0, ended_jobs_ = 0;
-  std::list<Pieces> pieces_;  // of the jobs that run, the oldest first
+  std::list<Pieces> pieces_;  // pieces of the jobs that run, the oldest first
 };
 
 }  // namespace remote_touch

@@ -120,7 +120,8 @@ void read_success(const Json& success, const std::string& rule, BenchmarkScene& 
     throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
 }
 
-// What a file is called in a scorecard, whose results are files of that name.
+// Returns the name of a file's method or scene in a scorecard, whose results are files of that name. Throws
+// InputError if the name has other characters than those allowed.
 std::string name_in(const std::string& file, const char* kind) {
   const std::string name = std::filesystem::path(file).stem().string();
   const auto is_plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
@@ -130,7 +131,7 @@ std::string name_in(const std::string& file, const char* kind) {
   return name;
 }
 
-// Name and JSON of one that is embedded, or of a file.
+// Returns name and JSON of an embedded method or scene, or of one in a file.
 std::pair<std::string, std::string> found(std::span<const EmbeddedText> stored, const std::string& name,
                                           const char* kind) {
   std::string known;
@@ -143,7 +144,8 @@ std::pair<std::string, std::string> found(std::span<const EmbeddedText> stored, 
   return {name_in(name, kind), read_text_file(name, expected)};
 }
 
-// Of data/, or of a table in a test.
+// Reads the methods or scenes with these names; no names: all stored ones. stored: the texts of data/, or a
+// table in a test.
 template <class Item, class Read>
 std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector<std::string>& names,
                          const char* kind, Read&& read) {

@@ -34,15 +34,15 @@ struct BenchmarkScene {
   std::string name, title;
   std::string experiment;        // JSON, without a renderer
   std::string noise;             // path of the parameter; empty: one column with the scene's own noise
-  std::vector<Judged> measures;  // in addition to those of the bounds
-  std::string meaning;           // of success, in words
+  std::vector<Judged> measures;  // measures in addition to those of the bounds
+  std::string meaning;           // success in words
   std::vector<Bound> success;
   std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
   std::string tool = {};  // JSON: settings of the renderers that say which tool they hold; empty: for a HIP
 
-  // The runs of a method: noise levels by replicates (of a scene with its own noise, as many runs as others
-  // have with noise), and nothing else, so that cell and replicate, the keys of all noise, are the same for
-  // every method. Throws InputError when it cannot be run.
+  // Returns the sweep of a method: noise levels by replicates, and nothing else, so that cell and replicate,
+  // the keys of all noise, are the same for every method. A scene with its own noise has as many runs as
+  // others have with noise. Throws InputError if the method cannot be run.
   Sweep sweep(const Method& method, int replicates) const;
 };
 
@@ -55,14 +55,14 @@ std::string held_meaning(double tolerance_m);
 std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
                           int replicates);
 
-// From JSON text; label names the source in InputErrors. Every scene gets the measures in perception's units,
-// one with the rule "held" also those of its contact.
+// Reads a method or scene from JSON text; errors name it by `name`. Every scene gets the measures in
+// perception's units; a scene with the rule "held" also gets those of its contact.
 Method read_method(const std::string& name, const std::string& json);
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
 
-// The methods or scenes of these names or JSON files, in their order; no names: all of data/. A file's method
-// or scene is named after the file, without folder and ending. Throws InputError for a name that is unknown,
-// with those that are allowed, or comes twice.
+// Returns the methods or scenes with these names or from these JSON files, in their order; no names: all of
+// data/. A method or scene of a file is named after the file, without folder and ending. Throws InputError
+// for a name that is unknown, with those that are allowed, or that comes twice.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names);
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
 

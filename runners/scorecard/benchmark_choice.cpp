@@ -37,7 +37,8 @@ bool judges_contact(const BenchmarkScene& scene) {
   return std::any_of(scene.success.begin(), scene.success.end(), is_of_contact);
 }
 
-// Where its renderer is when it touches is not known: it would count as a failure.
+// Throws InputError if a scene judges the contact of a renderer whose rest distance is not known. Its runs
+// would count as failures.
 void require_known_contact(const Benchmark& chosen) {
   for (const Method& method : chosen.methods) {
     if (is_for_tools(method) || has_known_contact(method)) continue;

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 struct ScenePlan {
   BenchmarkScene scene;
-  std::vector<BenchmarkSweep> sweeps;  // of each method
+  std::vector<BenchmarkSweep> sweeps;  // one for each method
 };
 
 struct BenchmarkPlan {

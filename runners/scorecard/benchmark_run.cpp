@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// What makes the file again, in any folder.
+// Returns the command that makes the file again, in any folder.
 std::string command_of(const Benchmark& benchmark, const BenchmarkScene& scene, const Method& method) {
   return program_text() + " scorecard " + method.name + " --scene " + scene.name + " --seeds " +
          std::to_string(benchmark.replicates);

@@ -13,8 +13,8 @@ inline constexpr const char* kScorecardFile = "scorecard.h5";
 // Makes the folder with its subfolders. Throws InputError.
 void make_scorecard_folder(const std::string& folder);
 
-// What the scorecard in that file has, if there is one, the plan must have too: results are replaced. Throws
-// InputError.
+// Throws InputError unless the plan has every method and scene of the scorecard in that file, because results
+// are replaced. Does nothing if the file does not exist.
 void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan);
 
 }  // namespace remote_touch

@@ -18,11 +18,11 @@ struct Cost {
   double frame_s = 0;  // mean of on_frame(); NaN without frames
 };
 
-inline constexpr std::size_t kCostLevel = 3;  // of scorecard_noise_m(): 0.6 r_c
+inline constexpr std::size_t kCostLevel = 3;  // index in scorecard_noise_m(): 0.6 r_c
 
-// One run on one thread, at the noise level kCostLevel if there are levels: the faster of two. Frames come
-// with every point computed, so the times do not contain the generation of noise. NaN if the run ends with an
-// error. Throws Interrupted.
+// Measures one run on one thread, at the noise level kCostLevel if there are levels, and returns the faster
+// of two. Frames come with every point computed, so the times do not contain the generation of noise. NaN if
+// the run ends with an error. Throws Interrupted.
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop);
 

@@ -1,4 +1,4 @@
-// From the finished runs of a scorecard to its report.
+// Makes the report of a scorecard from its finished runs.
 #pragma once
 
 #include <atomic>

@@ -15,14 +15,14 @@ struct FailureTrace {
   std::size_t level = 0;  // lowest noise level with a failure
   int replicate = 0;
   std::string file;     // relative to the scorecard's folder; empty: the run ended with an error, no trace
-  std::string command;  // to be run in that folder
+  std::string command;  // command that makes the trace, to be run in that folder
   std::string error = {};
-  std::string page = {};  // that shows the trace, relative to the folder; empty: none was asked for
+  std::string page = {};  // page that shows the trace, relative to the folder; empty: not requested
 };
 
-// The typical failure, see typical_failure(), at the lowest noise level that has failures, replayed into
-// FOLDER/traces/NAME.h5 unless that exists. Only `error` is set if that run ended with an error. None if
-// every run succeeded.
+// Replays the typical failure, see typical_failure(), at the lowest noise level that has failures, into
+// FOLDER/traces/NAME.h5, unless that file is the trace of this run already. If that run ended with an error,
+// no trace is made and `error` is set. Returns none if every run succeeded.
 std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,

@@ -33,7 +33,7 @@ Method with(const Method& method, const char* parameter, const Json& value, cons
 std::vector<Method> force_laws_of(const Method& method) {
   const Json own = complete(parse_json(method.renderer, method.name));
   std::vector<Method> laws = {method};
-  // Without an estimate the term is zero, whatever its sign.
+  // The velocity term is zero without an estimate, whatever its sign.
   if (own.contains("velocity_force") && own.value("velocity_estimate", true))
     for (const char* sign : {"plus", "none"})
       laws.push_back(with(method, "velocity_force", sign, std::string("v_") + sign));

@@ -1,4 +1,4 @@
-// What the runs of a scorecard tell: its numbers, and beside them failures, costs and the audit of passivity.
+// The results of a scorecard's runs: its numbers, and beside them failures, costs and the audit of passivity.
 #pragma once
 
 #include <optional>
@@ -18,11 +18,11 @@ struct ScorecardReport {
   std::string origin;  // program and version
   // Scenes that could not be run here, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
-  std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and method
+  std::vector<std::vector<std::optional<FailureTrace>>> failures;  // one for each scene and method
   std::vector<Cost> costs;
   // The passivity scenes with every force law, if they were run; its methods are the laws.
   std::optional<Scorecard> audit;
-  std::string cpu = {};  // on which the costs were measured
+  std::string cpu = {};  // processor on which the costs were measured
 };
 
 }  // namespace remote_touch

@@ -62,7 +62,7 @@ Json failure_json(const std::optional<FailureTrace>& failure) {
   return json;
 }
 
-// By one rule: at each level, over those with noise, and without noise.
+// Counts of successes by one rule: at each level, over the levels with noise, and without noise.
 Json counts_json(const Successes& success) {
   Json levels = Json::array();
   for (const Proportion& level : success.at_level) levels.push_back(proportion_json(level));
@@ -71,7 +71,7 @@ Json counts_json(const Successes& success) {
           {"noise_free", success.noise_free ? proportion_json(*success.noise_free) : Json()}};
 }
 
-// Of each method: successes by the rule and by the rule before, the mark, and a typical failure.
+// Returns for each method its successes by the rule and by the rule before, its mark, and a typical failure.
 Json successes_json(const ScorecardReport& report, std::size_t number) {
   const SceneScore& scene = report.card.scenes[number];
   Json methods = Json::array();
@@ -129,7 +129,7 @@ Json methods_json(const Scorecard& card) {
   return methods;
 }
 
-// What the project's own method is behind in; null where the card does not have it.
+// Returns the weaknesses of the project's own method; null if the card does not have that method.
 Json behind_json(const Scorecard& card) {
   if (std::find(card.methods.begin(), card.methods.end(), kOwnMethod) == card.methods.end()) return {};
   Json list = Json::array();

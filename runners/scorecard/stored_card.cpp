@@ -100,7 +100,7 @@ std::vector<std::string> names_in(const Json& configuration, const char* kind) {
   return names;
 }
 
-// Of the methods or scenes of now, those that the stored card has not, or has in another form.
+// Adds a sentence for each method or scene of `now` that the stored card lacks or has in another form.
 void compare_definitions(const Json& stored, const Json& now, const char* kind, const char* one,
                          std::vector<std::string>& list) {
   for (const auto& item : now.at(kind).items()) {

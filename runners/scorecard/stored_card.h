@@ -14,7 +14,7 @@ namespace remote_touch {
 inline constexpr const char* kStoredCardFigure = "stored-scorecard";
 
 struct StoredCard {
-  std::string configuration;  // of its methods and scenes, see configuration()
+  std::string configuration;  // methods and scenes as JSON, see configuration()
   int replicates = 0;
   std::vector<std::string> methods, scenes;  // names in it
   CardNumbers numbers;
@@ -23,16 +23,16 @@ struct StoredCard {
 // Returns the digest. provenance: config must be the card's configuration().
 std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
                               const TextAttributes& provenance);
-// Throws InputError for what is not a stored card.
+// Throws InputError if the file is not a stored card.
 StoredCard read_stored_card(const std::filesystem::path& file);
 
-// What the stored card says, as Markdown: first where the project's own method is not the best, then all
-// methods. Throws InputError for what is not a stored card.
+// Returns the results of the stored card as Markdown: first where the project's own method is not the best,
+// then all methods. Throws InputError if the file is not a stored card.
 std::string stored_summary(const std::filesystem::path& file);
 
-// A sentence for each method and scene of the plan that is not in the stored card, or was defined in another
-// way there, and for each number that does not agree, see differences() of numbers. plan: without scenes
-// that were skipped.
+// Returns a sentence for each method and scene of the plan that is not in the stored card, or was defined in
+// another way there, and for each number that does not agree, see differences() of numbers. plan: without
+// scenes that were skipped.
 std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
                                      const Scorecard& now);
 

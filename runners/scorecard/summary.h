@@ -1,4 +1,4 @@
-// What a scorecard says in one place about many numbers: who stands out, how often, and at what cost.
+// Summaries of the numbers of a scorecard: which methods stand out, how often, and at what cost.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace remote_touch {
 
-// A sentence: who is best and worst by successes, or that nobody is told apart.
+// Returns a sentence: the best and the worst method by successes, or that none differs from another.
 std::string verdict(const Scorecard& card, const SceneScore& scene);
 
 // Medians over the scenes in which both the method and the reference were measured; NaN where there are none.
 struct CostSummary {
-  double tick_ratio, frame_ratio;  // in units of the reference
+  double tick_ratio, frame_ratio;  // fractions of the reference's time
   double tick_s, frame_s;
 };
 // The chapter 4 proxy, or the first method. pre: there is a method.
@@ -27,7 +27,7 @@ struct EnergySummary {
   MeanDifference per_cycle_J;
   double per_update_J;  // mean from one frame update to the next
 };
-// Of each law and level in a scene of the audit. None for a scene that does not measure energy.
+// Returns the energies by law and level in a scene of the audit. None if the scene does not measure energy.
 std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene);
 
 }  // namespace remote_touch

@@ -4,7 +4,7 @@ namespace remote_touch {
 
 namespace {
 
-// Whatever the largest force, it has to be gone in this time.
+// Longest time in which the slew rate must bring the largest force to zero.
 constexpr double kMaxRampDown_s = 0.01;
 
 std::string too_slow(const char* slew, const char* max, double value, double min) {

@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-// Rounded to floats they are no unit vectors any more.
+// Normalises a normal, because its length is not exactly 1 after rounding to floats.
 Vec3 unit(const Vec3& n) {
   return n / n.norm();
 }

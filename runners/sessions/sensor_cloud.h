@@ -5,10 +5,11 @@
 
 namespace remote_touch {
 
-// As many points or pixels as the view promises, with colours if it promises them.
+// True if the frame has as many points or pixels as the view promises, and colours if the view promises them.
 bool is_complete(const SensorFrame& frame, const SensorView& view);
 
-// X_WC: pose of the camera in the world. The same bits for the same frame, live and from a recording of it.
+// Returns the points of the frame. X_WC: pose of the camera in the world. The same frame gives the same bits,
+// live and from a recording of it.
 PointCloud cloud_of(const SensorFrame& frame, const SensorView& view, const RigidTransform& X_WC);
 
 }  // namespace remote_touch

@@ -10,11 +10,11 @@
 
 namespace remote_touch {
 
-// Of a sensor that sends clouds.
+// Layout of the clouds of a sensor that sends clouds.
 struct CloudLayout {
   bool has_normals = false;
-  int grid_columns = 0;             // as PointCloud::grid_columns
-  std::size_t expected_points = 0;  // of a frame; more are possible
+  int grid_columns = 0;             // see PointCloud::grid_columns
+  std::size_t expected_points = 0;  // number of points expected in a frame; more are possible
 
   std::size_t numbers_per_point() const { return has_normals ? 6 : 3; }
 };
@@ -28,14 +28,15 @@ struct SensorView {
   std::optional<CloudLayout> cloud = {};             // set: clouds, and camera has no meaning
 };
 
-// Pixel (u, v) is number v * width + u. Of a cloud depth is empty, and colour has one number for each point.
+// Pixel (u, v) is number v * width + u. If the sensor sends clouds, depth is empty, and colour has one number
+// for each point.
 struct SensorFrame {
-  int number = 0;                     // as the sensor counts, so that gaps are visible
-  double captured_s = 0;              // of the host's clock, seconds
+  int number = 0;                     // the sensor's count, so that gaps are visible
+  double captured_s = 0;              // time of the host's clock, seconds
   std::vector<std::uint16_t> depth;   // along the optical axis, in units of the view; 0: nothing measured
   std::vector<std::uint32_t> colour;  // 0xRRGGBB, registered to the depth image; empty: none
   std::vector<float> points =
-      {};  // of a cloud, camera frame: x y z [nx ny nz] of each, metres; NaN: not measured
+      {};  // x y z [nx ny nz] for each point of a cloud, camera frame, metres; NaN: not measured
 };
 
 }  // namespace remote_touch

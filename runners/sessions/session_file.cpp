@@ -13,7 +13,7 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kTicksAtOnce = 1000;
-// Of a tick: 24 days at 1 kHz. Memory is taken for every tick of a run, those that were missed included.
+// Largest number of a tick: 24 days at 1 kHz. A run needs memory for every tick, including missed ticks.
 constexpr std::uint64_t kMaxTick = std::numeric_limits<std::int32_t>::max();
 constexpr double kMaxSide_px = 65535;
 
@@ -209,8 +209,8 @@ void SessionReader::read_changes() try {
   file_.damaged("its attribute live_parameters");
 }
 
-// What a recording cannot be: frames and ticks come one after the other, and each frame is taken once at
-// most.
+// Throws InputError for an impossible recording: numbers and times of frames and ticks must increase, and
+// each frame is taken once at most.
 void SessionReader::require_order() const {
   const auto frames = static_cast<std::int32_t>(frame_count());
   std::int32_t last_taken = -1;

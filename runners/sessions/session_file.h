@@ -1,5 +1,5 @@
-// A live session on disk: the device's state at every tick, the sensor's frames, and when the renderer got
-// them. One HDF5 file.
+// A live session on disk, as one HDF5 file: the device's state at every tick, the sensor's frames, and the
+// ticks at which the renderer got them.
 #pragma once
 
 #include <cstdint>
@@ -18,27 +18,27 @@ namespace remote_touch {
 
 struct SessionTick {
   std::int64_t number = 0;  // time of the tick times the haptic rate
-  DeviceState device;       // as the renderer got it
+  DeviceState device;       // state that the renderer got
   int taken = -1;           // the frame that the renderer got before this tick; -1: none
-  Wrench written;           // to the device, in its axes
+  Wrench written;           // wrench written to the device, in its axes
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
 // The value of the attribute `ended` of a recording that was interrupted and then recovered.
 inline constexpr const char* kInterruptedRecording = "interrupted";
 
-// A live parameter that was changed. tick: number of the first tick with the new value; of a scenario's
-// parameter, of the tick at which it was asked for (frames with the new noise come later).
+// A live parameter that was changed. tick: number of the first tick with the new value. For a parameter of
+// the scenario: number of the tick at which the change was requested (frames with the new noise come later).
 struct SessionChange {
   std::uint64_t tick = 0;
-  std::int32_t parameter = 0;  // its place in the list of names
+  std::int32_t parameter = 0;  // its index in the list of names
   double value = 0;
 };
 
 // The shape of the frames of a session.
 struct SessionLayout {
-  std::uint32_t width = 0, height = 0;  // of the images; 0: clouds
-  std::uint32_t numbers_per_point = 0;  // of the clouds: 3, or 6 with normals; 0: images
+  std::uint32_t width = 0, height = 0;  // size of the images; 0: clouds
+  std::uint32_t numbers_per_point = 0;  // numbers per point of clouds: 3, or 6 with normals; 0: images
   bool has_colour = false;
 
   bool has_clouds() const { return numbers_per_point > 0; }
@@ -53,7 +53,7 @@ struct StoredFrame {
   double captured_s = 0;
   std::uint64_t fixtures_off = 0;
   std::uint32_t point_count = 0;
-  std::string depth, colour;  // the bytes; depth of a cloud: its points, as float
+  std::string depth, colour;  // the bytes; for clouds depth holds the points, as float
 };
 // pre: is_complete(frame, view), and layout is layout_of(view).
 StoredFrame stored_frame(const SessionLayout& layout, const SensorFrame& frame, double captured_s,
@@ -102,15 +102,15 @@ class SessionWriter {
   } ticks_;
 };
 
-// Throws InputError naming the file when it is not a session or damaged.
+// Throws InputError, which names the file, if it is not a session or is damaged.
 class SessionReader {
  public:
   explicit SessionReader(const std::filesystem::path& file) : SessionReader(Hdf5Reader(file)) {}
   explicit SessionReader(Hdf5Reader file);
 
   std::string config() const;  // the experiment that was run, as JSON
-  // Why the recording ended. kInterruptedRecording: its program did not end it. Empty in recordings of
-  // earlier versions.
+  // Returns the reason why the recording ended. kInterruptedRecording: its program did not end it. Empty in
+  // recordings of earlier versions.
   std::string ended() const;
   double haptic_rate_hz() const { return haptic_rate_hz_; }
   const SensorView& view() const { return view_; }
@@ -125,7 +125,7 @@ class SessionReader {
   DeviceState device(std::size_t i) const;
   std::int32_t taken(std::size_t i) const { return taken_[i]; }
 
-  // In the order of their ticks.
+  // Returns the changes in the order of their ticks.
   const std::vector<SessionChange>& changes() const { return changes_; }
   const std::string& live_parameter(const SessionChange& change) const {
     return live_parameters_[static_cast<std::size_t>(change.parameter)];
@@ -149,7 +149,7 @@ class SessionReader {
   std::vector<double> captured_s_, position_, orientation_, buttons_;
   std::vector<std::uint64_t> fixtures_off_, number_;
   std::vector<std::int32_t> frame_number_, taken_;
-  std::vector<std::size_t> first_point_;  // of each frame of a cloud, and after the last
+  std::vector<std::size_t> first_point_;  // index of the first point of each cloud; at the end the total
   std::vector<SessionChange> changes_;
   std::vector<std::string> live_parameters_;
 };

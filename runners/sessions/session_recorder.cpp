@@ -43,8 +43,8 @@ void SessionRecorder::append(const SensorFrame& frame, double captured_s, std::u
   ++frames_written_;
 }
 
-// The first ticks, as far as the frames that they took are in the journal: blocks are read up to the first
-// one that is not whole, and such a tick would lack its frame.
+// Returns the number of ticks before the first one whose frame is not yet in the journal. A journal is read
+// up to the first block that is not whole, so such a tick might lack its frame.
 std::size_t SessionRecorder::ready_ticks() const {
   const auto written = static_cast<std::int64_t>(frames_written_);
   const auto waits = [&](const SessionTick& tick) { return tick.taken >= written; };

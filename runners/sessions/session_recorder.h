@@ -13,8 +13,8 @@
 
 namespace remote_touch {
 
-// Members throw InputError, which names the target, if it cannot be written. Not for use from several threads
-// at once, except sync().
+// Members throw InputError, which names the target, if it cannot be written. Only one thread may use an
+// object at a time, except for sync().
 class SessionRecorder {
  public:
   // Ticks are written in blocks of at least this many, and are only in memory until then. More ticks wait if
@@ -25,7 +25,8 @@ class SessionRecorder {
   SessionRecorder(const std::filesystem::path& target, const SensorView& view,
                   const RigidTransform& registered, const TextAttributes& provenance,
                   const std::vector<std::string>& live_parameters = {});
-  // Without finish(): keeps the journal if a tick or a frame was recorded, and removes it otherwise.
+  // If finish() has not succeeded, keeps the journal if a tick or a frame was recorded, and removes it
+  // otherwise.
   ~SessionRecorder();
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;

@@ -96,7 +96,7 @@ SessionHand::SessionHand(const Settings& settings, const Scenario&)
     throw InputError(settings.path, "has no ticks: expected a session with some");
 }
 
-// The last tick that is not later; before the first that one.
+// Returns the last tick that is not later than the time; the first tick if all are later.
 std::size_t SessionHand::tick_at(double time_s) const {
   const auto number =
       static_cast<std::uint64_t>(std::max(0.0, std::floor(time_s * session_.haptic_rate_hz() + 0.5)));
@@ -123,10 +123,10 @@ double SessionHand::duration_s() const {
 
 namespace {
 
-// Those of the scenario are in the recorded frames.
+// Adds the recorded changes of the renderer's parameters. Changes of the scenario are in the recorded frames.
 void add_changes(const SessionReader& session, Json& experiment) {
   Json changes = experiment.contains("changes") ? experiment["changes"] : Json::array();
-  if (!changes.is_array()) return;  // the reader of the experiment says so
+  if (!changes.is_array()) return;  // the reader of the experiment reports this error
   for (const SessionChange& change : session.changes())
     if (const std::string& parameter = session.live_parameter(change); parameter.starts_with("renderer."))
       changes.push_back({{"time_s", static_cast<double>(change.tick) / session.haptic_rate_hz()},
@@ -149,7 +149,7 @@ std::string session_experiment(const SessionReader& session, const std::string& 
   if (!json.is_object())
     throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
   for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};
-  // The hand is the recorded one, and frames come when and as they came.
+  // The hand is the recorded one, and frames come as recorded and at the recorded times.
   for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
   for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
     json[setting] = 0;

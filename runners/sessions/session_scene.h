@@ -46,8 +46,8 @@ class SessionScene final : public Scenario {
 
   const std::string path_;
   const SessionReader session_;
-  std::vector<double> arrives_s_;  // infinite where the renderer never got it
-  mutable SensedPoints sensed_;    // of the frames that were read; each frame counts once
+  std::vector<double> arrives_s_;  // infinite if the renderer never got the frame
+  mutable SensedPoints sensed_;    // points of the frames that were read; each frame counts once
   mutable std::vector<bool> is_read_;
 };
 
@@ -55,7 +55,7 @@ Parameters parameters(SessionScene::Settings& s);
 std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
-// The device of the session at the nearest tick; where that tick was missed, as at the one before.
+// The state of the session's device at the nearest tick; if that tick was missed, at the tick before.
 class SessionHand final : public Trajectory {
  public:
   struct Settings {
@@ -77,7 +77,8 @@ Parameters parameters(SessionHand::Settings& s);
 std::string validate(const SessionHand::Settings& s);
 RecordingPart input_files(const SessionHand::Settings& s);
 
-// The experiment of a session, as JSON: what was run, with the recorded frames and hand.
+// Returns the experiment of a session, as JSON: the experiment that was run, with the recorded frames and
+// hand.
 std::string session_experiment(const std::string& path);
 std::string session_experiment(const SessionReader& session, const std::string& path);
 

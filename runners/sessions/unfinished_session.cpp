@@ -49,7 +49,7 @@ SessionTick unpacked_tick(Unpacker& unpacker) {
   return tick;
 }
 
-// Names and values in turn.
+// Packs names and values alternately.
 void pack(Packer& packer, const TextAttributes& attributes) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : attributes) texts.push_back(name), texts.push_back(value);
@@ -116,7 +116,7 @@ bool has_size(const StoredFrame& frame, const SessionLayout& layout) {
   return points == 0 && !frame.depth.empty() && frame.colour.empty() != layout.has_colour;
 }
 
-// Takes the bytes of images apart: the HDF5 library trusts them later.
+// Checks that the bytes of images can be decompressed, because the HDF5 library later does not check them.
 bool holds_images(const StoredFrame& frame, const SessionLayout& layout) {
   if (layout.has_clouds()) return true;
   return is_deflated_row(frame.depth, layout.pixels() * sizeof(std::uint16_t)) &&
@@ -139,7 +139,8 @@ class SessionBlocks {
   const SessionLayout& layout() const { return layout_; }
   const TextAttributes& attributes() const { return found_.attributes; }
 
-  // writer: gets everything; null: nobody. checks_images: a frame whose images cannot be read is not whole.
+  // writer: receives all ticks, changes and frames; may be null. checks_images: a frame whose images cannot
+  // be read counts as not whole.
   UnfinishedSession read_all(SessionWriter* writer, bool checks_images) {
     while (const std::optional<JournalBlock> block = reader_.next()) {
       if (take(*block, writer, checks_images)) continue;
@@ -151,7 +152,7 @@ class SessionBlocks {
   }
 
  private:
-  // False if the content is not that of its kind, or contradicts the blocks before.
+  // Returns false if the content does not fit its kind, or contradicts the blocks before.
   bool take(const JournalBlock& block, SessionWriter* writer, bool checks_images) {
     if (found_.is_whole) return false;
     switch (static_cast<SessionBlock>(block.kind)) {
@@ -181,7 +182,8 @@ class SessionBlocks {
     return true;
   }
 
-  // Ticks grow, and each takes a frame that came before, a newer one each time.
+  // True if the tick numbers increase, and each tick that takes a frame takes an earlier one of the journal,
+  // newer than the frame taken before.
   bool are_possible(const TickBlock& block) const {
     std::int64_t number = found_.last_tick, taken = last_taken_;
     for (const SessionTick& tick : block.ticks) {
@@ -221,7 +223,7 @@ class SessionBlocks {
   double last_captured_s_ = -std::numeric_limits<double>::infinity();
 };
 
-// The attributes of the file that are known only now.
+// Returns the attributes of the file that are known only at the end.
 TextAttributes ending_of(const UnfinishedSession& session) {
   if (session.is_whole) return session.ending;
   return {{"ended", kInterruptedRecording},

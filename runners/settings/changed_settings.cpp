@@ -32,8 +32,8 @@ bool begins_with(const Keys& keys, const Keys& first) {
   return first.size() <= keys.size() && std::equal(first.begin(), first.end(), keys.begin());
 }
 
-// The value that `outer` gives to the place of `inner`; null: none. pre: the keys of inner begin with those
-// of outer.
+// Returns the value that `outer` sets at the path of `inner`; null if it sets none. pre: the keys of inner
+// begin with those of outer.
 const Json* value_at(const Assignment& outer, const Assignment& inner) {
   return find_value(outer.value, std::span(inner.keys).subspan(outer.keys.size()));
 }
@@ -42,7 +42,8 @@ std::string option_text(const Assignment& assignment) {
   return "--set " + assignment.path + "=" + shown(assignment.value);
 }
 
-// At most max bytes and a mark; never a part of a UTF-8 character.
+// first_part() and last_part() return at most max bytes of the text, and "..." for the rest. They never cut a
+// UTF-8 character.
 std::string first_part(const std::string& text, std::size_t max) {
   if (text.size() <= max) return text;
   while (max > 0 && (static_cast<unsigned char>(text[max]) & 0xC0) == 0x80) --max;

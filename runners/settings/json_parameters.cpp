@@ -23,7 +23,8 @@ std::string number_text(double value) {
   return out.str();
 }
 
-// In full. A limit is a double: that of 64 bits is 2^64, one more than the largest integer.
+// Writes all digits of a limit. A limit is a double: that of 64 bits is 2^64, one more than the largest
+// integer.
 std::string integer_text(double limit) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
   return std::to_string(limit < 0x1p64 ? static_cast<std::uint64_t>(limit) : kLargest);
@@ -264,7 +265,7 @@ const Json* find_value(const Json& json, std::span<const std::string> keys) {
       if (!place) return nullptr;
       value = &(*value)[*place];
     } else {
-      const auto member = value->find(key);  // of what is no object the end
+      const auto member = value->find(key);  // end() if the value is no object
       if (member == value->end()) return nullptr;
       value = &*member;
     }

@@ -21,8 +21,9 @@ class ContactWatch {
  public:
   using Points = std::shared_ptr<const NeighbourSearch>;
 
-  // To be called after each tick of a run without a tool. points: the newest frame that the renderer has;
-  // null before the first. proxy_distance_m: of the proxy to the true surface, NaN if it is not known.
+  // Must be called after each tick of a run without a tool. points: the newest frame that the renderer has;
+  // null before the first. proxy_distance_m: distance of the proxy to the true surface, NaN if it is not
+  // known.
   void add(double time_s, const Vec3& hand_W, const RenderOutput& out, const Points& points,
            double proxy_distance_m = std::numeric_limits<double>::quiet_NaN());
   bool has_contact() const { return contact_.has_value(); }
@@ -54,14 +55,14 @@ class ContactWatch {
   struct Crossing {
     Site site;
     bool touched;  // there was a contact before
-    int frames;    // that came after the first contact
+    int frames;    // number of frames that came after the first contact
   };
   void follow_crossing(const Site& now, double proxy_distance_m);
 
   std::optional<Site> start_, contact_, nearest_;
-  std::optional<Crossing> crossing_;  // after which the proxy stayed behind the true surface
+  std::optional<Crossing> crossing_;  // the proxy has stayed behind the true surface since
   double nearest_m_ = std::numeric_limits<double>::infinity();
-  double distance_m_ = std::numeric_limits<double>::quiet_NaN();  // of the tick before
+  double distance_m_ = std::numeric_limits<double>::quiet_NaN();  // proxy_distance_m of the tick before
   int frame_ = -1, frames_ = 0;                                   // newest frame; frames since the contact
 };
 

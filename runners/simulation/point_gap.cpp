@@ -110,7 +110,7 @@ PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, doubl
   const std::vector<Vec2> flat = in_their_plane(points, position);
   if (flat.empty()) return {};
   PointGap gap{0, true};
-  constexpr int kCells = 6;  // from the position to the border of the lattice
+  constexpr int kCells = 6;  // number of cells from the position to the border of the lattice
   const double pitch_m = 0.25 * ball_radius_m;
   for (int row = -kCells; row <= kCells; ++row)
     for (int column = -kCells; column <= kCells; ++column) {

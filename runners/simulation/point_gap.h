@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 struct PointGap {
-  double radius_m = 0;      // of the widest gap at the position; 0: no ball passes there
+  double radius_m = 0;      // radius of the widest gap at the position; 0: no ball passes there
   bool is_decided = false;  // false: only points farther away can show whether there is a (wider) gap
 };
 

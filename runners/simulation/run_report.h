@@ -14,7 +14,7 @@ namespace remote_touch {
 struct RunReport {
   std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()
   std::vector<Note> notes;
-  std::string hand{};  // what a hand that was planned on depth images follows, see Trajectory::aim()
+  std::string hand{};  // pixels that a hand planned on depth images follows, see Trajectory::aim()
 };
 
 // end_s: the time of the first tick that was not simulated.

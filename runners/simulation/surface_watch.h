@@ -41,7 +41,7 @@ class SurfaceWatch {
   int frame_ = -1;  // the frame that is held
   std::shared_ptr<const NeighbourSearch> points_;
   std::optional<PointCloud> copy_;
-  const PointCloud* cloud_ = nullptr;  // in points_ or copy_
+  const PointCloud* cloud_ = nullptr;  // the cloud in points_ or copy_
   RigidTransform X_CW_ = RigidTransform::Identity();
 
   std::size_t ticks_ = 0, off_ = 0, behind_ = 0;

@@ -32,7 +32,7 @@ std::string six_digits(double value) {
   return text;
 }
 
-// As the user writes the value of a row.
+// Returns the value of a row as the user writes it.
 std::string value_text(const Column& axis, std::size_t row) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&axis.values))
     return six_digits((*numbers)[row]);

@@ -7,13 +7,13 @@
 
 namespace remote_touch {
 
-// "3,4": the place on each axis, counted from 0.
+// Returns the index on each axis, from 0: "3,4".
 std::string cell_text(const SweepResult& result, std::size_t cell);
 
-// text: a place as cell_text() writes it, or a value of each axis, "noise_sigma_m=0.003,rule=none". A number
-// stands for the value that prints alike with six digits.
+// text: the indices as cell_text() writes them, or a value of each axis, "noise_sigma_m=0.003,rule=none". A
+// number stands for the value that prints alike with six digits.
 struct NamedCell {
-  std::string option;  // with which the user named it, for errors: "--cell"
+  std::string option;  // option with which the user named it, for errors: "--cell"
   std::string text;
 };
 

@@ -29,11 +29,11 @@ struct Sweep::Definition {
   std::string title;
   Json experiment;  // complete
   std::vector<SweepAxis> axes;
-  SweepResult grid;  // of the axes, without runs
+  SweepResult grid;  // result with the axes, without runs
   int replicates = 1;
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
-  std::vector<RecordingPart> inputs;  // of all cells
+  std::vector<RecordingPart> inputs;  // recordings that the cells read
 
   // The experiment of one run, which has the values that the result states of its cell.
   Experiment run(std::size_t cell, int replicate) const;
@@ -157,7 +157,7 @@ Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
   return made;
 }
 
-// That of the experiment, with the values of the cell.
+// Returns the title of the experiment with the values of the cell.
 std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& place) const {
   std::vector<ChangedSetting> changes;
   for (std::size_t i = 0; i < axes.size(); ++i)
@@ -165,8 +165,8 @@ std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& plac
   return changed_title(experiment.value("title", std::string()), changes);
 }
 
-// The experiment has the settings of its own renderer, scenario and trajectory, which another one may not
-// know.
+// Throws InputError for an axis that only changes the name of the renderer, scenario or trajectory. The
+// experiment has the settings of its own one, which another one may not have.
 void Sweep::Definition::refuse_other_entry(const SweepAxis& axis, const std::string& label) const {
   const std::vector<std::string> keys = path_keys(axis.parameter);
   if (keys.size() != 2 || keys[1] != "name" || !experiment.contains(keys[0])) return;
@@ -208,13 +208,13 @@ void Sweep::Definition::check_budget(const std::string& label) const {
                      "expected at least the " + std::to_string(first_round) + " runs of the first round");
 }
 
-// In parallel, because a large map has many; the first cell in order is the one that is named. What a cell
-// reads is noted on the way.
+// Checks all cells in parallel, because a large map has many. The error names the first wrong cell in order.
+// Collects the recordings that the cells read.
 void Sweep::Definition::check_cells(const std::string& label) {
   const auto cells = static_cast<long>(grid.cell_count());
   long first_wrong = cells;
   std::string problem;
-  std::atomic<bool> lacks_memory{false};  // that is no problem of a cell
+  std::atomic<bool> lacks_memory{false};  // not a problem of a cell
   std::set<RecordingPart> parts;
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {

@@ -16,18 +16,19 @@ namespace remote_touch {
 
 class Sweep {
  public:
-  // From JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
+  // Reads JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
   // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
   // else its experiment; the title names them (changed_settings.h). Every cell is resolved and checked:
   // throws InputError for the first that cannot be run, and for parts that overwrite each other
   // (sweep_statements.h).
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
-  // A name of data/sweeps, or a JSON file.
+  // Reads a sweep of data/sweeps by its name, or a JSON file.
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;
-  // Empty arrays; the shard's runs of the first round are pending, those of other shards elsewhere.
+  // Returns empty arrays. The shard's runs of the first round are pending, those of other shards are
+  // elsewhere.
   SweepResult plan(const Shard& shard = {}) const;
   // The experiment of one run, with its own noise: cell and replicate are part of the noise key. It has the
   // values that the result states of its cell; throws InputError otherwise.
@@ -38,11 +39,11 @@ class Sweep {
   // The recordings that its cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
-  bool needs_true_contact() const;  // one of its measures does
+  bool needs_true_contact() const;  // true if one of its measures does
   std::optional<RefinementRule> refinement() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
-  // The sweep with every every-th value of each axis; of a range, whose steps may not divide evenly,
-  // approximately. Its runs have other noise than those of the full sweep.
+  // Returns the sweep with every every-th value of each axis. A range, whose steps may not divide evenly, is
+  // thinned approximately. The runs have other noise than those of the full sweep.
   Sweep thinned(int every) const;
 
  private:

@@ -35,7 +35,7 @@ Parameters parameters(RangeAxis& axis) {
   };
 }
 
-// To 12 decimal digits: the last bits of the C library's logarithm differ between machines.
+// Rounds to 12 significant digits: the last bits of the C library's logarithm differ between machines.
 double rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.11e", value);
@@ -51,7 +51,7 @@ Json value_of(const RangeAxis& axis, std::size_t i, std::size_t count) {
     value = axis.scale == Scale::linear
                 ? (axis.from * (last - place) + axis.to * place) / last
                 : rounded(std::exp(std::log(axis.from) + std::log(axis.to / axis.from) * (place / last)));
-  // A integer may be meant for a parameter that takes nothing else.
+  // An integer is returned as such, because the parameter may accept nothing else.
   if (value == std::floor(value) && value >= 0) return static_cast<std::uint64_t>(value);
   return value;
 }

@@ -12,8 +12,8 @@ namespace remote_touch {
 
 struct SweepAxis {
   std::string parameter;     // a path, as for --set
-  std::vector<Json> values;  // of the first round, with those between them that refinement may add
-  std::size_t stride = 1;    // of the first round's values
+  std::vector<Json> values;  // values of the first round, and those between them that refinement may add
+  std::size_t stride = 1;    // index step between values of the first round
   std::string definition;    // complete JSON, as in a file
 
   // The dimension scale: numbers, or an enumeration of the values' texts. Its name is the last part of the

@@ -16,7 +16,7 @@ std::string option_of_run(const SweepResult& result, std::size_t run);
 // Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
 
-// For --strict: throws InputError with all these lines. Does nothing if there is none.
+// Throws InputError with all these lines, for --strict. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
 
 }  // namespace remote_touch

@@ -11,7 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// By the recipe of its sweep; where that has none, by what is said of it.
+// Returns the provenance of the replayed run: from the recipe of its sweep or, if that has none, from the
+// text of its command.
 TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay& replay, int replicate,
                       const std::string& isa, const std::string& inputs) {
   const std::string config = replay.experiment.to_json();

@@ -15,7 +15,7 @@ struct SweepRunOptions {
   const Kernels* kernels = nullptr;                    // null: the machine's best
   const std::atomic<bool>* stop = nullptr;             // when set, the sweep ends with Interrupted
   std::function<void(std::size_t run)> finished = {};  // one call at a time; what it throws ends the sweep
-  SideBySide runs = side_by_side;                      // how runs are distributed over threads
+  SideBySide runs = side_by_side;                      // distributes the runs over threads
 };
 
 // Does every pending run, in parallel. The bits and the notes of a run do not depend on threads or order. A

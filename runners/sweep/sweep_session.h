@@ -15,7 +15,7 @@ namespace remote_touch {
 // The work that is left of a sweep, given its file if that exists.
 struct SweepPlan {
   SweepResult result;         // failed runs are pending again
-  TextAttributes attributes;  // of the existing file, or as given; inputs always as given
+  TextAttributes attributes;  // the existing file's, else as given; `input_digests` always as given
   bool in_progress = false;   // the file exists, can be written in place, and holds this result
   bool is_there = false;
   bool is_finished = false;  // the file exists and equals what a finished sweep with this result would write

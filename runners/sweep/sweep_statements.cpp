@@ -20,13 +20,14 @@ bool is_within(const Keys& inner, const Keys& outer) {
 struct Statement {
   enum class Of { option_of_own_experiment, set, option, axis };
   Of of;
-  std::string subject;  // for errors
-  std::string name;     // as another's error names it
+  std::string subject;  // subject of an error about this statement
+  std::string name;     // name in an error about another statement
   Keys keys;
-  Json value;  // of an axis null: it is the last
+  Json value;  // null for an axis: nothing is applied after it
 };
 
-// The value has a member at these keys, below its own. An element of a list is no statement of its own.
+// True if the value has a member at these keys, below its own. An element of a list does not count as a
+// statement of its own.
 bool has_member(const Json& value, std::span<const std::string> keys) {
   const Json* const object = find_value(value, keys.first(keys.size() - 1));
   return object && object->is_object() && object->contains(keys.back());
@@ -39,8 +40,8 @@ bool overwrites(const Statement& later, const Statement& earlier) {
   return has_member(earlier.value, std::span(later.keys).subspan(earlier.keys.size()));
 }
 
-// The last --set counts, but none may discard another value with the object or list around it; that one --set
-// discards another is found before, see refuse_discarded().
+// The last --set counts, but no statement may discard another value with the object or list around it. A
+// --set that discards another one is found before, see refuse_discarded().
 bool may_overwrite(const Statement& later, const Statement& earlier) {
   using Of = Statement::Of;
   if (earlier.of == later.of) return later.of != Of::set;

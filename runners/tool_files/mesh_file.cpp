@@ -28,7 +28,7 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 5'000'000;
-constexpr std::size_t kMemoryPerByte = 64;  // of a file: more than the costliest kind needs
+constexpr std::size_t kMemoryPerByte = 64;  // memory per byte of a file: the costliest kind needs less
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
@@ -48,7 +48,7 @@ class Welded {
  public:
   explicit Welded(TriangleMesh& mesh) : mesh_(mesh) {}
   int add(const aiVector3D& v) {
-    // 0 and -0 are one place, and a map cannot hold what is no number.
+    // 0 and -0 are one position. A map cannot hold NaN.
     const std::array<float, 3> at{v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};
     if (!Vec3(at[0], at[1], at[2]).allFinite()) {
       mesh_.vertices.emplace_back(at[0], at[1], at[2]);
@@ -150,8 +150,8 @@ const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
 }
 
-// As the library reads it. In a child, for the library believes what a file says: damaged ones make it take
-// all memory or go on for ever.
+// Reads the mesh with the library. Must run in a child process, because the library trusts the file: a
+// damaged one can make it allocate all memory or never end.
 TriangleMesh mesh_by_assimp(const std::string& file) {
   const FacetWatch facets;
   Assimp::Importer importer;
@@ -172,7 +172,7 @@ TriangleMesh mesh_by_assimp(const std::string& file) {
   return mesh;
 }
 
-// In the child.
+// Reads and packs the mesh, in the child process.
 std::string packed_mesh(const std::string& file) {
   const TriangleMesh mesh = mesh_by_assimp(file);
   MemoryPacker pack;

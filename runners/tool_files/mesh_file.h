@@ -8,13 +8,13 @@
 
 namespace remote_touch {
 
-// By the ending of its name, upper or lower case.
+// True if the file's name ends like that of a mesh file, in upper or lower case.
 bool is_mesh_file(const std::filesystem::path& file);
 
 // All meshes of the file as one, vertices at equal positions welded, polygons cut into triangles of their
 // area (polygon_triangles.h); lines and points are left out. Coordinates have single precision, in the unit
-// of the file. Throws InputError, naming the file, also for a polygon that cannot be cut. run: how the child
-// process is run, in which alone the library reads the file.
+// of the file. Throws InputError, naming the file, also for a polygon that cannot be cut. run: runs the child
+// process in which alone the library reads the file.
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
 // The reader's version: another one may read a file differently.

@@ -11,17 +11,19 @@
 
 namespace remote_touch {
 
-// Separated by blanks, tabs, line ends and form feeds, and by the characters of also.
+// Returns the words of the text. Blanks, tabs, line ends, form feeds and the characters of `also` separate
+// them.
 std::vector<std::string_view> words_of(std::string_view text, std::string_view also = {});
 
 // True if the whole word is a decimal number, perhaps with an exponent and a sign; also nan and inf.
 bool is_number(std::string_view word);
-// The value if the whole word is a decimal integer, perhaps with a sign.
+// Returns the value if the whole word is a decimal integer, perhaps with a sign; else nothing.
 std::optional<std::int64_t> integer_of(std::string_view word);
 
-// Throws std::runtime_error "line N: PROBLEM" for the line of text in which a place is, counted from 1.
+// Throws std::runtime_error "line N: PROBLEM" for the line of the text that contains the byte `at`;
+// lines are counted from 1.
 [[noreturn]] void refuse_line(std::string_view text, std::size_t at, const std::string& problem);
-// For a message: the word, shortened.
+// Returns the word in quotes, shortened, for a message.
 std::string in_quotes(std::string_view word);
 
 }  // namespace remote_touch

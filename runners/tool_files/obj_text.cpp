@@ -98,7 +98,7 @@ class ShapeLines {
 
   const std::string& obj_;
   std::string text_;
-  std::size_t at_ = 0;  // of the line in the file
+  std::size_t at_ = 0;  // position of the line in the file
   std::int64_t vertices_ = 0, farthest_ = 0;
   std::size_t farthest_at_ = 0;
 };

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kMaxHeader = 1 << 20;
 
-// As few bytes as an element can have: in a text, each value is a digit and what parts it; a list may have no
-// members. A type that is unknown counts as a byte.
+// Returns the least number of bytes of an element. In a text, each value is a digit and a separator. A list
+// may have no members. An unknown type counts as one byte.
 std::uint64_t min_bytes(const PlyElement& element, bool is_ascii) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& property : element.properties)
@@ -25,7 +25,7 @@ std::uint64_t min_bytes(const PlyElement& element, bool is_ascii) {
 
 void take(const std::string& line, PlyHeader& header) {
   std::istringstream words(line);
-  words.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  words.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
   std::string word;
   words >> word;
   if (word == "format") {

@@ -1,4 +1,4 @@
-// The header of a PLY file: whether it ends, and whether the file is long enough for its counts.
+// The header of a PLY file. Checks that it ends, and that the file is long enough for its counts.
 #pragma once
 
 #include <cstddef>
@@ -11,38 +11,39 @@
 
 namespace remote_touch {
 
-// As written: types may be unknown.
+// The property as written in the file: types may be unknown.
 struct PlyProperty {
   std::string name, type;
-  std::string count;  // of a list, the type of its length; empty: no list
+  std::string count;  // type of a list's length; empty: no list
   bool is_list() const { return !count.empty(); }
 };
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  std::string lines;  // of the header that describe it, without comments
+  std::string lines;  // lines of the header that describe it, without comments
 };
 struct PlyHeader {
   std::string format;   // ascii, binary_little_endian, binary_big_endian
   std::string opening;  // the lines before the first element, without comments
   std::vector<PlyElement> elements;
-  std::size_t size = 0;  // up to the first element's data, in bytes
+  std::size_t size = 0;  // number of bytes before the first element's data
   bool ends = false;
-  std::optional<std::string> bad_count;  // of an element, that is no number
+  std::optional<std::string> bad_count;  // count of an element if it is no number
   bool is_ascii() const { return format == "ascii" || format.empty(); }
 };
-// Lines end in \n, \r\n or \r. Without an end of the header, all is header.
+// Returns the header that begins the bytes. Lines end in \n, \r\n or \r. If the header has no end, all lines
+// belong to it.
 PlyHeader ply_header_in(const std::string& bytes);
 
-// The bytes of a value of this type in a binary file; 0: unknown.
+// Returns the size in bytes of a value of this type in a binary file; 0 if the type is unknown.
 std::size_t size_of_ply(std::string_view type);
 
-// The problem in one line; empty if there is none.
+// Returns the problem of the header in one line; empty if there is none.
 std::string ply_problem(const std::filesystem::path& file);
 
-// The bytes of a file as the library needs them. Where binary data begin with a line feed it takes that byte
-// for the end of the header: one more stands before it then.
+// Returns the bytes of a file as the library needs them. If binary data begin with a line feed, the library
+// takes that byte for the end of the header; one more is then inserted before it.
 std::string with_first_byte_kept(std::string ply);
 
 }  // namespace remote_touch

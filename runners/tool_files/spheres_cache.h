@@ -12,10 +12,10 @@ namespace remote_touch {
 // Part of the key: raise it whenever the result of make_tool_spheres() changes.
 inline constexpr int kSpheresFormat = 1;
 
-// From the key of the tool in its cache.
+// Returns the key of the spheres, from the key of the tool in its cache and from max_leaves.
 std::string spheres_key(const std::string& tool_key, int max_leaves);
 
-// As read_tool() and write_tool().
+// These functions do for spheres what read_tool() and write_tool() do for tools.
 std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
 bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
 

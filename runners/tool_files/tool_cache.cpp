@@ -31,7 +31,7 @@ void visit(Direction& pack, Stored& stored) {
   pack.text(stored.report);
 }
 
-// What a program that makes tools cannot have written, whatever the hash says.
+// False if no program that makes tools can have written this tool, even if the hash is right.
 bool is_sound(const VoxelTool& tool) {
   std::size_t cells = 1, nodes = 1;
   for (const int along : tool.grid.cells)

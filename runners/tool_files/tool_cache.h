@@ -17,17 +17,18 @@ inline constexpr int kToolFormat = 2;
 std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings);
 std::string sha256_of_mesh(const TriangleMesh& mesh);
 
-// What is stored under a key: the tool, bit for bit, and the report from when it was made.
+// The content that is stored under a key: the tool, bit for bit, and the report from when it was made.
 struct StoredTool {
   VoxelTool tool;
   std::string report;
 };
 
-// None if there is no such file, or it is damaged, cut off, or of another key: its SHA-256 is verified.
+// Returns nothing if there is no such file, or if it is damaged, cut off, or of another key. Its SHA-256 is
+// verified.
 std::optional<StoredTool> read_tool(const std::filesystem::path& folder, const std::string& key);
 
-// Writes to a temporary name and renames, so that other processes see the whole file or none; creates the
-// folder. Returns false if it cannot be written, which is not an error.
+// Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
+// Creates the folder. Returns false if the file cannot be written, which is not an error.
 bool write_tool(const std::filesystem::path& folder, const std::string& key, const StoredTool& stored);
 
 }  // namespace remote_touch

@@ -63,7 +63,7 @@ std::vector<RecordingPart> input_files(const ToolSettings& s) {
 namespace {
 
 struct KeyedTool {
-  std::string key;  // of the cache
+  std::string key;  // key in the cache
   StoredTool stored;
 };
 

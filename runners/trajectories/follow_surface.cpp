@@ -49,7 +49,8 @@ std::vector<double> inside(const std::vector<double>& heights, double spacing, d
   return result;
 }
 
-// Where the profile has a step, the height of its upper end; minus infinity elsewhere.
+// Returns, for each sample of the profile, the height of the upper end of a step within step_margin_m; minus
+// infinity if there is no step.
 std::vector<double> step_tops(const std::vector<double>& heights, double spacing,
                               const FollowSurface::Settings& s) {
   const auto count = static_cast<std::ptrdiff_t>(heights.size());

@@ -118,7 +118,8 @@ void ImagePress::refuse_pixel(BridgeableImage& image) const {
                        " at this pixel of the first frame: expected " + expected);
 }
 
-// For a pixel that was chosen from the image: whether something other than the nearest object is pressed.
+// Sets missed_object_ if a pixel that was chosen from the image presses something other than the nearest
+// object.
 void ImagePress::find_missed_object(const NearestObject& object, const DepthImage& measured) {
   const int pixel = row_ * image_.camera.width + column_;
   const std::string pressed = pixel_text(row_, column_) + " is pressed, but ";
@@ -160,7 +161,7 @@ double ImagePress::travelled_m(double time_s) const {
 
 double ImagePress::lifted_depth(double planned_m, const Seen& newest) const {
   const double surface_m = std::isnan(newest.shown_m) ? newest.nearest_m : newest.shown_m;
-  const double allowed_m = std::max(settings_.depth_m, 0.0) + settings_.edge_jump_m;  // as in surface_plan()
+  const double allowed_m = std::max(settings_.depth_m, 0.0) + settings_.edge_jump_m;  // see surface_plan()
   if (planned_m - surface_m <= allowed_m) return planned_m;
   return in_front_of(newest.nearest_m, settings_.clearance_m);
 }

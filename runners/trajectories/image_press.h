@@ -50,7 +50,7 @@ class ImagePress final : public Trajectory {
   int column() const { return column_; }
 
  private:
-  // What one frame shows at the pixel. Depths are in m along the optical axis.
+  // The surface that one frame shows at the pixel. Depths are in m along the optical axis.
   struct Seen {
     double supported_m = 0;  // depth of the surface; NaN: no surface without gaps
     double shown_m = 0;      // median of the depths measured within bridge_m / 2; NaN: none

@@ -83,7 +83,8 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
                        ": expected " + expected);
 }
 
-// For a row that was chosen from the image: whether only other things than the nearest object are touched.
+// Sets missed_object_ if a row that was chosen from the image touches only other things than the nearest
+// object or, if there is no large object, if a small object is nearer than everything that it touches.
 void ImageScan::find_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
   const std::string row = "row " + std::to_string(scan_.row);
   if (!scan_.is_on_object) {
@@ -102,7 +103,8 @@ void ImageScan::find_missed_object(const DepthImage& image, const CameraIntrinsi
   }
 }
 
-// Approaches the first patch, follows each, and flies from one to the next in front of all that is between.
+// Plans a path that approaches the first patch, follows each patch, and flies to the next one in front of
+// everything between them.
 void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   const Settings& s = settings_;
   const CameraIntrinsics& camera = layout.camera;

@@ -11,16 +11,16 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kTrials = 300;  // planes tried; a plane with a fifth of the points is met with 1 - 0.09
+constexpr int kTrials = 300;  // planes tried; one with a fifth of the points is found with probability 0.91
 constexpr int kStride = 4;    // every 4th pixel in both directions takes part
-constexpr double kPlaneFraction = 0.2;    // of the measured points, to count as the scene's plane
-constexpr double kObjectFraction = 0.01;  // of the image, to count as large
+constexpr double kPlaneFraction = 0.2;    // least share of the measured points in the scene's plane
+constexpr double kObjectFraction = 0.01;  // least share of the image in a large object
 constexpr double kContinuous_m = 0.01;    // depth difference between neighbouring pixels of one object
 
 struct Plane {
   Vec3 normal;
   double offset;
-  // How far from the plane still belongs to it: sensor noise grows with the square of the depth.
+  // True if p is near enough to belong to the plane: sensor noise grows with the square of the depth.
   bool holds(const Vec3& p) const { return std::abs(normal.dot(p) - offset) < 0.008 + 0.005 * p.z() * p.z(); }
   // p is on the side of the camera, which is at the origin.
   bool is_camera_side(const Vec3& p) const { return (normal.dot(p) - offset) * offset < 0; }

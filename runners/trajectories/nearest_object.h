@@ -30,7 +30,7 @@ NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsic
 
 // An object that is not the one that a hand touches.
 struct NearerObject {
-  double depth_m = 0;       // of its nearest part (5th percentile)
+  double depth_m = 0;       // depth of its nearest part (5th percentile)
   int row = 0, column = 0;  // medians of its pixels
 };
 

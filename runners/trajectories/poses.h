@@ -20,7 +20,8 @@ class Poses final : public Trajectory {
   };
 
   Poses(const Settings& settings, const Scenario& scenario);
-  // At constant speed along the straight line, and about a fixed axis by the smaller angle.
+  // The device moves at constant speed along the straight line, and turns about a fixed axis by the smaller
+  // angle.
   DeviceState at(double time_s) const override;
   double duration_s() const override { return arrival_s_.back(); }
 

@@ -10,15 +10,17 @@ namespace remote_touch {
 
 namespace {
 
-// Of the sines: shares of the extent, and rates whose ratios are not rational: the golden and the silver one.
+// The sines' shares of the extent, and their relative rates. The ratios of the rates are irrational: the
+// golden and the silver ratio.
 constexpr double kFraction[] = {0.5, 0.3, 0.2};
 constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
-// The axes run at different rates too, powers of two to twelfths and tenths, so that no two keep step.
+// The rates of the axes differ too, by powers of two to twelfths and tenths, so that no two stay in phase.
 constexpr double kAxisRate[] = {
     1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
 constexpr double kRotation = 6.283185307179586;
 
-// At which the sum of the largest speeds of all sines is the speed allowed; rad/s.
+// Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
+// allowed speed.
 double slowest_rate(const RandomWalk::Settings& s) {
   double of_all = 0;
   for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];

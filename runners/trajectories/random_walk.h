@@ -33,8 +33,8 @@ class RandomWalk final : public Trajectory {
   double coordinate(int axis, double time_s) const;  // within -1 .. 1
 
   const Settings settings_;
-  double rate_;                                        // rad/s of the slowest sine
-  std::array<std::array<double, kSines>, 6> phase_{};  // of the place, then of the rotation vector
+  double rate_;                                        // rate of the first sine of x, rad/s
+  std::array<std::array<double, kSines>, 6> phase_{};  // phases of the position, then of the rotation vector
 };
 
 Parameters parameters(RandomWalk::Settings& s);

@@ -24,7 +24,7 @@ struct ScanRowRequest {
 
 struct ScanRow {
   int row = 0;
-  std::vector<ScanPatch> patches;  // from left to right; empty: there is nothing to touch
+  std::vector<ScanPatch> patches;  // patches from left to right; empty: there is nothing to touch
   std::vector<double> depth_m;     // supported_depth() of each column; NaN: none, or beyond span_m
   double edge_jump_m = 0;          // the largest depth jump that was taken as surface
   bool bridges_holes = false;      // holes up to bridge_m were closed

@@ -12,7 +12,7 @@ namespace remote_touch {
 // Criteria for a surface without gaps.
 struct Support {
   double edge_jump_m = 0.006;  // a larger depth difference between neighbouring pixels is an edge
-  double margin_m = 0.01;      // how far around a pixel the surface must go on
+  double margin_m = 0.01;      // the surface must extend this far around a pixel
 };
 // Median depth of the square around a pixel that is as wide as the margin; NaN if the square contains a hole,
 // an edge or the image's border, or if the pixel is outside the image.

@@ -31,7 +31,7 @@ class Trajectory {
   virtual ~Trajectory() = default;
   // Throws InputError if the motion follows the frames and one of them cannot be used.
   virtual DeviceState at(double time_s) const = 0;
-  // When the motion ends; the device rests afterwards. 0 if it has no end.
+  // Returns the time at which the motion ends; the device rests afterwards. 0 if it has no end.
   virtual double duration_s() const = 0;
   // The parts of the motion that begin at a set time: the press. Empty: there are none.
   virtual std::vector<Phase> phases() const { return {}; }
@@ -42,7 +42,7 @@ class Trajectory {
   virtual std::string aim() const { return {}; }
   // Notes on how the motion was planned.
   virtual std::vector<Note> notes() const { return {}; }
-  // Of a recorded live session: its loop missed the tick at that time, which is then skipped.
+  // True if the loop of a recorded live session missed the tick at that time. The tick is then skipped.
   virtual bool is_missed(double /*time_s*/) const { return false; }
 };
 

@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// Where an array is in the bytes of PackedArrays.
+// Position, type and length of an array in the bytes of PackedArrays.
 struct PackedArray {
   std::size_t at = 0;        // first byte
   const char* type = "f64";  // f64, f32, i32, u32, u16 or u8

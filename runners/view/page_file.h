@@ -8,7 +8,7 @@ namespace remote_touch {
 // json: names the arrays in bytes by PackedArray. Throws InputError without viewer_script().
 std::string page_file(const std::string& title, const std::string& json, const std::string& bytes);
 
-// As a page stores it: gzip, then Base64.
+// Returns the bytes as a page stores them: gzip, then Base64.
 std::string compressed(const std::string& bytes);
 
 }  // namespace remote_touch

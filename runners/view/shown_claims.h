@@ -1,4 +1,4 @@
-// What the figure of an experiment claims, beside a run of that experiment.
+// The claims of an experiment's figure, which a page shows beside a run of that experiment.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace remote_touch {
 
-// Those of the figure whose experiment was run: `run fig4.12` is that of figure 4.12. claims: the claims.json
-// of `remote-touch figure`; empty: none. A list of objects with claim, paper, measured, unit, criterion and
-// verdict; empty for a run of another experiment, or with other settings. Throws InputError for a file that
-// is none.
+// Returns the claims of the figure whose experiment was run: `run fig4.12` belongs to figure 4.12. claims:
+// the claims.json of `remote-touch figure`; empty: none. The result is a list of objects with claim, paper,
+// measured, unit, criterion and verdict. It is empty for a run of another experiment, or with other settings.
+// Throws InputError if the file is not a list of claims.
 Json shown_claims(const std::filesystem::path& claims, const TextAttributes& run);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// Which points of a frame a page shows: all that touch and all near the proxy, and some of the others around
-// the action.
+// Selects the points of a frame that a page shows: all that touch, all near the proxy, and some of the others
+// around the action.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,23 @@ namespace remote_touch {
 
 struct ShownPointsRule {
   BoundingBox box_W;           // points outside are left out
-  double near_m = 0;           // points so near to a position of the proxy are all shown
-  std::size_t max_others = 0;  // of the others in the box at most about so many
+  double near_m = 0;           // all points in the box this near to a position of the proxy are shown
+  std::size_t max_others = 0;  // about the maximum number of other points in the box that are shown
 };
 
 struct ShownPoints {
-  std::vector<std::uint32_t> numbers;  // of points in the cloud, ascending
-  // Of each: 0 for those that touch and those near the proxy; others are left out from the largest rank on.
+  std::vector<std::uint32_t> numbers;  // indices of the points in the cloud, ascending
+  // Rank of each point: 0 for those that touch and those near the proxy. Other points are left out from the
+  // largest rank on.
   std::vector<std::uint32_t> rank;
-  std::size_t measured = 0, in_box = 0, others = 0;  // of how many
+  std::size_t measured = 0, in_box = 0, others = 0;  // counts before any point is left out
 };
 
-// Others with a smaller rank are shown.
+// Returns the rank below which the other points are shown.
 std::uint32_t rank_limit(std::size_t others, std::size_t max_others);
 
-// always: numbers of points that are shown wherever they are, ascending. Others are thinned by their numbers,
-// so that a page shows the same places of an image in every frame.
+// always: indices of points that are shown wherever they are, ascending. Other points are thinned by their
+// indices, so that a page shows the same pixels of an image in every frame.
 ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
                          std::span<const Vec3> proxies_W, const ShownPointsRule& rule);
 

@@ -213,7 +213,7 @@ struct ShownRun::State {
   const double r2_m, contact_radius_m;
   RunPath path;
   std::optional<ShownTool> tool;
-  ShownFrames made;  // with as many points as the first json() asked for
+  ShownFrames made;  // frames with as many points as the first json() requested
   BoundingBox shown_box_W;
   std::optional<TraceEvent> divergence;
   std::string shown, note_of_run, note = source.note;

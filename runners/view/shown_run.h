@@ -1,4 +1,4 @@
-// What a page shows of one run, as JSON that names arrays of numbers.
+// The data of one run that a page shows, as JSON that names arrays of numbers.
 #pragma once
 
 #include <atomic>
@@ -16,11 +16,11 @@ namespace remote_touch {
 
 // A trace, stored or in memory, and what is known of it.
 struct RunSource {
-  std::string name;  // on the page and in errors: a file, or a run of a sweep
+  std::string name;  // name on the page and in errors: a file, or a run of a sweep
   std::shared_ptr<const ColumnSource> columns;
-  TextAttributes attributes;  // of which config must be there
-  std::string note = {};      // what the reader must know of it
-  std::string claims = "[]";  // JSON, as shown_claims() gives them
+  TextAttributes attributes;  // config must be one of them
+  std::string note = {};      // remark for the reader of the page
+  std::string claims = "[]";  // JSON, see shown_claims()
 };
 
 class ShownRun {
@@ -32,10 +32,10 @@ class ShownRun {
 
   const RunSource& source() const;
   std::string title() const;
-  std::size_t frame_count() const;  // in use, at least 1
+  std::size_t frame_count() const;  // number of frames in use, at least 1
 
-  // The part of the scene that is shown. At first the action: where HIP and proxy or tool are, and some room.
-  // Settled with the first json().
+  // The part of the scene that is shown. Initially it is the region of the action: the positions of HIP and
+  // proxy or tool, and some room around them. The first json() fixes it.
   const BoundingBox& box_W() const;
   void set_box(const BoundingBox& box_W);
 
@@ -43,11 +43,11 @@ class ShownRun {
   void mark_divergence_from(const ShownRun& other);
 
   // The first call makes the frames of the run again; later calls leave out points. max_others: see
-  // ShownPointsRule, of each frame, no more than in the first call.
+  // ShownPointsRule; for each frame, and no more than in the first call.
   Json json(PackedArrays& numbers, std::size_t max_others);
-  // Which points the last json() had, in a line.
+  // A line about the points that the last json() contained.
   const std::string& shown() const;
-  // What the reader must know, after json(); empty: nothing.
+  // Remark for the reader, valid after json(); empty: none.
   const std::string& note() const;
 
  private:

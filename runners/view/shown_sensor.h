@@ -1,4 +1,4 @@
-// Where a camera is and looks, as a page shows it.
+// Position and directions of a camera, as a page shows them.
 #pragma once
 
 #include "core/geometry/vector.h"
@@ -7,7 +7,7 @@
 namespace remote_touch {
 
 Json json_of(const Vec3& v);
-// Position, and the directions in which it looks and which is up in its image, world frame.
+// Returns the position, the viewing direction and the upward direction of the image, in the world frame.
 Json sensor_json(const RigidTransform& X_WC);
 
 }  // namespace remote_touch

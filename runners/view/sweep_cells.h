@@ -1,4 +1,4 @@
-// Which runs of a sweep a page shows when none are named.
+// Selects the runs of a sweep that a page shows if no cells are named.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace remote_touch {
 
-// At most `max` runs whose measure is above the threshold, from cells where most runs are so and that have a
-// neighbour where they are not: the failures nearest to the limit, evenly spread over the grid. Where no cell
-// has such a neighbour, any cells with such a run; without any, the runs with the smallest and the largest
-// value. A neighbour is the next cell along an axis that has finished runs. Rising; empty only if no run is
-// done.
+// Returns at most `max` runs whose measure is above the threshold, evenly spread over the grid, in ascending
+// order. They are the failures nearest to the limit: the first failed run of each cell in which most runs
+// failed and that has a neighbour in which most did not. A neighbour is the next cell along an axis that has
+// finished runs. If no cell has such a neighbour, any cells with a failed run are used. If no run failed,
+// returns the runs with the smallest and the largest value. Empty only if no run is done.
 std::vector<std::size_t> runs_near_limit(const SweepResult& result, const std::vector<double>& measure,
                                          double threshold, std::size_t max);
 

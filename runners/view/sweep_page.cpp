@@ -44,7 +44,7 @@ Sweep sweep_of(const StoredSweep& stored, const std::string& file) {
   return sweep;
 }
 
-// Which measure says what failed, and above which value.
+// The measure that decides whether a run failed, and the value above which it did.
 struct Judged {
   std::string measure;
   double threshold = 0.5;
@@ -57,7 +57,7 @@ Judged judged(const Sweep& sweep, const SweepResult& result) {
   return {result.measures.front().name};
 }
 
-// Of the finished runs of the cell the first that failed, or the first.
+// Returns the first failed run among the finished runs of the cell, or the first finished run if none failed.
 std::size_t run_of_cell(const SweepResult& result, const std::string& text, const Judged& judged) {
   const std::vector<double>& measure = result.measure(judged.measure);
   const std::size_t begin = result.run(cell_of({"--cells", text}, result), 0);
@@ -96,7 +96,8 @@ bool measures_are_stored(const StoredSweep& stored, const Sweep& sweep, std::siz
   return true;
 }
 
-// What is known of a run: what is known of its sweep, but its own configuration and no digest.
+// Returns the attributes of a run: its own configuration and input hashes, and the command and version of its
+// sweep. It has no digest.
 TextAttributes attributes_of_run(const StoredSweep& stored, const Experiment& experiment) {
   TextAttributes attributes{{"config", experiment.to_json()},
                             {"input_digests", input_hashes(experiment.inputs())}};
@@ -131,7 +132,7 @@ Json axis_json(const Column& axis) {
   return {{"name", axis.name}, {"unit", axis.units}, {"values", std::move(values)}};
 }
 
-// How many runs of each cell are done.
+// Returns the number of finished runs in each cell.
 std::vector<int> done_in_cells(const SweepResult& result) {
   std::vector<int> done(result.cell_count(), 0);
   for (const std::size_t run : result.runs_in(RunState::done)) ++done[result.cell_of(run)];

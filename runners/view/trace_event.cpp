@@ -75,7 +75,8 @@ std::string from_goal(double distance_m, double angle_rad) {
   return text;
 }
 
-// As `run` prints them. Of several steps that end in a tick the first may have come to its deadline.
+// Adds the events of the task's steps, with the words of `run`. If several steps end in one tick, only the
+// first can have missed its deadline.
 void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& steps,
                      std::vector<TraceEvent>& events) {
   const auto step = values_or_none<std::int32_t>(trace, "sequence_step");

@@ -1,4 +1,4 @@
-// What happened in a run that is worth looking at.
+// Events of a run that are worth looking at.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace remote_touch {
 struct TraceEvent {
   std::size_t tick;
   const char* kind;  // "pop-through", "force jump", "not converged", "task" or "divergence"
-  std::string text;  // for people
+  std::string text;  // sentence for the reader
 };
 
-// In the order of their ticks:
+// Returns the events in the order of their ticks:
 //   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
 //   force jump     the largest change of the force from one tick to the next
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,

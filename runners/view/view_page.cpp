@@ -15,15 +15,16 @@ constexpr const char* kPageSchema = "remote-touch-view/1";
 constexpr std::size_t kMaxPointsOfFrame = 30000;
 constexpr int kTrials = 8;
 
-// Six bytes of a position and three of a colour, of which compression leaves about two thirds.
+// Returns the number of points of a frame that fits at a first estimate. A point has six bytes of position
+// and three of colour, of which compression leaves about two thirds.
 std::size_t points_of_frame(const std::vector<std::unique_ptr<ShownRun>>& runs, std::size_t max_bytes) {
   std::size_t frames = 0;
   for (const auto& run : runs) frames += run->frame_count();
   return std::min(kMaxPointsOfFrame, max_bytes / (8 * frames) + 1);
 }
 
-// How many points of a frame may fit, after so many made a page too large. Points that touch are in every
-// page, so the size shrinks less than in proportion.
+// Returns the number of points of a frame that may fit, after `points` made a page too large. Points that
+// touch are in every page, so the size shrinks less than in proportion.
 std::size_t fewer_points(std::size_t points, std::size_t bytes, std::size_t max_bytes) {
   const std::size_t fixed = std::min(max_bytes, viewer_script().size());
   const double part = static_cast<double>(max_bytes - fixed) / static_cast<double>(bytes - fixed);
@@ -53,7 +54,7 @@ ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<S
     std::string html = page_file(title, whole.dump(), all.bytes());
     size = html.size();
     if (size <= options.max_bytes) return {std::move(html), joined(runs)};
-    // Where the first guess was wrong, most of the page is not points: it takes far fewer.
+    // If the first estimate was wrong, most of the page is not points, so far fewer of them fit.
     points = std::min(fewer_points(points, size, options.max_bytes), trial > 0 ? points / 3 : points);
   }
   throw InputError(runs.front()->source().name, "has a page of " + std::to_string(size) +

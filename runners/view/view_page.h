@@ -13,7 +13,7 @@
 namespace remote_touch {
 
 struct ViewOptions {
-  std::size_t max_bytes = 20'000'000;       // of the page; points are left out until it is so small
+  std::size_t max_bytes = 20'000'000;       // size of the page; points are left out until it fits
   std::filesystem::path claims = {};        // a claims.json, for shown_claims(); empty: none
   const Kernels* kernels = nullptr;         // pre: set
   const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted
@@ -21,12 +21,12 @@ struct ViewOptions {
 
 struct ViewPage {
   std::string html;
-  std::string shown;  // what of the points is shown, a line for each run
+  std::string shown;  // number of shown points in words, a line for each run
 };
 
-// Shows the runs, with more of page's own. numbers: arrays that page names already. Throws InputError, about
-// the first run, when the page would be too large without any points, and in a program that was built without
-// the viewer (see viewer_script()).
+// Shows the runs and the entries of `page`. numbers: arrays that `page` already names. Throws InputError,
+// about the first run, if the page would be too large without any points, and in a program that was built
+// without the viewer (see viewer_script()).
 ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
                    const Json& page, const PackedArrays& numbers, const ViewOptions& options);
 

@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// Of a beat: a ventricle contracts, stays so for a moment, relaxes and rests.
+// Ends of the phases of a ventricle, as fractions of a beat: it contracts, stays contracted, relaxes, and
+// rests until the beat ends. The atrium is ahead of the ventricles by kAtriumLeads.
 constexpr double kContracted = 0.3, kRelaxes = 0.35, kRelaxed = 0.75;
 constexpr double kAtriumLeads = 0.18;
 
@@ -18,7 +19,7 @@ constexpr double kTopSemiAxis_m = 0.032;
 constexpr std::uint32_t kLeftVentricle = 0xB23A30, kRightVentricle = 0xC4553C, kAtrium = 0x9A2F2A;
 constexpr std::uint32_t kTable = 0x3A6E78;
 
-// From 0 to 1 with neither speed nor acceleration at its ends.
+// Rises from 0 to 1 with zero velocity and zero acceleration at both ends.
 double smooth_step(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * (10 - u * (15 - 6 * u));

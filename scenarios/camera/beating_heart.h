@@ -36,12 +36,12 @@ class BeatingHeart final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // At exactly that time, between frames too. Exact outside organ and table; inside both or two lobes the
-  // depth returned is a lower bound.
+  // Distance at exactly that time, also between frames. It is exact outside organ and table. Inside both, or
+  // inside two lobes, the depth returned is a lower bound.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 
-  // How far a ventricle has contracted, from 0 (at rest, full) to 1. beats: time since the start of a
+  // Contraction of a ventricle: 0 at rest (full), 1 when fully contracted. beats: time since the start of a
   // contraction, in beats.
   static double contraction(double beats);
 

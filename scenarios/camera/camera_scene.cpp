@@ -32,7 +32,7 @@ double CameraScene::surface_height(double x, double z, double) const {
   return height;
 }
 
-// Of the union of the table's half-space and the solids: exact outside.
+// Distance to the union of the table's half-space and the solids; exact outside.
 double CameraScene::signed_distance(const Vec3& p_W, double) const {
   double distance = p_W.y();
   for (const Extrusion& solid : solids_) distance = std::min(distance, solid.signed_distance(p_W));

@@ -29,7 +29,7 @@ class CameraScene final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 
-  // What an ideal camera would measure; NaN beyond 3 m.
+  // Depths that an ideal camera would measure; NaN beyond 3 m.
   const DepthImage& true_depth() const { return view_.depth; }
 
  private:

@@ -70,7 +70,7 @@ IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
 #pragma omp parallel for schedule(static)
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      // With the ray's camera z equal to 1, t is the depth along the axis.
+      // The ray has z = 1 in the camera's frame, so t is the depth along the optical axis.
       const Vec3 ray = X_WC_.linear() * unproject(intrinsics_, u, v, 1);
       const RayHit hit = cast(origin, ray);
       const std::size_t i = static_cast<std::size_t>(v) * width + u;
@@ -98,7 +98,7 @@ std::vector<char> DepthCamera::holes(const DepthImage& ideal) const {
   for (int v = 0; v < h; ++v) {
     for (int u = 0; u < w; ++u) {
       const std::size_t i = static_cast<std::size_t>(v) * w + u;
-      // As many pixels on either side of the edge.
+      // The hole reaches `reach` pixels to either side of the edge.
       if (u + 1 < w && jumps(i, i + 1)) mark(u + 1 - reach, u + reach, v - reach, v + reach);
       if (v + 1 < h && jumps(i, i + w)) mark(u - reach, u + reach, v + 1 - reach, v + reach);
     }
@@ -116,7 +116,7 @@ PointCloud DepthCamera::measured(const IdealView& view, int frame) const {
   return cloud;
 }
 
-// Takes ideal depths and leaves measured ones.
+// Replaces the ideal depths of a row by measured ones: noisy, quantised, and NaN at holes.
 void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, int row,
                               DepthImage& depth) const {
   const auto width = static_cast<std::size_t>(intrinsics_.width);
@@ -132,7 +132,7 @@ void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, 
     z += settings_.noise_per_m * z * z * normal[u] * factor;
     // The sensor counts whole disparities, proportional to 1/z.
     if (steps > 0) z = steps / std::floor(steps / z + 0.5);
-    // Nothing is measured at a hole, nor behind the camera, where strong noise can throw a depth.
+    // A hole has no depth. Strong noise can move a depth behind the camera; it is lost too.
     if (view.hole[first + u] || !(z > 0)) z = std::numeric_limits<double>::quiet_NaN();
   }
 }

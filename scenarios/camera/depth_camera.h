@@ -37,7 +37,7 @@ std::string validate(const DepthCameraSettings& s);
 // then the world's +x, so that seen from above the image's up is -z. pre: from and to differ.
 RigidTransform look_at(const Vec3& from, const Vec3& to);
 
-// What a ray meets first: the position origin + t ray.
+// First hit of a ray: the position origin + t ray, and its colour.
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t colour = 0;  // 0xRRGGBB; black where nothing is met

@@ -26,7 +26,8 @@ struct ClosestPoint {
 
 // pre: excess(low) > 0 and low > 0.
 double ClosestPoint::root(double low) const {
-  // Where each term alone is 1 the sum is too large; without gaps it is too small.
+  // Lower bound: where one term alone is 1, the sum is at least 1. Upper bound: at tau = |scaled| the sum
+  // would be 1 without gaps, so that it is at most 1.
   low = std::max({low, scaled.x() - gap.x(), scaled.y() - gap.y(), scaled.z() - gap.z()});
   double high = std::max(low, scaled.norm());
   // Halves the ratio's logarithm: 12 times take the range of all doubles to a factor of 2.
@@ -61,8 +62,9 @@ Vec3 Ellipsoid::closest(const Vec3& p) const {
   problem.scaled = semi_axes_.cwiseProduct(q.cwiseAbs());
   for (int i = 0; i < 3; ++i) problem.gap[i] = (semi_axes_[i] - shortest) * (semi_axes_[i] + shortest);
 
-  // Near the plane across the shortest axis, and deep enough inside, the root goes to 0: there the surface
-  // over and the surface under the plane are equally close, and what the others leave is the shortest's.
+  // Near the plane across the shortest axis, and deep enough inside, the root goes to 0. There the surface
+  // above and the surface below that plane are equally close, and the coordinate along the shortest axis
+  // follows from the other two.
   const double min = 1e-20 * shortest * shortest;
   Vec3 unit;
   if (problem.excess(min) > 0) {
@@ -82,10 +84,10 @@ double Ellipsoid::signed_distance(const Vec3& p) const {
   return level(p) < 1 ? -distance : distance;
 }
 
-// In coordinates that make the ellipsoid the unit ball. Taken from the line's middle, the half is as exact
-// for a far origin as for a near one.
+// Computed in coordinates that make the ellipsoid the unit ball. half is computed from the line's middle, so
+// that it is as exact for a far origin as for a near one.
 Ellipsoid::Chord Ellipsoid::chord(const Vec3& origin, const Vec3& direction) const {
-  // Most rays of a camera miss even the ball around the solid, which is told without a turn or a division.
+  // Most rays of a camera miss even the ball around the solid. This test needs no rotation and no division.
   const Vec3 displacement = centre_ - origin;
   const double radius = 1.001 * semi_axes_.maxCoeff(), along = displacement.dot(direction);
   if ((displacement.squaredNorm() - radius * radius) * direction.squaredNorm() > along * along)

@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-// Its axis is along z and the wheel lies in the plane z = centre.z; its stem ends at the wall z = 0. One
+// The axis is along z and the wheel lies in the plane z = centre.z; the stem ends at the wall z = 0. One
 // spoke points up, +y. Metres.
 class Handwheel {
  public:

@@ -98,7 +98,8 @@ RayHit ValveTank::shaded(const Vec3& origin_W, const Vec3& ray_W) const {
   return {t, dimmed(paint_[i], kAmbient + (1 - kAmbient) * cosine)};
 }
 
-// What of the ideal view through the water is the same in every frame.
+// Computes all that the water changes in the ideal view and that is the same in every frame: for each pixel
+// its colour, the probability that its depth is lost, and the factor on its depth noise.
 void ValveTank::fill_with_water() {
   const CameraIntrinsics& camera = camera_.intrinsics();
   const Water water(settings_.turbidity_per_m);
@@ -124,7 +125,8 @@ PointCloud ValveTank::cloud(int frame) const {
   return cloud;
 }
 
-// Takes depths with their noise; leaves the colours that are seen, and fewer depths.
+// Expects depths with noise. Replaces the colours of a row by those seen through the water, with noise, and
+// sets lost depths to NaN.
 void ValveTank::see_row(int frame, int row, PointCloud& cloud) const {
   const auto width = static_cast<std::size_t>(camera_.intrinsics().width);
   const std::size_t first = width * static_cast<std::size_t>(row);

@@ -21,7 +21,8 @@ enum class Valve : std::uint8_t { none, left, right };
 // World frame: the robot's base frame, y up; the tank's wall is the plane z = 0 and the valves are in front
 // of it. X_WC, in the image layout of every cloud, is the registration of the camera. Nothing moves; the
 // noise of colour and depth and the pixels without depth change with each frame, as pure functions of the
-// noise key and the frame's number. Lit from the camera by Lambert's law, with some ambient light.
+// noise key and the frame's number. The scene is lit from the camera by Lambert's law, with some ambient
+// light.
 class ValveTank final : public Scenario {
  public:
   struct Settings {
@@ -44,7 +45,7 @@ class ValveTank final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // To the union of wall and valves: exact outside.
+  // Distance to the union of wall and valves; exact outside.
   double signed_distance(const Vec3& p_W, double time_s) const override;
 
   // The same for one valve alone, without the wall: the clearance of a tool. pre: valve is not none.
@@ -66,10 +67,10 @@ class ValveTank final : public Scenario {
   const NoiseKey key_;
   const Kernels& kernels_;
   std::array<Handwheel, 2> wheels_;
-  std::array<std::uint32_t, 3> paint_;  // by Valve; none is the wall
+  std::array<std::uint32_t, 3> paint_;  // indexed by Valve; none is the wall
   DepthCamera camera_;
   IdealView view_;
-  // Of each pixel, through the water and without noise: its colour, and the probability that it has no depth.
+  // Colour of each pixel, and probability that it has no depth; both through the water and without noise.
   std::vector<std::array<double, 3>> colour_;
   std::vector<double> lost_;
 };

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kNoLightLeft = 64;  // exp(-64) = 1.6e-28
 constexpr int kSquarings = 10;
-constexpr double kDepthLoss = 0.25;  // of beta
-constexpr double kFar_m = 1e6;       // stands for infinitely far, for 0 times infinity is no number
+constexpr double kDepthLoss = 0.25;  // factor on beta
+constexpr double kFar_m = 1e6;       // replaces infinity, because 0 times infinity is NaN
 
 }  // namespace
 

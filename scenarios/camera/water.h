@@ -1,5 +1,5 @@
-// What turbid water does to what a colour and depth camera sees: colours fade into a veil of scattered light,
-// depth gets noisier and is lost. A model of the trend with three rates, not of one particular water.
+// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, depth gets
+// noisier and is lost. Three rates describe the trend, not one particular water.
 #pragma once
 
 #include <array>
@@ -18,10 +18,11 @@ class Water {
   // Attenuation beta per metre, 0 for clear water. Red is lost fastest, blue slowest.
   explicit Water(double turbidity_per_m) : turbidity_per_m_(turbidity_per_m) {}
 
-  static constexpr double kAttenuation[3] = {1.3, 0.95, 0.8};  // of red, green and blue, times beta
+  static constexpr double kAttenuation[3] = {1.3, 0.95, 0.8};  // factors on beta for red, green and blue
   static constexpr double kVeil[3] = {13, 31, 28};             // a dark bluish green; 0 to 255
 
-  // For each channel c of a colour 0xRRGGBB, 0 to 255: c exp(-beta_c d) + veil_c (1 - exp(-beta_c d)).
+  // Colour through the water, as channels from 0 to 255. A channel c of rgb, 0xRRGGBB, becomes
+  // c exp(-beta_c d) + veil_c (1 - exp(-beta_c d)).
   std::array<double, 3> seen(std::uint32_t rgb, double distance_m) const;
 
   // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), with dropout the probability

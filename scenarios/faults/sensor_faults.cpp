@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of the random numbers of a point and of a frame.
+// Indices into the random numbers of a point and of a frame.
 enum PointDraw { drops = 0, is_outlier = 1, flies = 2, how_far = 3 };
 enum FrameDraw { repeats = 0, is_late = 1 };
 
@@ -32,8 +32,8 @@ void move(PointCloud& cloud, std::size_t i, const Vec3& to) {
   cloud.x[i] = to.x(), cloud.y[i] = to.y(), cloud.z[i] = to.z();
 }
 
-// When the row of a point is read, as a share of the time for all: from the first row of the image to the
-// last, or from the smallest z to the largest.
+// Returns for each point when its row is read, as a fraction of the readout time: 0 for the first row of the
+// image (or the smallest z), 1 for the last row (or the largest z).
 std::vector<double> readout(const PointCloud& cloud) {
   std::vector<double> fraction(cloud.size(), 1);
   if (cloud.image) {
@@ -176,8 +176,8 @@ void FaultySensor::shear(PointCloud& cloud, double captured_s) const {
   }
 }
 
-// The way from the surface, of unit length: the gradient of the distance. At edges and borders, where slopes
-// to both sides differ, the smaller counts, or none where they are opposite.
+// Unit vector away from the surface: the normalised gradient of the distance. At edges and borders the slopes
+// to both sides differ: the smaller one counts, or none if they have opposite signs.
 Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
   constexpr double kStep_m = 1e-6;
   const double here = scenario_->signed_distance(p_W, time_s);
@@ -191,8 +191,9 @@ Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
   return gradient.normalized();  // 0 stays 0
 }
 
-// The place of the surface then that is the point's now: along the normal, by as much as the distance has
-// changed since. A pixel sees where its ray met the surface; NaN where that was too flat to tell.
+// Returns the position at then_s of the surface point that is at p_W at now_s: it is displaced along the
+// normal by the change of the distance. A pixel (ray is not null) sees the position where its ray met the
+// surface; NaN if the angle between ray and surface is too small to compute that.
 Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
   constexpr double kMinSlope = 0.1;
   const double change = scenario_->signed_distance(p_W, then_s) - scenario_->signed_distance(p_W, now_s);
@@ -204,7 +205,7 @@ Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const
   return p_W - change / slope * *ray;
 }
 
-// What would lie behind the camera is lost.
+// Adds noise along the rays. A point of an image is lost if it would lie behind the camera.
 void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const {
   const RayNoise& s = settings_.ray_noise;
   const std::vector<double> noise = standard_noise(s, places, key_, frame, kernels_);
@@ -221,7 +222,8 @@ void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, in
   }
 }
 
-// Flying points, outliers and steps. What would lie behind the camera is lost.
+// Displaces flying points and outliers, and quantises. A point of an image is lost if it would lie behind the
+// camera.
 void FaultySensor::displace(PointCloud& cloud, int frame) const {
   const SensorFaults& s = settings_;
   const NoiseStream stream = of_points(key_, frame);
@@ -243,8 +245,8 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
   }
 }
 
-// Where points lie for the sensor, as x and z: across the view in metres, or in the image at depth 1. And how
-// large a hole around each is there.
+// Returns the position of each point as the sensor sees it, in x and z: across the view in metres, or, in an
+// image, at depth 1. Also returns the radius of a hole around each point, in the same unit.
 FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cloud) const {
   const Vec3 view_direction = settings_.view_direction.normalized(), across = view_direction.unitOrthogonal(),
              other = view_direction.cross(across);
@@ -263,7 +265,8 @@ FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cl
   return seen;
 }
 
-// Around points drawn one after the other, also around those that are lost already, until the share is gone.
+// Cuts holes around points that are drawn one after the other, until hole_fraction of the points is lost. A
+// point that is already lost can be drawn too.
 void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const {
   if (seen.measured.empty()) return;
   const double count = static_cast<double>(seen.measured.size());

@@ -13,15 +13,15 @@
 
 namespace remote_touch {
 
-// Applied in this order; a point can get several faults, but an outlier is not also a flying point. Depth is
-// measured along view_direction for all points; in a cloud with an image layout along each point's own ray,
-// as its distance from the camera.
+// Faults are applied in this order. A point can get several faults, but an outlier is not also a flying
+// point. Depth is measured along view_direction for all points; in a cloud with an image layout it is
+// measured along each point's own ray, as the distance from the camera.
 struct SensorFaults {
   Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
-  double repeat_probability = 0;  // frames that show the one before them
+  double repeat_probability = 0;  // probability that a frame shows the one before it
   double rolling_shutter_s = 0;   // time in which the rows of a frame are read
   RayNoise ray_noise;
-  double sensor_distance_m = 1;  // from the origin, against the viewing direction; not used for images
+  double sensor_distance_m = 1;  // distance from the origin, against the viewing direction; not for images
   double flying_probability = 0, max_flying_distance_m = 0.02;
   double outlier_probability = 0, max_outlier_distance_m = 0.05;
   double quantisation_m = 0;
@@ -32,7 +32,7 @@ struct SensorFaults {
 
 Parameters parameters(SensorFaults& s);
 std::string validate(const SensorFaults& s);
-// Some of these faults depend on view_direction where points are no image.
+// True if one of these faults depends on view_direction in a cloud without an image layout.
 bool use_view_direction(const SensorFaults& s);
 
 // Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every

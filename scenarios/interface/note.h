@@ -14,7 +14,7 @@ struct Note {
 
 // A part of the scripted motion of a scene or of a hand.
 struct Phase {
-  std::string name;  // with its article: "the acceleration"
+  std::string name;  // name with its article: "the acceleration"
   double begins_s = 0;
   double ends_s = std::numeric_limits<double>::infinity();
 };

@@ -31,7 +31,8 @@ class Scenario {
   // Frames 0 .. frame_count() - 1 exist; a scene that never changes has one, which is then repeated.
   virtual int frame_count() const = 0;
   virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
-  // No frame follows the last one: a recorded live session. Otherwise the camera goes on with the last frame.
+  // True if no frame follows the last one, as in a recorded live session. Otherwise the camera repeats the
+  // last frame.
   virtual bool ends() const { return false; }
   // The scene as scripted hands use it, without the faults of a sensor.
   virtual const Scenario& without_faults() const { return *this; }
@@ -44,16 +45,17 @@ class Scenario {
   // The pose of the sensor in the world frame, for a recording. The sensor looks along its z axis.
   virtual std::optional<RigidTransform> sensor_pose() const { return {}; }
 
-  // When the frame leaves the sensor, if that is not when it was captured: it was late, or a recorded live
-  // session stores when the renderer got it (infinite if it never did).
+  // Time at which the frame leaves the sensor, if that is not when it was captured: the frame was late, or it
+  // belongs to a recorded live session, which stores when the renderer got it (infinite if it never did).
   virtual std::optional<double> arrives_s(int /*frame*/) const { return {}; }
-  // Of a recorded live session: the fixtures that were off when the frame was processed, one bit each.
+  // Fixtures that were off when the frame was processed, one bit each; only in a recorded live session.
   virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
 
   // The newest frame captured by then, with a tolerance of kSameTime_s for rounded times.
   int newest_frame(double time_s) const;
 
-  // What a renderer touches. The noise of a point may be computed late, when a search gathers the point.
+  // Points of a frame, as a renderer touches them. The noise of a point may be computed late, when a search
+  // gathers the point.
   virtual std::shared_ptr<const NeighbourSearch> points(int frame) const = 0;
   // The same frame with every point computed: for drawing, for planning a path and as the oracle of points().
   virtual PointCloud cloud(int frame) const = 0;
@@ -74,8 +76,8 @@ class Scenario {
   // the true normal of every contact, also of a tool, which touches with an area. Returns nothing for other
   // surfaces.
   virtual std::optional<Vec3> plane_normal(double /*time_s*/) const { return {}; }
-  // When the surface was where signed_distance() measures from: at that time, or, where the truth is what the
-  // camera has seen, at the last capture.
+  // Time at which the surface was where signed_distance() measures from: time_s, or, if the truth is what the
+  // camera has seen, the last capture.
   virtual double truth_time_s(double time_s) const { return time_s; }
   // Height (y) of the surface over (x, z) as it moves; NaN where the scene is not a height field.
   virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {

@@ -1,18 +1,19 @@
-// What of a bag of ROS makes the frames of a recording.
+// Settings that choose the frames of a recording from a bag of ROS.
 #pragma once
 
 #include <string>
 
 namespace remote_touch {
 
-// What of a bag is used. Names are those of topics, empty: chosen.
+// The part of a bag that is used. Names are names of topics; an empty name: the program chooses the topic.
 struct BagChoice {
   enum class Images { by_name, measured, rectified };
-  std::string topic;                // clouds or depth images; chosen when one topic only has them
-  std::string camera_info;          // the camera of depth images; chosen by the name of their topic
+  std::string topic;                // topic of clouds or depth images; empty: the only one that has them
+  std::string camera_info;          // topic of their camera; empty: found by the name of the images' topic
   Images images = Images::by_name;  // by_name: rectified if the last part of the topic's name has "rect"
-  std::string frame_id;             // a coordinate frame of tf_static; empty: that of the messages
-  // Metres in a unit of depth images; 0: 0.001 of integers, or what a RealSense recorded, and 1 of floats.
+  std::string frame_id;             // coordinate frame of tf_static; empty: that of the messages
+  // Size of one unit of depth images. 0: 0.001 m for integers, or what a RealSense recorded, and 1 m for
+  // floats.
   double depth_unit_m = 0;
 };
 

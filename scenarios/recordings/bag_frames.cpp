@@ -75,7 +75,7 @@ std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) con
   return path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(same - places.begin());
 }
 
-// What the camera claims is compared with an image before a table of that size is made.
+// Compares the image size that the CameraInfo states with an image before it makes a table of that size.
 void BagFrames::choose_camera(const BagChoice& choice) {
   const std::size_t camera = topic_of_camera(path_, *bag_, topic_, choice.camera_info);
   const MessagePlace& first = bag_->places(camera).front();
@@ -91,7 +91,7 @@ void BagFrames::choose_camera(const BagChoice& choice) {
   note_changes(camera, [&](const MessageCursor& from) { return same_camera(read_camera_info(from), info); });
 }
 
-// A later message that cannot be read differs, too.
+// A later message that cannot be read counts as different.
 template <class IsSame>
 void BagFrames::note_changes(std::size_t topic, IsSame&& is_same) {
   const std::vector<MessagePlace>& places = bag_->places(topic);
@@ -125,7 +125,7 @@ void BagFrames::choose_unit(double chosen_m) {
   note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
 }
 
-// The places keep their messages' stamps for as long as they are sorted.
+// Sorts the frames by their messages' stamps, which are in memory only while they are sorted.
 void BagFrames::order_frames() {
   frames_ = bag_->places(topic_);
   bool all_stamped = true;

@@ -32,9 +32,9 @@ class BagFrames {
   BagFrames(const std::filesystem::path& path, const BagChoice& choice);
 
   const std::vector<double>& captured_s() const { return captured_s_; }
-  // Of depth images; all 0 for clouds.
+  // Camera of the depth images; all 0 for clouds.
   CameraIntrinsics camera() const { return rays_ ? rays_->camera() : CameraIntrinsics{}; }
-  // Of the messages' coordinate frame in the chosen one.
+  // Pose of the messages' coordinate frame in the chosen one.
   const RigidTransform& pose() const { return X_chosen_; }
   std::string kind() const { return topic().type + " " + topic().name; }
   // Empty, or what was wrong with the bag and what was done about it, in one line.
@@ -46,8 +46,9 @@ class BagFrames {
   // The path, the topic and the message of a frame, for a message about it.
   std::string name_of(std::size_t frame) const { return subject(topic_, frames_[frame]); }
 
-  // In the frame of the messages. Pixels of an image whose depth z is above max_depth_m are NaN; the limit
-  // does not apply to clouds that are no image. Throws InputError about the message when it cannot be used.
+  // Returns a frame in the coordinate frame of the messages. Pixels of an image whose depth z is above
+  // max_depth_m are NaN; the limit does not apply to clouds that are no image. Throws InputError about the
+  // message if it cannot be used.
   PointCloud cloud(std::size_t frame, double max_depth_m) const;
 
  private:
@@ -68,9 +69,9 @@ class BagFrames {
   std::size_t topic_ = 0;
   std::vector<MessagePlace> frames_;
   std::vector<double> captured_s_;
-  std::optional<ImageRays> rays_;  // of depth images
+  std::optional<ImageRays> rays_;  // only for depth images
   DepthUnits units_;
-  std::string frame_id_;  // of the first frame, and so of all
+  std::string frame_id_;  // coordinate frame of the first frame, and so of all
   RigidTransform X_chosen_ = RigidTransform::Identity();
   std::string remark_, camera_change_;
 };

@@ -1,4 +1,4 @@
-// Which topics of a bag tell of a depth camera, and which of them belong together.
+// Finds the topics of a bag that come from a depth camera, and which of them belong together.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,14 @@ inline constexpr const char* kCameraType = "sensor_msgs/CameraInfo";
 
 bool is_readable(const BagTopic& topic);  // plain CDR, or ROS 1
 WireFormat wire_format(const BagTopic& topic);
-// Of these and nothing else messages are read: frames, cameras, fixed transforms, units of depth.
+// True for the topics whose messages are read: frames, cameras, fixed transforms, units of depth. Messages of
+// other topics are not read.
 bool tells_of_depth_camera(const BagTopic& topic);
 bool is_tf_static(const BagTopic& topic);
 
-// The topic of that name, which has frames; if none is named, the only one that has. Throws InputError about
-// the path, with a list of what there is, type, encoding and number of messages, when that is not one topic.
+// Returns the topic of that name, or, if the name is empty, the only topic that has frames. Throws InputError
+// about the path, with a list of the topics (type, encoding, number of messages), if there is not exactly
+// one.
 std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const std::string& name);
 
 // The topic of the CameraInfo that belongs to a topic of depth images: that of the name; or the one beside
@@ -34,7 +36,7 @@ std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::si
 // The option Depth Units of the RealSense sensor that recorded these images, or none: topics().size().
 std::size_t topic_of_unit(const BagFile& bag, std::size_t images);
 
-// Whether the images of a topic with that name are rectified, by the custom of ROS: image_rect.
+// True if images of a topic with that name are rectified, by the custom of ROS: image_rect.
 bool is_rectified_by_name(const std::string& topic);
 
 }  // namespace remote_touch

@@ -10,8 +10,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kMaxOwnResidual_px = 0.5;  // as fit_pinhole()
-constexpr double kRounding_px = 1e-6;       // as ImageLayout::pixel_slack of a fit
+constexpr double kMaxOwnResidual_px = 0.5;  // limit of fit_pinhole()
+constexpr double kRounding_px = 1e-6;       // rounding that a fit adds to its ImageLayout::pixel_slack
 
 int rows_of(const PointCloud& cloud) {
   return cloud.columns() == 0 ? 0 : static_cast<int>(cloud.size()) / cloud.columns();
@@ -25,7 +25,7 @@ bool same_intrinsics(const CameraIntrinsics& a, const CameraIntrinsics& b) {
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
 }
 
-// How far the worst point is off its pixel; infinite if one is not in front of the camera.
+// Returns the largest distance of a point from its pixel; infinite if a point is not in front of the camera.
 double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
   double worst = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -1,5 +1,5 @@
-// What the frames of a recording have in common: all are images of one camera, or all are organised clouds
-// without a camera, or all are clouds in no order.
+// Layout that all frames of a recording share: images of one camera, or organised clouds without a camera, or
+// clouds in no order.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace remote_touch {
 
 struct FrameLayout {
   bool is_organised = false;
-  // Of organised clouds, if a pinhole explains their first frame.
+  // Camera of images; camera of organised clouds, if a pinhole explains their first frame.
   std::optional<CameraIntrinsics> camera;
 };
 

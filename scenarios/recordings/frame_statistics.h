@@ -38,13 +38,13 @@ class FrameStatistics {
 
   std::vector<bool> is_read_;
   std::size_t frames_ = 0, points_ = 0, measured_ = 0, beyond_limit_ = 0, colourless_ = 0;
-  // The box of all measured points; of images its z is the depth.
+  // Bounding box of all measured points. In images its z is the depth.
   Vec3 lowest_m_ = Vec3::Constant(std::numeric_limits<double>::infinity()), highest_m_ = -lowest_m_;
   bool are_images_ = false;
   // Frames with measured points: those with colours, those without, and the first of the latter.
   std::size_t coloured_frames_ = 0, colourless_frames_ = 0, first_colourless_ = 0;
   std::size_t last_ = 0;              // the frame that was read last, if there is one
-  std::vector<std::uint64_t> cells_;  // that its points occupy, sorted
+  std::vector<std::uint64_t> cells_;  // cells that its points occupy, sorted
   // Pairs of successive frames without overlap: how many, the later frame of the first, and their overlap.
   std::size_t apart_ = 0, first_apart_ = 0;
   double least_overlap_ = 1;

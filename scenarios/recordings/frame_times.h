@@ -1,4 +1,4 @@
-// When the frames of a recording are shown, and at which rate.
+// Times at which the frames of a recording are shown, and their rate.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class FrameTimes {
 
   // The rate at which the frames are played; the mean rate of the part where that is uneven.
   double rate_hz() const { return rate_hz_; }
-  // How many frames the part has.
+  // Number of frames in the part.
   int count() const { return count_; }
   // The number, in the recording, of the part's first frame.
   int first() const { return first_; }
@@ -42,7 +42,7 @@ class FrameTimes {
   double usual_rate_hz() const;
 
  private:
-  int place(int frame) const;  // in the part
+  int place(int frame) const;  // index in the part
 
   Playback playback_;
   bool is_stamped_;

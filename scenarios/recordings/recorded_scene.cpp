@@ -65,7 +65,8 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
 
 namespace {
 
-// What tf_static says comes first; it is the identity, bit for bit, where nothing is asked of it.
+// Pose of the camera in the base frame: the transform of tf_static is applied first, then the registration.
+// If no frame_id is chosen, the former is the identity, and the registration stays as it is, bit for bit.
 RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
   const RigidTransform X_registered =
       Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
@@ -93,13 +94,13 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
             std::to_string(Settings{}.max_depth_m) + ", the default, which does not apply to them");
 }
 
-// What shows nothing from the beginning on is a mistake: another unit, another limit, a file of nothing, a
-// camera whose centre is far from its image.
+// Throws InputError if the first frame has no usable point. The cause is a mistake: another unit, another
+// limit, an empty file, or a camera whose centre is far from its image.
 void RecordedScene::require_points() const {
   constexpr double kReach_m = 1e4;  // a hundred times the greatest depth
   const PointCloud first = cloud(0);
   for (std::size_t i = 0; i < first.size(); ++i)
-    if (first.point(i).norm() <= kReach_m) return;  // not where it is not finite
+    if (first.point(i).norm() <= kReach_m) return;  // false if not finite
   const std::string limit = std::to_string(layout_->camera ? settings_.max_depth_m : kReach_m);
   throw InputError(settings_.path, "its first frame has no point within " +
                                        (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m") +
@@ -210,7 +211,7 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
   return measured(frame);
 }
 
-// A search by a grid has the points in another order than the file, which is then read for itself.
+// A grid search stores the points in another order than the file, so that the file is read again.
 PointCloud RecordedScene::cloud(int frame) const {
   if (recording_.camera.width > 0) {
     const auto points = measured(frame);

@@ -30,7 +30,7 @@ class RecordedScene final : public Scenario {
     double truth_radius_m = 0.006;
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
-    BagChoice bag;  // where the path is a bag of ROS
+    BagChoice bag;  // used if the path is a bag of ROS
   };
 
   // Throws InputError when the recording cannot be read, and when a later frame is not of the layout of the
@@ -50,8 +50,8 @@ class RecordedScene final : public Scenario {
   // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
   // pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // NaN, because the measured surface is no independent truth: a normal would be judged by the error of the
-  // measurement.
+  // Returns NaN, because the measured surface is no independent truth: a normal would be judged by the error
+  // of the measurement.
   Vec3 true_normal(const Vec3& p_W, double time_s) const override;
 
  private:
@@ -73,12 +73,12 @@ class RecordedScene final : public Scenario {
   };
   mutable std::vector<CachedFrame> cache_;
   mutable FrameStatistics statistics_;
-  mutable std::size_t unused_viewpoints_ = 0;  // files of those that were read
-  mutable std::optional<FrameLayout> layout_;  // that of frame 0, which the constructor reads
+  mutable std::size_t unused_viewpoints_ = 0;  // number of files read whose VIEWPOINT is not used
+  mutable std::optional<FrameLayout> layout_;  // layout of frame 0, which the constructor reads
 };
 
 Parameters parameters(RecordedScene::Settings& s);
 std::string validate(const RecordedScene::Settings& s);
-RecordingPart input_files(const RecordedScene::Settings& s);  // what the scene reads
+RecordingPart input_files(const RecordedScene::Settings& s);  // part of the recording that the scene reads
 
 }  // namespace remote_touch

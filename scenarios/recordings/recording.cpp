@@ -27,10 +27,10 @@ namespace fs = std::filesystem;
   throw InputError(file.string(), problem);
 }
 
-constexpr double kNominalRate_hz = 30;  // of the Kinect class; used where a recording does not tell
+constexpr double kNominalRate_hz = 30;  // rate of the Kinect class; used if a recording has none
 constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
 
-// What camera.json tells of a camera; the rate, which TUM folders do not need, is read apart.
+// Content of camera.json about the camera. The rate, which TUM folders do not need, is read separately.
 struct CameraFile {
   CameraIntrinsics camera;
   double metres_per_unit = 0;
@@ -104,7 +104,7 @@ double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) 
   return rate_hz;
 }
 
-// camera.json is optional here, and a rate in it is not used: the stamps tell the rate.
+// camera.json is optional here, and a rate in it is not used: the rate follows from the stamps.
 RecordingIndex index_tum(const fs::path& folder) {
   const std::vector<StampedFile> depth = read_stamped_list(folder / "depth.txt");
   std::vector<StampedFile> colour;
@@ -167,7 +167,7 @@ RecordingIndex index_of_clouds(RecordingIndex::Kind kind) {
   return index;
 }
 
-// Of camera.json only the rate serves: every PCD file tells its own intrinsics.
+// Uses only the rate of camera.json: the intrinsics follow from the points of each PCD file.
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
   RecordingIndex index = index_of_clouds(RecordingIndex::Kind::pcd);
   if (fs::exists(camera_file)) {

@@ -23,7 +23,7 @@ struct RecordedFrame {
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
-// Where the camera of a frame stood.
+// Pose of the camera of a frame.
 struct FrameCamera {
   // The camera in the coordinates of a PCD file: its VIEWPOINT where that is used, see read_pcd(); else the
   // identity.
@@ -36,16 +36,16 @@ struct RecordingIndex {
   Kind kind = Kind::depth_png;
   // pcd, and clouds of a bag: as fitted to the first frame; all 0 where that has no image layout.
   CameraIntrinsics camera;
-  double metres_per_unit = 0;  // of the depth PNG; others: 1
+  double metres_per_unit = 0;  // size of one unit of a depth PNG; 1 for other kinds
   double frame_rate_hz = 0;
   // True if captured_s are stamps, and frame_rate_hz is their mean rate; else frame j is captured at
   // j / frame_rate_hz.
   bool is_stamped = false;
-  std::vector<RecordedFrame> frames;  // at least one, captured_s strictly increasing
-  std::string name;                   // that of the folder or file, without the folders above it
+  std::vector<RecordedFrame> frames;  // one frame or more, captured_s strictly increasing
+  std::string name;                   // name of the folder or file, without the folders above it
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
-  std::shared_ptr<const BagFrames> bag;  // of kind bag
+  std::shared_ptr<const BagFrames> bag;  // set if kind is bag
 };
 
 // The layout of path is the first of these that fits:
@@ -75,7 +75,7 @@ RecordingIndex list_recording(const std::filesystem::path& path, const BagChoice
 // One line for the user: "office: 71 frame(s) from depth PNG at RATE, 640 x 480 pixels".
 std::string description(const RecordingIndex& index, const std::string& rate);
 
-// Where a frame is, for a message about it: its file, or its message in a bag.
+// Name of a frame for a message about it: its file, or its message in a bag.
 std::string frame_name(const RecordingIndex& index, std::size_t frame);
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.

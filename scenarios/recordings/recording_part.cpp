@@ -45,14 +45,14 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 namespace {
 
-// Images, the meshes of tools, and live sessions: nothing that a recording of frames is made from.
+// True for images, meshes of tools and live sessions. A recording of frames is not made from such files.
 bool is_single_file(const fs::path& file) {
   constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5"};
   return std::any_of(kEndings.begin(), kEndings.end(),
                      [&](const char* ending) { return has_ending(file, ending); });
 }
 
-// As a whole, whatever the topic and the frames.
+// Returns all files of a bag, whatever the topic and the frames.
 std::vector<InputFile> bag_files(const fs::path& bag) {
   std::vector<InputFile> list;
   for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});

@@ -1,5 +1,5 @@
-// Where a recording or an image is, and which of its files a run reads: what a result depends on in addition
-// to its configuration.
+// The location of a recording or an image, and the files of it that a run reads: a result depends on them in
+// addition to its configuration.
 #pragma once
 
 #include <compare>
@@ -12,8 +12,8 @@
 
 namespace remote_touch {
 
-// As named in settings. The file system is not searched, so that a sweep can list the parts of all its cells
-// at no cost.
+// Part of a recording, as named in settings. The file system is not searched, so that a sweep can list the
+// parts of all its cells at no cost.
 struct RecordingPart {
   std::string path;
   int first_frame = 0;
@@ -36,7 +36,7 @@ void set_data_folder(const std::string& folder);
 // neither place.
 std::string find_recording(const std::string& path);
 
-// Those places in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
+// The searched locations, in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
 std::string recording_places();
 
 // The frames of the part, first to last. Throws InputError when the recording has fewer.
@@ -51,8 +51,8 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 // InputError when the recording is not there, its lists or camera.json cannot be used, or it has fewer
 // frames; images and PCD files are not opened.
 struct InputFile {
-  std::string name;            // from the recording's folder, or from the one that holds a single PCD file
-  std::filesystem::path file;  // to be opened
+  std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
+  std::filesystem::path file;  // path with which the file is opened
 };
 std::vector<InputFile> files_of(const RecordingPart& part);
 

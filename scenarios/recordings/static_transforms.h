@@ -22,7 +22,8 @@ class StaticTransforms {
     std::string name;
     RigidTransform X;
   };
-  // From the frame to its first ancestor, which is named.
+  // Returns the transform from the frame to its root, the ancestor without a parent, and writes the root's
+  // name. Throws InputError about the subject if a frame is its own ancestor.
   RigidTransform to_root(std::string frame, std::string& root, const std::string& subject) const;
 
   std::map<std::string, Parent> parent_of_;

@@ -28,7 +28,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
   const std::string text = read_text_file(list, "expected lines 'timestamp filename'");
   std::istringstream stream{std::string(without_byte_order_mark(text))};
-  stream.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out; otherwise that would pass for the end
   std::vector<StampedFile> files;
   std::string line;
   // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.

@@ -17,7 +17,7 @@ Parameters parameters(FlatGrid::Settings& s) {
 FlatGrid::FlatGrid(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings), key_(key), kernels_(kernels) {}
 
-// Without fresh noise every frame would repeat the first.
+// One frame suffices without fresh noise: every frame would repeat the first.
 int FlatGrid::frame_count() const {
   const bool changes = settings_.noise_sigma_m > 0 && settings_.redraw_noise;
   return changes ? std::numeric_limits<int>::max() : 1;

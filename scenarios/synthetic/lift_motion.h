@@ -1,5 +1,5 @@
-// How a surface is lifted, 4.3.2: it waits, rises at constant velocity, accelerates and rests. A function of
-// time: a camera only samples it.
+// Motion of a surface that is lifted, 4.3.2: it waits, rises at constant velocity, accelerates and rests. It
+// is a function of time, which a camera only samples.
 #pragma once
 
 #include <vector>

@@ -25,7 +25,7 @@ class MovingPlane final : public Scenario {
   MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  // Up to the first frame in which the plane has come to rest, and stays.
+  // Number of frames up to the first one in which the plane has come to rest for good.
   int frame_count() const override { return frame_count_; }
   std::vector<Phase> phases() const override {
     if (settings_.rise_height_m == 0) return {};

@@ -11,8 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Where a line upwards through (x, z) meets the surface. Going up it comes ever farther above a height field
-// that is nowhere turned to the upright.
+// Returns the height at which a vertical line through (x, z) meets the surface. Upwards along the line the
+// height above the surface only grows, because the surface is nowhere vertical.
 double height_over(double x, double z, const Shape& shape, const ShapePose& pose) {
   if (pose.sine == 0) return pose.y_m + shape.height(x - pose.x_m, z);
   const auto is_above = [&](double y) {

@@ -36,24 +36,26 @@ class MovingShape final : public Scenario {
   MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  // Up to the last frame that differs from the one before; noise is redrawn in those frames alone.
+  // Number of frames up to the last one that differs from the one before; noise is redrawn in those frames
+  // alone.
   int frame_count() const override;
   // The loss of the points and the empty frame, then the motion, which comes last because a press may come
   // after it.
   std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
-  // Without points where the frame is empty.
+  // Empty if the frame is empty.
   PointCloud cloud(int frame) const override;
-  // To the first sheet, positive above it, see Shape::signed_distance(): where the newest frame shows it (or,
-  // if that is empty, would have shown it), or as it moves between frames. NaN once it has vanished.
+  // Distance to the first sheet, positive above it, see Shape::signed_distance(). The sheet is where the
+  // newest frame shows it (or, if that is empty, would have shown it), or, with Truth::moving, where it is at
+  // time_s, also between frames. NaN once it has vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Known for the flat shape, until it vanishes.
   std::optional<Vec3> plane_normal(double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
   }
-  // Of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a surface
-  // to press; after it has vanished, the height that it had then.
+  // Height of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a
+  // surface to press; after it has vanished, the height that it had then.
   double surface_height(double x, double z, double time_s) const override;
 
  private:
@@ -69,7 +71,7 @@ class MovingShape final : public Scenario {
   const Shape shape_;
   const ShapeMotion motion_;
   const int vanish_frame_, empty_frame_;   // -1: none
-  std::vector<Vec3> nodes_S_, normals_S_;  // of the first sheet
+  std::vector<Vec3> nodes_S_, normals_S_;  // one entry for each node of the first sheet
 };
 
 Parameters parameters(MovingShape::Settings& s);

@@ -6,8 +6,8 @@
 namespace remote_touch {
 
 namespace {
-// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who
-// asks for more than a proxy needs asks once a frame.
+// Points are made within a margin around a query, so that the next queries of a moving proxy find their
+// points ready. A query larger than a proxy's gets no margin: such queries come once a frame.
 constexpr double kSpareMargin_m = 0.010, kMaxOfProxy_m = 0.025;
 // Far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
@@ -38,7 +38,7 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
   const double inner = cylinder.radius_m + kRounding_m, reach = inner + kMaxNormal * sigma_m_;
   const Range columns = within(cylinder.x, reach, grid_.x(0), grid_.spacing_m, grid_.columns);
   const Range rows = within(cylinder.z, reach, grid_.z(0), grid_.spacing_m, grid_.rows);
-  // Its noise must bring a point at this offset from the axis towards it.
+  // The noise of a point at this offset from the axis must move it towards the axis.
   const auto bounds = [&](double offset) {
     const double outside = std::abs(offset) - inner;
     return outside > 0 ? word_bounds(outside / sigma_m_, -offset) : word_bounds(0, 0);

@@ -51,7 +51,7 @@ namespace {
 // that contain q: p lies over the inside of a panel, or over an edge or corner at which panels meet. False if
 // p lies beyond a border that no other panel continues.
 bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Vec3& q) {
-  Vec3 rest = p - q;  // without its parts along those normals
+  Vec3 rest = p - q;  // p - q without its components along those normals
   std::array<Vec3, 3> axes;
   std::size_t count = 0;
   for (const FlatPanel& panel : panels) {

@@ -17,7 +17,8 @@ class PanelScene : public Scenario {
   }
   // The panels as they are when the frame is captured.
   PointCloud cloud(int frame) const override;
-  // To the panels as they are at that time, between frames too; NaN behind a panel and beyond its border.
+  // Distance to the panels as they are at that time, also between frames; NaN behind a panel and beyond its
+  // border.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Known for a scene with one panel.
   std::optional<Vec3> plane_normal(double time_s) const override;

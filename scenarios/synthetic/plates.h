@@ -11,10 +11,10 @@
 
 namespace remote_touch {
 
-// The camera looks along -y with parallel rays through the nodes of the grid, which stand still: each sees
-// the highest plate over its place, and nothing where there is no plate, or one above max_height_m, which is
-// too near to be measured but hides what is below. The points are stored row by row; noise is added in the
-// world frame. The true surface is the first plate, whether it is hidden or not.
+// The camera looks along -y with parallel rays through the nodes of the grid, which do not move. Each ray
+// sees the highest plate at its node. It sees nothing if there is no plate, or if that plate is above
+// max_height_m: it is then too near to be measured, but hides what is below. The points are stored row by
+// row; noise is added in the world frame. The true surface is the first plate, whether it is hidden or not.
 class Plates final : public Scenario {
  public:
   struct Settings {
@@ -37,16 +37,16 @@ class Plates final : public Scenario {
   std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // To the first plate, positive above it; beyond its border the distance to the border above the plane, and
-  // NaN below it.
+  // Distance to the first plate, positive above it. Beyond its border: the distance to the border above the
+  // plane, and NaN below it.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.true_motion ? time_s : captured_s(newest_frame(time_s));
   }
-  // Of the first plate, continued beyond its border.
+  // Height of the first plate, continued beyond its border.
   double surface_height(double x, double z, double time_s) const override;
 
-  // Where a plate is at a time.
+  // Position and size of a plate at a time.
   FlatPanel plate(std::size_t number, double time_s) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFullRotation = 360 * kRadiansPerDegree;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSame_m = 1e-9;  // on the border, up to rounding
+constexpr double kSame_m = 1e-9;  // tolerance for a position on the border
 
 }  // namespace
 
@@ -127,7 +127,7 @@ double Shape::signed_distance(const Vec3& p_S) const {
   if (settings_.kind == Kind::ripple) return distance_to_wave(p_S);
   if (settings_.kind == Kind::corner) return distance_to_corner(p_S);
   const bool over = p_S.x() >= x0_ && p_S.x() <= x1_ && p_S.z() >= z0_ && p_S.z() <= z1_;
-  if (settings_.kind == Kind::flat && over) return p_S.y();  // to the last bit
+  if (settings_.kind == Kind::flat && over) return p_S.y();  // exact to the last bit
   const double distance_m = remote_touch::signed_distance(flanks_, p_S);
   // Deep below a ridge its lower borders are nearest, and the ridge still covers p.
   return std::isnan(distance_m) && covers(p_S) ? -distance_to_flanks(p_S) : distance_m;
@@ -138,7 +138,7 @@ bool Shape::covers(const Vec3& p_S) const {
          p_S.z() <= z1_ + kSame_m;
 }
 
-// Without a sign.
+// Distance to the nearest flank, without a sign.
 double Shape::distance_to_flanks(const Vec3& p_S) const {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const FlatPanel& flank : flanks_) nearest_m = std::min(nearest_m, (p_S - flank.nearest(p_S)).norm());
@@ -154,8 +154,8 @@ double Shape::distance_to_dome(const Vec3& p_S) const {
   return beside <= r + kSame_m ? -std::sqrt((beside - r) * (beside - r) + y * y) : kUnknown;
 }
 
-// Its solid is where all three planes are above: inside the nearest plane is nearest; outside the foot on a
-// face, an edge or the top, whichever is on the surface and nearest.
+// The solid lies below all three planes. Inside it, the distance is that to the nearest plane. Outside, the
+// nearest point is the foot on a face or an edge, or the top, whichever is on the surface and nearest.
 double Shape::distance_to_corner(const Vec3& p_S) const {
   constexpr double kRounding_m = 1e-12;
   const auto most_above = [&](const Vec3& p) {
@@ -179,9 +179,9 @@ double Shape::distance_to_corner(const Vec3& p_S) const {
   return nearest;
 }
 
-// Crests, and places of the same height, come at least once in a period: the nearest place of the wave is no
-// farther along it than that. It is an end, or one of the places where the way to p is upright on the wave:
-// every change of sign between samples is followed down.
+// The wave repeats every height in each period, so that its nearest point is at most a period away along x.
+// That point is an end, or a point at which the normal of the wave passes through p: there the slope of the
+// distance changes its sign. Every such change between samples is refined.
 double Shape::distance_to_wave(const Vec3& p_S) const {
   constexpr int kSamples = 64;
   const double x = std::clamp(p_S.x(), x0_, x1_);
@@ -207,15 +207,15 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
   return has_foot || covers(p_S) ? -distance : kUnknown;
 }
 
-// Half the slope, along x, of the squared distance from p to the wave at x; and how that changes.
+// Half the derivative along x of the squared distance from p to the wave at x, and the derivative of that.
 Shape::DistanceSlope Shape::distance_along_wave(const Vec3& p_S, double x) const {
   const Wave w = wave(x);
   const double up = w.height_m - p_S.y();
   return {x - p_S.x() + up * w.slope, 1 + w.slope * w.slope + up * w.bend_per_m};
 }
 
-// Where that slope is 0, between a place where it falls and one where it rises: by Newton's method, and by
-// halving where that would leave them.
+// Finds the x at which that slope is 0, between low, where the distance falls, and high, where it rises. Uses
+// Newton's method, and halves the interval if a step would leave it.
 double Shape::foot_on_wave(const Vec3& p_S, double low, double high) const {
   constexpr int kMaxSteps = 60;
   double x = 0.5 * (low + high);

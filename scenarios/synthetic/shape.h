@@ -20,19 +20,20 @@ class Shape {
   struct Settings {
     Kind kind = Kind::flat;
     double slope_deg =
-        30;  // of the flanks of a ridge or valley, which meet at x = 0, and of the faces of a corner
-    double radius_m = 0.04;      // of the sphere
-    double amplitude_m = 0.003;  // of the ripple, amplitude sin(2 pi x / period)
+        30;  // slope of the flanks of a ridge or valley, which meet at x = 0, and of the faces of a corner
+    double radius_m = 0.04;      // radius of the sphere
+    double amplitude_m = 0.003;  // amplitude of the ripple amplitude_m sin(2 pi x / period_m)
     double period_m = 0.03;
   };
 
   Shape(const Settings& settings, const Grid& grid);
 
-  // Continued beyond the border: flanks and waves as they are, beside a sphere the plane through its centre.
+  // Height, continued beyond the border: flanks and waves as they are, a sphere by the plane through its
+  // centre.
   double height(double x, double z) const;
-  // What a sensor above measures there; NaN in all three beside a sphere.
+  // Point that a sensor above measures at (x, z); NaN in all three coordinates beside a sphere.
   Vec3 point(double x, double z) const;
-  // Unit, upwards; on a crease that of one of its sides.
+  // Unit normal, upwards; on a crease the normal of one of its sides.
   Vec3 normal(double x, double z) const;
   // Distance to the surface, positive above. Beyond the border it is the distance to the border, positive
   // above the plane that ends there (sphere: the plane through its centre; ripple: the height at the border).
@@ -62,8 +63,8 @@ class Shape {
   const Settings settings_;
   const double x0_, x1_, z0_, z1_;  // the border
   double slope_ = 0;                // rise of a flank along x, at x > 0
-  std::vector<FlatPanel> flanks_;   // of flat, ridge and valley
-  std::array<Vec3, 3> faces_;       // of a corner: their normals
+  std::vector<FlatPanel> flanks_;   // panels of flat, ridge and valley
+  std::array<Vec3, 3> faces_;       // normals of the faces of a corner
 };
 
 Parameters parameters(Shape::Settings& s);

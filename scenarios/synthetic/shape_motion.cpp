@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// sin(2 pi turns), which is 0 before the first; the same bits on every machine.
+// Returns sin(2 pi turns), or 0 before the first turn; the same bits on every machine.
 double swing(double turns) {
   return turns <= 0 ? 0 : sin_cos(360 * kRadiansPerDegree * (turns - std::floor(turns))).first;
 }

@@ -1,4 +1,4 @@
-// How a shape moves: a lift, 4.3.2, and added to it a slide, a shake and a rotation back and forth.
+// Motion of a shape: a lift, 4.3.2, and added to it a slide, a shake and a rotation back and forth.
 #pragma once
 
 #include <vector>

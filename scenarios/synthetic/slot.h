@@ -21,7 +21,7 @@ class Slot final : public PanelScene {
   };
 
   Slot(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
-  std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
+  std::vector<FlatPanel> panels(double time_s) const override;  // wall at -z, then wall at +z
 
  protected:
   PanelGrid grid() const override { return {settings_.spacing_m, settings_.phase_m, 0}; }

@@ -26,7 +26,8 @@ class TriangleWave final : public Scenario {
   int frame_count() const override { return 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // To the wave, which continues along z; NaN below it and beyond the grid, if a border is nearest.
+  // Distance to the wave, which continues along z. NaN below it if p lies beyond the border along z, or
+  // beyond an end along x that is the nearest part of the wave.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 

@@ -33,7 +33,7 @@ class Wedge final : public PanelScene {
   int frame_count() const override { return frame_count_; }
   // The closing and the opening; none if the walls always have the same distance.
   std::vector<Phase> phases() const override;
-  std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
+  std::vector<FlatPanel> panels(double time_s) const override;  // wall at -z, then wall at +z
   // Distance between the lower edges of the walls, m; linear in time while it changes.
   double gap_m(double time_s) const;
 
@@ -43,8 +43,8 @@ class Wedge final : public PanelScene {
  private:
   const Settings settings_;
   int frame_count_;
-  Vec3 up_, across_;      // of the wedge: y and z, tilted about x
-  double sine_, cosine_;  // of half the angle
+  Vec3 up_, across_;      // axes of the wedge: y and z, tilted about x
+  double sine_, cosine_;  // sine and cosine of half the angle
 };
 
 Parameters parameters(Wedge::Settings& s);

@@ -1,4 +1,4 @@
-// Which files of a folder belong to a recording, by their names.
+// Tests of file names that decide which files of a folder belong to a recording.
 #pragma once
 
 #include <algorithm>

@@ -29,10 +29,10 @@ class Watch {
 
  private:
   const std::string& label_;
-  std::vector<std::set<std::string>> keys_;  // of the objects that are open
+  std::vector<std::set<std::string>> keys_;  // keys so far of each open object
 };
 
-// Throws Json::exception for what is no JSON.
+// Throws Json::exception if the text is not JSON.
 Json parse_watched(const std::string& text, const std::string& label) {
   Watch watch(label);
   return Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) {

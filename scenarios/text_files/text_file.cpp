@@ -16,7 +16,7 @@ namespace {
 
 class OpenFile {
  public:
-  // Without waiting for one who writes into a pipe: a signal would not end that.
+  // Does not wait for another process to open a pipe for writing: a signal would not end that wait.
   explicit OpenFile(const std::filesystem::path& file)
       : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   ~OpenFile() {
@@ -25,7 +25,8 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  // What there is, up to size bytes; 0 at the end, -1 with errno set when it cannot be read.
+  // Waits for data and reads up to size bytes. Returns the number of bytes, 0 at the end, or -1 with errno
+  // set if the file cannot be read.
   ssize_t read(char* to, std::size_t size) const {
     if (file_ < 0) return -1;
     pollfd wait{file_, POLLIN, 0};

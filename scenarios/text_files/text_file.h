@@ -10,8 +10,8 @@ namespace remote_touch {
 
 inline constexpr std::size_t kMaxTextBytes = 16 << 20;
 
-// Also from a pipe or a device, up to kMaxTextBytes. Throws InputError, naming the file and what is expected
-// there, when it cannot be read, is longer than that, or a signal interrupts the wait for data.
+// Reads a file, a pipe or a device, up to kMaxTextBytes. Throws InputError, naming the file and what is
+// expected there, if it cannot be read, is longer than that, or a signal interrupts the wait for data.
 std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
 
 // Returns the text without a byte order mark, which some editors write in front of UTF-8.

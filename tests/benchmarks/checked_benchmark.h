@@ -13,10 +13,11 @@ namespace remote_touch::benchmarks {
 void add(const std::string& name, const std::function<bool()>& is_right,
          const std::function<void(benchmark::State&)>& time);
 
-// Whether any answer differed so far.
+// True if any answer has differed from its reference so far.
 bool mismatch_seen();
 
-// Of this thread, for what is short against the time for which others may have the machine.
+// Processor time of this thread. It measures work that is short compared with the time for which other
+// programs may occupy the machine.
 double cpu_ns();
 
 }  // namespace remote_touch::benchmarks

@@ -21,7 +21,7 @@ constexpr PixelRectangle kRegion{295, 215, 50, 50};  // 2500 points
 
 struct Expected {
   scenes::DepthScene scene;
-  ReferenceDepth filtered, measured;  // with the filter and without
+  ReferenceDepth filtered, measured;  // results with the filter and without it
 };
 
 Expected expected() {

@@ -31,7 +31,7 @@ bool same(const naive::RegionStep& a, const naive::RegionStep& b) {
          std::abs(a.stiffness - b.stiffness) < 1e-9 * b.stiffness;
 }
 
-// As the renderer steps, with the list kept while the proxy stays near.
+// Steps as the renderer does: the list of points is kept while the proxy stays near.
 class Stepper {
  public:
   Stepper(std::shared_ptr<const NeighbourSearch> search, const Kernels& kernels)
@@ -80,7 +80,7 @@ void time_steps(benchmark::State& state, const FixtureScene& scene, const Fixtur
   std::size_t i = 0;
   double listed = 0;
   for (auto _ : state) {
-    // As in step_benchmark.cpp: each step has to wait for the one before.
+    // The term 0.0 * last makes each step wait for the one before, as in step_benchmark.cpp.
     last = step(steps.proxies[i] + 0.0 * last.step.step, steps.hips[i]);
     if (++i == steps.proxies.size()) i = 0;
   }

@@ -64,7 +64,7 @@ FixtureSteps lifted(const FixtureScene& scene, const FixtureSteps& contact, Fixt
   return out;
 }
 
-// In front of points of the middle of the image, towards the camera.
+// Returns positions in front of random points of the middle of the image, towards the camera.
 std::vector<Vec3> jumps_on(const PointCloud& cloud) {
   const int width = cloud.image->camera.width, height = cloud.image->camera.height;
   std::mt19937 random(1);

@@ -17,12 +17,12 @@ struct FixtureSteps {
   std::string name;
   ContactState state;
   std::vector<Vec3> proxies = {}, hips = {};
-  std::vector<naive::RegionStep> expected = {};  // of every kFixtureCheckEvery-th
+  std::vector<naive::RegionStep> expected = {};  // one for every kFixtureCheckEvery-th step
 };
 
 constexpr std::size_t kFixtureCheckEvery = 64;
-// Where regions of different sizes meet the proxy goes to and fro, and a difference of rounding grows tenfold
-// a tick.
+// Number of ticks that are compared. It is small: where regions of different sizes meet, the proxy moves to
+// and fro, and a rounding difference grows tenfold per tick.
 constexpr std::size_t kFixtureCheckedTicks = 10;
 
 struct FixtureScene {
@@ -38,7 +38,8 @@ struct FixtureScene {
 // points, those on one side, 0.02 m; all 0.02 m and a stiffness each, but for every third point.
 std::vector<FixtureScene> fixture_scenes();
 
-// Where the HIP goes below the surface, and where it waits above all regions before.
+// Position of the HIP during the slide below the surface, and the position above all regions where it waits
+// before the slide.
 Vec3 fixture_hip_at(double time_s);
 Vec3 fixture_hip_above();
 

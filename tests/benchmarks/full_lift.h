@@ -11,7 +11,7 @@
 
 namespace remote_touch::benchmarks {
 
-// What the renderer gets instead of scenario.points(frame).
+// Makes the points of a frame, which the renderer receives instead of scenario.points(frame).
 using MakeFrame = std::function<std::shared_ptr<const NeighbourSearch>(const Scenario& scenario, int frame)>;
 
 // The trace of simulate(), bit for bit, where make_frame gives the same points. pre: no latency; duration_s
@@ -21,8 +21,8 @@ Trace simulate_with(const Experiment& experiment, const Kernels& kernels, const 
 // The reference: the frame's whole cloud, searched point by point.
 std::shared_ptr<const NeighbourSearch> whole_cloud(const Scenario& scenario, int frame);
 
-// What NoisyGridSearch would be without its laziness: all noise of the lift made in place by the same
-// generator, and no more stored than the points.
+// NoisyGridSearch without its laziness: the noise of all points of a frame is made at once, by the same
+// generator. Only the points are stored.
 MakeFrame all_noise(const MovingLift::Settings& scene, const NoiseKey& key, const Kernels& kernels);
 
 }  // namespace remote_touch::benchmarks

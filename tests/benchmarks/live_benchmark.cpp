@@ -1,6 +1,6 @@
-// How punctual the live loop is on this machine: nothing here passes or fails. What the loop does in which
-// tick is held to exact times by the tests, on a simulated clock. `remote-touch jitter` tells how late ticks
-// begin.
+// Measures how punctual the live loop is on this machine; nothing here passes or fails. The tests check on a
+// simulated clock, to exact times, what the loop does in which tick. `remote-touch jitter` reports how late
+// ticks begin.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -54,7 +54,7 @@ class NoRenderer final : public Renderer {
   RenderOutput step(const DeviceState&, double) override { return {}; }
 };
 
-// In batches, for one tick takes as long as a look at the clock.
+// Times ticks in batches, because one tick takes as long as one reading of the clock.
 void measure_ticks() {
   constexpr int kBatches = 2000, kTicks = 100;
   NoDevice device(steady_clock());

@@ -99,7 +99,8 @@ MakeFrame all_noise_of(const Cell& cell, const Kernels& kernels) {
   return all_noise(cell.lift.scene, cell.experiment.settings().key, kernels);
 }
 
-// With the oracle of the lazy noise, and with the search that makes all noise in time().
+// Compares the lazy noise with its oracle, the whole cloud, and with the search that makes all noise, which
+// time() measures.
 bool equals_full(const Cell& cell, const Kernels& kernels) {
   const auto full = [&](const MakeFrame& make_frame) {
     return digest(simulate_with(cell.experiment, kernels, make_frame).columns());
@@ -128,7 +129,8 @@ bool equals_plain(const Cell& cell, const Kernels& kernels) {
   return follows(plain_W, simulate(cell.experiment), noisy ? pressed : plain_W.size());
 }
 
-// Without noise the standard library's is none too: at a = 3 the proxy is lifted, at a = 6 it pops through.
+// Zero noise is zero with the standard library's generator too: the proxy is lifted at a = 3 m/s^2, and pops
+// through at a = 6 m/s^2.
 bool outcomes_are_known(const Map& map) {
   bool right = true;
   for (const bool pops : {false, true}) {
@@ -165,7 +167,7 @@ void print(const char* name, int steps, int threads, std::size_t lifts, const Se
               kernels_for(best_isa()).isa);
 }
 
-// Of a few lifts on one thread; the map takes their mean times its number of lifts.
+// Times of a few lifts on one thread. The time of the map is their mean times its number of lifts.
 struct SampledTime {
   const char* name;
   std::function<void(const Cell&)> lift;
@@ -183,7 +185,7 @@ struct SampledTime {
   }
 };
 
-// Of the whole map. Where cpu is less than threads times wall, the threads had to wait for a processor.
+// Time of the whole map. If cpu is less than threads times wall, the threads had to wait for a processor.
 struct MapTime {
   const Map& map;
   int steps, threads;

@@ -16,8 +16,8 @@ struct Lift {
   MovingLift::Settings scene;
   ProxyParameters proxy;
   int steps_per_frame = 30;
-  int press_frame = 15;   // with it the HIP begins to press
-  double depth_m = 0.03;  // how far below the plane
+  int press_frame = 15;   // frame with which the HIP begins to press
+  double depth_m = 0.03;  // depth of the pressing HIP below the plane
 };
 
 // Fills in the points of a frame, whose plane lies at that height; what they were before may be anything.
@@ -29,7 +29,7 @@ MakePoints standard_noise(const MovingLift::Settings& scene, std::uint64_t seed)
 // The proxy after every step. One step a tick, with frame correction (4.3) and velocity estimate (4.13).
 std::vector<Vec3> proxies(const Lift& lift, const MakePoints& make_points);
 
-// Whether the last proxy lies below the plane of the last frame.
+// True if the last proxy lies below the plane of the last frame.
 bool popped_through(const Lift& lift, const std::vector<Vec3>& proxies);
 
 }  // namespace remote_touch::naive

@@ -1,5 +1,5 @@
-// What the benchmarks measure against: the method written plainly from its equations, over all points, in
-// double and with nothing of the kernels; and the clouds that both run on.
+// The reference of the benchmarks: the method written plainly from its equations, over all points, in double
+// precision and without the kernels. Also the clouds that both implementations run on.
 #pragma once
 
 #include <cstdint>
@@ -54,9 +54,9 @@ struct Queries {
 // came from another user; neither caches nor branch predictors help then.
 enum class Centres { slide, jump };
 
-// On a flat grid of 100x100 points.
+// The cloud is a flat grid of 100x100 points.
 Queries on_grid(Centres centres);
-// On an organised cloud in the camera frame; a slide goes along a row, from the middle to the right.
+// The cloud is organised and in the camera frame. A slide follows one row, from the middle to the right.
 Queries on_image(const std::string& name, PointCloud cloud, Centres centres);
 
 }  // namespace remote_touch::naive

@@ -26,7 +26,7 @@ struct RegionStep {
 RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& hip_W,
                        const Vec3& previous_normal, const ProxyParameters& p);
 
-// What the renderer remembers from tick to tick. pre: the first tick begins outside all regions.
+// The state that the renderer keeps from tick to tick. pre: the first tick begins outside all regions.
 struct RegionProxy {
   Vec3 proxy_W = Vec3::Zero(), normal_W = Vec3::Zero(), clear_W = Vec3::Zero();
 };

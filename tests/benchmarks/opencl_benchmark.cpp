@@ -45,7 +45,7 @@ void measure(benchmark::State& state, const Work& work) {
     benchmark::ClobberMemory();
     min_ms = std::min(min_ms, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
-  // Of all threads of the process, and less disturbed by other programs than the time that passes.
+  // Processor time of all threads of the process: other programs disturb it less than wall-clock time.
   state.counters["min_cpu_ms"] = min_ms;
 }
 

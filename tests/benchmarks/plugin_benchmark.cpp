@@ -1,5 +1,6 @@
-// What the C interface of plug-ins costs: the proxy of chapter 4 built in, and the same code behind the
-// interface, in pairs. The answers are compared bit by bit first. Prints the ratio of the times of a tick.
+// Measures the cost of the C interface of plug-ins: the proxy of chapter 4 built in, and the same code behind
+// the interface, in pairs. The answers are first compared bit by bit. Prints the ratio of the times of a
+// tick.
 #include <algorithm>
 #include <cstdio>
 #include <vector>

@@ -21,7 +21,7 @@ void add_queries(const naive::Queries& queries);
 
 // Steps, lists and ticks among forbidden regions.
 void add_fixtures(const FixtureScene& scene);
-// What the fixture rules and the search cost a frame.
+// The cost per frame of the fixture rules and of the search.
 void add_assignments();
 
 // The normals of the noise.

@@ -76,7 +76,7 @@ std::vector<naive::Queries> query_sets() {
   for (const naive::Centres centres : {naive::Centres::slide, naive::Centres::jump}) {
     queries.push_back(naive::on_grid(centres));
     queries.push_back(naive::on_image("image_0.75m", naive::wave_image(0.75), centres));
-    // At 1.03 m a 1 cm ball holds 81 pixels, as in the published comparison.
+    // A 1 cm ball holds 81 pixels at 1.03 m, as in the published comparison.
     queries.push_back(naive::on_image("image_1.03m", naive::wave_image(1.03), centres));
     if (recorded) queries.push_back(naive::on_image("image_recorded", *recorded, centres));
   }

@@ -23,7 +23,8 @@ double away_from_capsule(const Vec3& p, const Vec3& from, const Vec3& to, double
   return (p - from - fraction * along).norm() - radius_m;
 }
 
-// Of a place, in the wheel's frame: the ring, three spokes and a hub along its axis.
+// Signed distance of a position, in the wheel's frame, to the wheel: a ring, three spokes and a hub along its
+// axis.
 double away_from_wheel(const Vec3& p) {
   double away = std::hypot(std::hypot(p.x(), p.y()) - kRing_m, p.z()) - kTube_m;
   for (const double turn : {0.25, 0.25 + 1.0 / 3, 0.25 + 2.0 / 3}) {
@@ -35,8 +36,8 @@ double away_from_wheel(const Vec3& p) {
   return std::min(away, away_from_capsule(p, -hub, hub, kHub_m));
 }
 
-// Where a ray of the camera meets one of the wheels, as its z; beyond the wall where it meets none. Steps as
-// long as the wheel is away do not jump over it.
+// Returns z of the point where a ray of the camera meets one of the wheels, or 2 m, beyond the wall, if it
+// meets none. Each step is as long as the distance to the wheel, so no step passes through it.
 double depth_of_wheels(const Vec3& ray, double nearer_m) {
   double depth = 2;
   for (const double side : {-1.0, 1.0}) {
@@ -92,7 +93,7 @@ SphereTool generated_sphere_tool(const std::string& name, int max_leaves) {
 SphereTool arm_of_leaves(int leaves) {
   constexpr double kLength_m = 0.8, kArm_m = 0.03, kLeaf_m = 0.012;
   constexpr int kAround = 10;
-  const double bend = 0.3;  // of the first and last link against the middle one
+  const double bend = 0.3;  // slope of the first and last link against the middle one
   std::vector<Sphere> all;
   for (int i = 0; i < leaves; ++i) {
     const double along = kLength_m * ((i / kAround) / std::ceil(1.0 * leaves / kAround) - 0.5);

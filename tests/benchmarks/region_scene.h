@@ -33,7 +33,8 @@ SphereTool arm_of_leaves(int leaves);
 std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
                                   double margin_m);
 
-// Of the device on its way around the first wheel at 0.1 m/s, turning as it goes, 10 mm inside the regions.
+// Pose of the device on its way around the first wheel at 0.1 m/s. It turns on the way, 10 mm inside the
+// regions.
 ToolPose device_around_wheel(int tick);
 inline constexpr int kRoundTicks = 2828;
 

@@ -20,11 +20,11 @@ constexpr std::size_t kCheckEvery = 8, kCheckedTicks = 20;
 struct Slide {
   std::string name;
   PointCloud cloud;
-  Vec3 above, start, direction;  // of the HIP; it starts above the surface, then jumps to start
+  Vec3 above, start, direction;  // HIP: it starts above the surface, then jumps to start
   std::shared_ptr<const NeighbourSearch> search = nullptr;
   std::vector<Vec3> points = {};                 // the cloud as the plain method reads it
   std::vector<Vec3> proxies = {}, hips = {};     // single steps in contact state
-  std::vector<naive::Step> expected_steps = {};  // of every kCheckEvery-th
+  std::vector<naive::Step> expected_steps = {};  // one for every kCheckEvery-th
   std::vector<Vec3> expected_ticks = {};         // proxies after whole ticks
   double within_r3 = 0;                          // points within r3 of a proxy, on average
 };

@@ -138,7 +138,7 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Place
 
 // --- whole ticks ---
 
-// What a ride asks for: the device of a tick, and the frame that comes with it, if any.
+// The inputs of a ride: the pose of the device in each tick, and the frame that arrives in it, if any.
 struct Course {
   int ticks;
   ToolPose (*device)(int tick);

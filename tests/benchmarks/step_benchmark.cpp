@@ -117,7 +117,7 @@ class SearchedStep {
   GatheredPoints list_;
 };
 
-// As the renderer steps: the list is kept while the proxy stays near.
+// Steps as the renderer does: the list of points is kept while the proxy stays near.
 class KeptStep {
  public:
   KeptStep(std::shared_ptr<const NeighbourSearch> search, const Kernels& kernels)

@@ -30,7 +30,7 @@ ProxyParameters stepping(double gamma, int steps_per_tick) {
   return p;
 }
 
-// Where the proxy rests after a slide of 20 mm.
+// Returns the position where the proxy rests after a slide of 20 mm.
 Vec3 rest_of(const Slide& slide, const ProxyParameters& parameters, const Kernels& kernels) {
   constexpr int kSlideTicks = 200, kRestTicks = 40;
   ProxyRenderer renderer(parameters, kTickRate_hz, kernels);
@@ -42,7 +42,7 @@ Vec3 rest_of(const Slide& slide, const ProxyParameters& parameters, const Kernel
   return out.proxy_W;
 }
 
-// As far as the contact region is thick, the rest may depend on the way to it.
+// The rest position may depend on the way to it, by as much as the contact region is thick.
 bool rests_agree(const Slide& slide, const ProxyParameters& parameters, const Kernels& kernels) {
   const Vec3 limit_W = rest_of(slide, stepping(kSettings.gamma, 1000), kernels);
   return (rest_of(slide, parameters, kernels) - limit_W).norm() < parameters.r2_m - parameters.r1_m;

@@ -117,7 +117,7 @@ void add_step(const ToolScene& scene, TouchRule rule) {
     add(
         "tool_step/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
         [=, &scene] {
-          Stepper slowest(scene, rule, kernels_for(Isa::x86_64));  // with no looks before, as the other
+          Stepper slowest(scene, rule, kernels_for(Isa::x86_64));  // new, like stepper: no look came before
           for (int i = 0; i < 64; ++i) {
             const ToolPose pose = shaken(scene.in_contact, i);
             std::size_t listed = 0, expected = 0;
@@ -178,7 +178,7 @@ bool rides_same(const ToolScene& scene, const ToolParameters& parameters, const 
 void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParameters& parameters,
                const Kernels& kernels) {
   Ride ride(scene, parameters, kernels);
-  for (int tick = 0; tick < kSlideTicks; ++tick) ride.step(tick);  // from here on one slide is as the other
+  for (int tick = 0; tick < kSlideTicks; ++tick) ride.step(tick);  // first slide; all later ones are alike
   std::vector<double> min_ns(kSlideTicks, std::numeric_limits<double>::infinity());
   double detections = 0, steps = 0;
   int tick = 0;

@@ -31,7 +31,7 @@ class Landing {
         renderer_(parameters, scene.tool, kernels),
         down_(frame_at(scene, 0)),
         up_(frame_at(scene, kRise_m)) {
-    for (Frame* frame : {&down_, &up_}) renderer_.prepare(*frame);  // as the thread of the camera does
+    for (Frame* frame : {&down_, &up_}) renderer_.prepare(*frame);  // the camera's thread does so
     ToolPose above = scene.in_contact;
     above.p_W.y() += 0.02;
     show(down_);

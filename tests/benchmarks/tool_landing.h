@@ -6,9 +6,9 @@
 
 namespace remote_touch::benchmarks {
 
-// Under the name tool_landing/...: the surface comes up by 4 mm while the device presses the tool down, and
-// goes back, again and again. The counters are the time of the tick that takes the frame, and of the slowest
-// of those after it.
+// Adds benchmarks named tool_landing/...: the surface rises by 4 mm while the device presses the tool down,
+// and goes back, again and again. The counters are the time of the tick that receives the frame, and the time
+// of the slowest tick after it.
 void add_landing(const ToolScene& scene, const ToolParameters& parameters, const char* rule);
 
 }  // namespace remote_touch::benchmarks

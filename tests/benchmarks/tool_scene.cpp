@@ -94,7 +94,7 @@ ToolPose shaken(ToolPose pose, int call) {
 }
 
 ToolPose device_at(const ToolScene& scene, int tick) {
-  constexpr double kWay_m = 1e-4;  // of a tick
+  constexpr double kWay_m = 1e-4;  // way of the device in one tick
   const int half = kSlideTicks / 2, t = tick % kSlideTicks;
   ToolPose device = scene.in_contact;
   device.p_W += Vec3(kWay_m * ((t < half ? t : kSlideTicks - t) - half / 2), -0.01, 0);

@@ -31,13 +31,13 @@ ToolScene tool_scene(const std::string& name, std::shared_ptr<const VoxelTool> t
 
 // Numbers of the points in shell or interior voxels by a plain loop over all of them, as one writes it down.
 std::vector<std::uint32_t> naive_list(const VoxelTool& tool, const PointCloud& cloud, const ToolPose& pose);
-// Whether the finder's list of the scene's points has the same.
+// True if the finder's list of the scene's points is that of naive_list().
 bool list_right(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose);
 
 // The pose as it changes a little from call to call.
 ToolPose shaken(ToolPose pose, int call);
 
-// Of the device in a slide along x at 0.1 m/s, to and fro, a centimetre below where the tool is in contact.
+// Pose of the device in a slide along x at 0.1 m/s, to and fro, a centimetre below the pose of contact.
 ToolPose device_at(const ToolScene& scene, int tick);
 inline constexpr int kSlideTicks = 600;  // there and back
 

@@ -27,19 +27,19 @@ namespace {
 constexpr double kRc_m = 0.005;  // r_c, as the renderers have it by default
 constexpr int kFrameRate_hz = 30, kTickRate_hz = 1000;
 constexpr int kFrames = 26;
-constexpr int kPressFrame = 15;  // from it on the HIP is below the cloud
+constexpr int kPressFrame = 15;  // first frame with the HIP below the cloud
 constexpr double kPressDepth_m = 0.03;
 constexpr int kFirstTimedFrame = 2;         // the two before begin a track
-constexpr double kStandsNoise_rc = 2;       // up to here the sheet may not pop through
-constexpr double kMinHeight_rc = -0.5;      // of its proxy above the cloud, in the end
-constexpr double kMotionStep_rc = 0x1p-12;  // of the places in core/tracked_sheet/patch_frame.h
+constexpr double kStandsNoise_rc = 2;       // largest noise at which the sheet may not pop through
+constexpr double kMinHeight_rc = -0.5;      // least height of its last proxy above the cloud
+constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/tracked_sheet/patch_frame.h
 
 // --- a lift, and what is answered on it ---
 
 struct Lift {
   double noise_rc;
   MovingLift motion;
-  std::vector<std::shared_ptr<const NeighbourSearch>> points;  // of each frame
+  std::vector<std::shared_ptr<const NeighbourSearch>> points;  // one per frame
 };
 
 Lift made(double noise_rc, MovingLift::Settings settings) {
@@ -142,8 +142,8 @@ std::vector<RenderOutput> best_answers(const Lift& lift, const Method& method) {
   return answers(lift, method, kernels_for(best_isa()));
 }
 
-// While it moves only nearly: the sheet's motion is measured in steps of kMotionStep_rc, and before the
-// touch.
+// While the cloud moves, the answers agree only nearly: the sheet measures its motion in steps of
+// kMotionStep_rc, and does so already before the touch.
 bool nearly_same(const RenderOutput& p, const RenderOutput& q) {
   return (p.proxy_W - q.proxy_W).norm() < kMotionStep_rc * kRc_m && p.state == q.state &&
          p.contact_count == q.contact_count && p.frame_index == q.frame_index && p.status == q.status;
@@ -169,8 +169,8 @@ bool sheet_right(const Lift& lift) {
 
 // --- their times ---
 
-// Of each frame, and of all ticks between it and the next. Every lift is the same, so the least time among
-// many is that of the work; it is kept from one repetition to the next.
+// Least time of each frame, and of all ticks between it and the next frame. Every lift is the same, so the
+// least of many times is that of the work alone. It is kept from one repetition to the next.
 struct LeastTimes {
   std::array<double, kFrames> frame_ns, ticks_ns;
   LeastTimes() {
@@ -196,7 +196,7 @@ void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& min) {
   }
 }
 
-// What the ticks whose time is told do.
+// Counts the work of the ticks whose time is reported.
 void count_work(benchmark::State& state, const std::vector<RenderOutput>& outputs) {
   double steps = 0, in_contact = 0;
   const auto first = static_cast<std::size_t>(first_tick_of(kPressFrame));

@@ -1,8 +1,8 @@
-// What the test doubles of depth cameras' libraries share: the cameras behind the library, as a test sets
-// them and sees them. Each double exports them under the name camera_double. From one thread only.
+// The part that the test doubles of depth cameras' libraries share: the cameras behind the library. A test
+// sets their state and reads it. Each double exports them under the name camera_double. One thread only.
 //
-// They are test doubles: they have the vendors' signatures and none of their behaviour. What passes with them
-// shows what an adapter calls, not what a camera does.
+// They are test doubles: they have the vendors' signatures and none of their behaviour. A test that passes
+// with them shows what an adapter calls, not what a camera does.
 #pragma once
 
 #include <algorithm>
@@ -27,26 +27,26 @@ class CameraDouble {
   struct State {
     std::vector<std::string> serials = {"000123", "CL2F"};
     int held_by_others = -1;  // the number of a camera that cannot be opened
-    CameraLens lens;          // of all of them; its size is that of the mode
+    CameraLens lens;          // lens of all cameras; its size is that of the mode
     double metres_per_unit = 0.001, rate_hz = 30;
-    // They see the plane normal . p = distance_m, and nothing in every hole_every-th pixel (0: no holes).
+    // They see the plane normal . p = distance_m. Every hole_every-th pixel measures nothing (0: no holes).
     Eigen::Vector3d normal{0, 0, 1};
     double distance_m = 0.5;
     int hole_every = 0;
 
     // Frame n, from 1 on, comes n periods after the start.
     std::function<double(int)> stamp_s = [](int number) { return 5 + number / 30.0; };
-    std::function<int(int)> counted = [](int number) { return number; };  // as the camera counts
+    std::function<int(int)> counted = [](int number) { return number; };  // frame number it reports
     std::function<bool(int)> has_depth = [](int) { return true; };
-    int silent_after = 0, lost_after = 0;  // so many frames; 0: never
+    int silent_after = 0, lost_after = 0;  // number of frames before it; 0: never
     int row_gap_bytes = 0, missing_bytes = 0, missing_rows = 0;
-    int format = -1;  // of frames, not what it should be
+    int format = -1;  // wrong format of the frames, -1: the right one
 
     int fail_at = 0;        // the call of this number fails, from 1 on
     std::string fail_name;  // and so do those of this name
-    // Of the rs2 interface.
+    // The rest concerns the rs2 interface only.
     int version = 25605;
-    int model = 4;          // of the lens: Brown and Conrady
+    int model = 4;          // lens model: Brown and Conrady
     bool is_alone = false;  // depth comes by itself, not with other streams in one frame
     bool has_depth_sensor = true, sends_depth = true;
   };
@@ -58,7 +58,7 @@ class CameraDouble {
     calls_.clear(), held_.clear(), misuse_.clear(), image_.clear();
     is_started_ = false;
   }
-  // In order; the maps between pixels and rays are not among them.
+  // Calls in order, without those that map between pixels and rays.
   const std::vector<std::string>& calls() const { return calls_; }
   int count(const std::string& name) const {
     return static_cast<int>(std::count(calls_.begin(), calls_.end(), name));

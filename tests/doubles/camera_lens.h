@@ -18,7 +18,7 @@ struct CameraLens {
 
   using Point = Eigen::Vector2d;
 
-  // On the plane z = 1, from the ray to where the lens shows it.
+  // Returns the position on the plane z = 1 where the lens shows this ray.
   Point distorted(const Point& ray) const {
     const double x = ray.x(), y = ray.y(), r2 = x * x + y * y;
     const double radial =
@@ -31,7 +31,7 @@ struct CameraLens {
     const Point at = distorted(ray);
     return Point(cx + fx * at.x(), cy + fy * at.y());
   }
-  // By Newton's method with differences.
+  // Solved by Newton's method with differences.
   std::optional<Point> ray_of(const Point& pixel) const {
     const Point wanted((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
     Point ray = wanted;

@@ -14,13 +14,13 @@ namespace remote_touch {
 struct DepthLibrary {
   const char* name;
   const char* double_file;
-  const char* variable;  // names the library
-  const char* library;   // that is looked for first without it
+  const char* variable;  // environment variable that names the library
+  const char* library;   // first name tried without it
   std::unique_ptr<DepthSource> (*open)(const std::string& address, Clock& clock);
   Availability (*availability)();
 };
 
-// For the names of tests.
+// gtest prints it in the names of tests.
 void PrintTo(const DepthLibrary* library, std::ostream* out);  // NOLINT(readability-identifier-naming)
 
 // The third lacks what older versions of librealsense lack.

@@ -1,8 +1,8 @@
-// What the test doubles of vendors' libraries share: the device behind the library, as a test sets it and
-// sees it. Each double exports it under the name device_double.
+// The part that the test doubles of vendors' libraries share: the device behind the library. A test sets its
+// state and reads it. Each double exports it under the name device_double.
 //
-// They are test doubles: they have the vendors' signatures and none of their behaviour. What passes with them
-// shows what an adapter calls, not what a device does.
+// They are test doubles: they have the vendors' signatures and none of their behaviour. A test that passes
+// with them shows what an adapter calls, not what a device does.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class DeviceDouble {
   // All in the vendor's units and axes.
   struct State {
     std::array<double, 3> position{}, velocity{}, turning{};
-    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // by rows
+    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
     unsigned buttons = 0;
 
     int devices = 1;
@@ -31,24 +31,24 @@ class DeviceDouble {
     double max_force = 0, continuous_force = 0, max_torque = 0, max_stiffness = 0;
     bool is_unplugged = false;
     int reading_error = 0, writing_error = 0, switching_error = 0;  // the vendor's code, until it is 0 again
-    // Of those that have such things.
+    // The rest concerns only devices that have homing or a scheduler.
     bool is_homed = true;
     int failing_homings = 0;
     int scheduler_error = 0;
-    bool is_scheduler_silent = false;  // from now on it calls nobody
+    bool is_scheduler_silent = false;  // true: it calls no callback from now on
   };
 
   struct Event {
     std::int64_t at_ns;
-    std::array<double, 6> told;  // the last force and torque that the library was told
+    std::array<double, 6> told;  // last force and torque sent to the library
     bool has_motors_on;
 
-    // At the device's side.
+    // Force that the device exerts: 0 while its motors are off.
     double force() const { return has_motors_on ? std::hypot(told[0], told[1], told[2]) : 0; }
   };
 
   // --- for tests ---
-  // From now on what waits and what is remembered keeps to this clock; null: the steady one.
+  // Waiting and remembered events use this clock from now on; null: the steady clock.
   void follow(SimulatedClock* clock) { simulated_ = clock; }
   void reset() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -68,7 +68,7 @@ class DeviceDouble {
   void release() { hangs_ = false; }
   bool is_hanging() const { return hangs_ && hang_next_ == none; }
 
-  // Those remembered, in order; the oldest go first.
+  // The newest 4096 events in order; older ones were dropped.
   std::vector<Event> events() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<Event> events;

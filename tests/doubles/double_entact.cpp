@@ -11,7 +11,7 @@ using remote_touch::DeviceDouble;
 
 DeviceDouble device;
 std::mutex known_mutex;
-DeviceDouble::State known;  // as of the last force
+DeviceDouble::State known;  // state at the last force
 
 DeviceDouble::State last_known() {
   const std::lock_guard<std::mutex> lock(known_mutex);

@@ -64,7 +64,7 @@ void keep(int error) {
     last_error = static_cast<unsigned>(error);
 }
 
-// By columns.
+// Writes the 4x4 transform column by column.
 void give_transform(const DeviceDouble::State& state, double* values) {
   std::fill(values, values + 16, 0.0);
   for (std::size_t row = 0; row < 3; ++row) {

@@ -9,12 +9,12 @@ using remote_touch::CameraDouble;
 CameraDouble camera;
 
 constexpr int kSucceeded = 0, kFailed = 1, kTooSmall = 2;
-constexpr int kTimeout = 2;  // of a wait, whose failure is 1 as well
+constexpr int kTimeout = 2;  // a wait that timed out; a wait that failed returns kFailed
 constexpr int kDepth16 = 4;
 constexpr int kQueue = 4;  // frames that the library keeps
 constexpr std::size_t kCalibrationBytes = 1032;
 
-// As the bytes lie in memory.
+// The members in the order of the bytes in memory.
 struct Started {
   int colour_format, colour_resolution, depth_mode, rate;
   bool only_synchronized;
@@ -48,7 +48,7 @@ bool is_possible(const Started& wanted) {
          wanted.depth_delay == 0;
 }
 
-// What is given out as a calibration: bytes that only this library understands.
+// The bytes that are handed out as a calibration; only this library understands them.
 const std::vector<std::uint8_t>& calibration_bytes() {
   static const std::vector<std::uint8_t> bytes = [] {
     std::vector<std::uint8_t> filled(kCalibrationBytes);

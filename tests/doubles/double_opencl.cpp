@@ -17,11 +17,11 @@
 
 namespace {
 
-std::size_t ids[2], sizes[2];  // of the work item that is computed
+std::size_t ids[2], sizes[2];  // index and range of the work item being computed
 int filter_half, normal_half;
 
 namespace kernels {
-// What OpenCL C has beyond C++, and other words for the same.
+// Functions that OpenCL C has and C++ lacks, or names differently.
 std::size_t get_global_id(unsigned d) {
   return ids[d];
 }
@@ -46,7 +46,7 @@ using std::sqrt;
 remote_touch::OpenClDouble settings;
 constexpr const char* kName = "double";
 
-// Whether this call is to fail; it hangs if it is to hang.
+// Returns true if this call is to fail. It hangs first if it is set to hang.
 bool fails(const char* function) {
   if (std::strcmp(settings.failing, function) != 0 || ++settings.calls < settings.failing_call) return false;
   while (settings.hangs && !settings.let_go) std::this_thread::sleep_for(std::chrono::milliseconds(1));

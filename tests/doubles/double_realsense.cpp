@@ -56,7 +56,7 @@ bool begins(const char* name, const char* kind, const void* handle, void** error
   set_error(error, std::string("no ") + kind);
   return false;
 }
-// Where number is not below 0: with it as its content.
+// Holds a new object whose content is `number`, and returns its handle; null if the call itself fails.
 void* created(const char* name, const char* parent_kind, const void* parent, const char* kind, int number,
               void** error) {
   if (!begins(name, parent_kind, parent, error)) return nullptr;
@@ -345,7 +345,7 @@ void rs2_project_point_to_pixel(float pixel[2], const Intrinsics* intrinsics, co
 void rs2_deproject_pixel_to_point(float point[3], const Intrinsics* intrinsics, const float pixel[2],
                                   float depth_m) {
   const auto ray = lens_of(*intrinsics).ray_of({pixel[0], pixel[1]});
-  // As a version whose two functions do not fit together.
+  // The scale of 1.1 mimics a version whose two functions contradict each other.
   const double scale = camera.state.fail_name == "rs2_deproject_pixel_to_point" ? 1.1 : 1;
   point[0] = ray ? static_cast<float>(scale * ray->x() * depth_m) : NAN;
   point[1] = ray ? static_cast<float>(scale * ray->y() * depth_m) : NAN;

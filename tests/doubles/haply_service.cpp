@@ -1,4 +1,4 @@
-// As in runners/live/devices/haply_link.cpp.
+// The same definition and reason as in runners/live/devices/haply_link.cpp.
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK
 #include "tests/doubles/haply_service.h"
 

@@ -1,4 +1,4 @@
-// What stands behind a simulated Inverse service, and the texts by which it is told of.
+// The devices behind a simulated Inverse service, and the messages that describe them.
 #pragma once
 
 #include <string>
@@ -18,12 +18,12 @@ struct HaplyWorld {
   bool has_handle = true;
   bool is_handle_wired = false;
   std::string basis = "XYZ";
-  std::string force_key = "vector";  // the one it knows; another is passed over, as unknown keys are
+  std::string force_key = "vector";  // the key that it knows; it ignores others, as it does unknown keys
   bool reports_force = true;
-  double gate = 1;              // what it gives of the force that it is sent
-  Vec3 other_N = Vec3::Zero();  // what others at the service command
-  std::string answer;           // instead of a state
-  std::string inventory;        // instead of the inventory
+  double gate = 1;              // share of the commanded force that it gives
+  Vec3 other_N = Vec3::Zero();  // force that other programs command
+  std::string answer;           // sent instead of a state
+  std::string inventory;        // sent instead of the inventory
 };
 
 struct HaplyCommand {
@@ -32,9 +32,9 @@ struct HaplyCommand {
 };
 
 std::vector<HaplyCommand> haply_commands(const std::string& message);
-// What the first device of the world gives after such a command.
+// Force that the first device of the world gives after such a command.
 Vec3 given_force_N(const HaplyWorld& world, const HaplyCommand& command);
-// given_N: what it gives now.
+// given_N: the force that the device gives now.
 std::string haply_inventory(const HaplyWorld& world, const Vec3& given_N);
 std::string haply_state(const HaplyWorld& world, const Vec3& given_N);
 

@@ -1,4 +1,4 @@
-// How a test sets the double of the OpenCL library: which call fails, and how.
+// Settings by which a test makes the double of the OpenCL library fail: which call fails, and in which way.
 #pragma once
 
 #include <dlfcn.h>
@@ -10,8 +10,8 @@
 
 namespace remote_touch {
 
-// What every frame calls. Buffers are made for the first one of a size only, and a rectangle is written where
-// depths are no integers.
+// Functions that every frame calls. Others are not here: buffers are made only for the first frame of a size,
+// and clEnqueueWriteBufferRect is called only if depths are no integers.
 inline constexpr const char* kFrameFunctions[] = {"clEnqueueWriteBuffer",    "clSetKernelArg",
                                                   "clEnqueueNDRangeKernel",  "clEnqueueMapBuffer",
                                                   "clEnqueueUnmapMemObject", "clFinish"};
@@ -23,14 +23,14 @@ struct OpenClDouble {
   // none.
   std::atomic<const char*> failing{""};
   std::atomic<int> failing_call{0};
-  std::atomic<int> code{-5};              // that it returns: CL_OUT_OF_RESOURCES
-  std::atomic<bool> hangs{false};         // it does not return instead, until let_go
+  std::atomic<int> code{-5};              // error code that it returns: CL_OUT_OF_RESOURCES
+  std::atomic<bool> hangs{false};         // it hangs until let_go before it returns
   std::atomic<bool> is_imprecise{false};  // the device says that it flushes subnormal numbers
   std::atomic<bool> is_wrong{false};      // the device's normals are a little off
   std::atomic<bool> let_go{false};
-  std::atomic<int> calls{0};        // of the failing function
+  std::atomic<int> calls{0};        // number of calls of the failing function
   std::atomic<int> kernel_runs{0};  // since the library was loaded
-  std::atomic<int> objects{0};      // that exist: contexts, queues, programs, kernels, buffers
+  std::atomic<int> objects{0};      // objects alive: contexts, queues, programs, kernels, buffers
 
   void reset() {
     failing = "", failing_call = 0, code = -5;
@@ -39,7 +39,7 @@ struct OpenClDouble {
 };
 static_assert(std::is_trivially_destructible_v<OpenClDouble>);
 
-// In the library: extern "C" remote_touch::OpenClDouble* opencl_double(). It stays loaded.
+// The library exports extern "C" remote_touch::OpenClDouble* opencl_double(). It stays loaded.
 inline OpenClDouble& loaded_opencl_double(const char* file) {
   void* const loaded = dlopen(file, RTLD_NOW | RTLD_LOCAL);
   if (loaded == nullptr) {

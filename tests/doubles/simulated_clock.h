@@ -1,6 +1,6 @@
-// A clock that stands still until somebody sleeps. What is to happen beside the one who sleeps, in a real run
-// in other threads, happens in his sleep: in the same thread, at its own time, in the order in which it is
-// due.
+// A clock that stands still until a thread sleeps. Events that happen beside the sleeper, in a real run in
+// other threads, happen during its sleep: in the same thread, at their own times, in the order in which they
+// are due.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-// Begins at 0. What is due at the same moment happens in the order in which it was asked for, and before a
-// sleep that ends then is over. Who sleeps in an event sleeps longer than the one whose sleep it is where it
-// has to. One thread only.
+// Begins at 0. Events that are due at the same moment happen in the order in which they were added, and
+// before a sleep that ends at that moment is over. An event may sleep itself; if its sleep ends later than
+// the sleep during which it happens, that one ends later too. One thread only.
 class SimulatedClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }
@@ -28,7 +28,8 @@ class SimulatedClock final : public Clock {
   }
 
   void at(double moment_s, std::function<void()> what) { add(ns(moment_s), {std::move(what), 0, 0}); }
-  // At first_s, and then again and again; what it misses in a sleep of its own is left out. For cancel().
+  // Calls what() at first_s and then every period_s. Calls that fall into a sleep of its own are skipped.
+  // Returns the number for cancel().
   int every(double period_s, double first_s, std::function<void()> what) {
     const int id = ++last_id_;
     repeated_.insert(id);
@@ -65,7 +66,7 @@ class SimulatedClock final : public Clock {
   }
 
   std::int64_t now_ns_ = 0;
-  std::map<std::pair<std::int64_t, std::int64_t>, Event> events_;  // by due time, then in the order of asking
+  std::map<std::pair<std::int64_t, std::int64_t>, Event> events_;  // keys: due time, order of adding
   std::int64_t added_ = 0;
   int last_id_ = 0;
   std::set<int> repeated_;

@@ -30,7 +30,7 @@ class SimulatedHaply::Link final : public HaplyLink {
       const bool is_owed = !service_.hangs_ && !service_.answers_.empty();
       if (is_owed && service_.answers_.front().due_ns <= clock.now_ns()) break;
       if (clock.now_ns() >= deadline_ns) return {"the Haply service does not answer", ETIMEDOUT};
-      // In steps: what happens meanwhile may end the wait.
+      // The wait is split into steps, because an event during it may end it.
       clock.sleep_until_ns(std::min(deadline_ns, clock.now_ns() + kStep_ns));
     }
     last_ = std::move(service_.answers_.front().text);

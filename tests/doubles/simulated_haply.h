@@ -21,7 +21,7 @@ class SimulatedHaply {
   };
 
   explicit SimulatedHaply(SimulatedClock& clock) : clock_(clock) {}
-  // Of the adapter at this service. settings: of its address.
+  // Opens the adapter at this service. settings: appended to its address.
   std::unique_ptr<HapticDevice> open(const std::string& settings = "");
 
   HaplyWorld world;

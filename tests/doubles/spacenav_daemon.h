@@ -18,11 +18,11 @@ class SerialMouse {
   SerialMouse();
   ~SerialMouse();
 
-  const std::string& terminal() const { return terminal_; }  // what the daemon opens
-  bool is_detected() const { return is_detected_; }          // it was told to report motion
+  const std::string& terminal() const { return terminal_; }  // terminal that the daemon opens
+  bool is_detected() const { return is_detected_; }          // the daemon has asked it to report motion
   // Along and about x, y and z, in counts.
   void deflect(const std::array<int, 6>& counts);
-  void press(unsigned buttons);  // those that are down, a bit each
+  void press(unsigned buttons);  // buttons: one bit for each that is down
 
  private:
   void answer();
@@ -34,7 +34,7 @@ class SerialMouse {
   std::thread thread_;
 };
 
-// Where the daemon is installed; empty: it is not.
+// Path of the installed daemon; empty if it is not installed.
 std::string spacenav_daemon_program();
 
 // Runs in a folder of its own, where it makes its socket.

@@ -14,21 +14,21 @@ namespace remote_touch {
 
 struct VendorDevice {
   const char* name;
-  const char* uri;  // of the device, on the command line
+  const char* uri;  // address of the device on the command line
   const char* double_file;
-  const char* variable;  // names the library
-  const char* library;   // that is looked for without it
+  const char* variable;  // environment variable that names the library
+  const char* library;   // first name tried without it
   std::unique_ptr<HapticDevice> (*open)(const std::string& address, Clock& clock);
   Availability (*availability)();
 
-  Eigen::Matrix3d axes;  // takes ours to the vendor's
+  Eigen::Matrix3d axes;  // maps our axes to the vendor's
   double length_per_m, torque_per_Nm;
   bool has_buttons, drives_itself, has_motors_on_to_read;
-  int error, sent_error;  // one of the vendor's codes, and what a fault tells of it
-  int gone_error;         // of a device that is unplugged
+  int error, sent_error;  // one of the vendor's codes, and the code in the fault
+  int gone_error;         // code of an unplugged device
 };
 
-// For the names of tests.
+// gtest prints it in the names of tests.
 void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readability-identifier-naming)
 
 extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
@@ -63,10 +63,10 @@ class CallCycle : public DeviceCycle {
 // Runs the device for that many ticks and one more, which only ends it.
 void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick);
 
-// What the library was told that is not zero, once for all that was the same in a row.
+// Nonzero forces and torques that the library received, in order; successive equal ones count once.
 std::vector<std::array<double, 6>> sent_forces(const DeviceDouble& device);
 
-// What one tick reads once the device has been told a force, and whether it was a fault.
+// The reading and the fault of one tick after the device has received a force.
 struct ReadOnce {
   DeviceReading reading;
   DeviceFault fault;

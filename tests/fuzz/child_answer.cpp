@@ -1,4 +1,5 @@
-// What a child process answers about an HDF5 file: it read bytes of unknown origin, and may send anything.
+// Reads the answer of a child process about an HDF5 file. The child has read bytes of unknown origin, and may
+// send anything.
 #include <stdexcept>
 
 #include "analysis/storage/hdf5_child_source.h"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr ChildLimits kLimits{256u << 20, 1};
 
-// What a damaged file may make a library do.
+// Misbehaves as a library may that reads a damaged file.
 std::string misbehave(const std::string& how) {
   static int count = 0;
   if (how == "count") return std::to_string(++count);

@@ -1,4 +1,4 @@
-// What libFuzzer calls: the one target that is linked.
+// The entry points that libFuzzer calls. They run the one target that is linked.
 #include <pthread.h>
 #include <sanitizer/common_interface_defs.h>
 #include <sys/time.h>

@@ -1,4 +1,4 @@
-// What a page sends while it shows a live run.
+// Reads the messages that a page sends while it shows a live run.
 #include "runners/live/view/page_message.h"
 
 #include <cmath>

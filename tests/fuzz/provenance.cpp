@@ -1,5 +1,5 @@
-// What a result says of its origin: recipe, hashes of inputs, configuration. Two texts, parted by a line
-// "---".
+// Reads the origin that a result states: recipe, hashes of inputs, configuration. The input is two texts,
+// separated by a line "---".
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/recipe.h"
 #include "runners/settings/configuration_difference.h"

@@ -29,7 +29,7 @@ std::vector<Value> values_of(const Content& content, const char* name) {
   return values ? *values : std::vector<Value>();
 }
 
-// What read_sweep() takes from the content, unchecked.
+// Builds the result that read_sweep() would take from the content, unchecked.
 SweepResult result_of(const Content& content) {
   SweepResult result;
   result.axes = listed(content, "axes"), result.measures = listed(content, "measures");

@@ -205,7 +205,7 @@ class McapText {
   std::string file_, names_, chunk_, indexes_;
   std::map<std::string, std::uint16_t> ids_;
   std::map<std::uint16_t, std::uint64_t> counts_;
-  std::map<std::uint16_t, std::string> lists_;  // of the messages in this chunk
+  std::map<std::uint16_t, std::string> lists_;  // index of this chunk's messages, per channel
   std::size_t in_chunk_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint64_t messages_ = 0;

@@ -23,7 +23,7 @@ class MessageBytes {
   const std::string& done() const { return bytes_; }
 
  private:
-  MessageBytes& append(const char* value, std::size_t size);  // in the order of this machine
+  MessageBytes& append(const char* value, std::size_t size);  // value: in this machine's byte order
 
   Format format_;
   std::string bytes_;

@@ -45,7 +45,7 @@ inline DepthScene plane(const CameraIntrinsics& camera, const Vec3& direction, d
   return seen(camera, [=](const Vec3& r) { return std::pair(n.z() * z_m / n.dot(r), n); });
 }
 
-// In front of nothing.
+// A sphere with no background: NaN where a ray misses it.
 inline DepthScene sphere(const CameraIntrinsics& camera, const Vec3& centre, double radius) {
   return seen(camera, [=](const Vec3& r) {
     const double b = r.dot(centre), root = b * b - r.squaredNorm() * (centre.squaredNorm() - radius * radius);
@@ -90,8 +90,8 @@ inline void add_holes(DepthImage& depth, double fraction, unsigned seed, const s
   }
 }
 
-// What a filter does to a step: its largest error there without noise, and what it leaves of the noise on
-// the walls, as a share. filtered(depth, camera) gives the depths of a cloud in the camera frame.
+// The effect of a filter on a step: its largest depth error there without noise, and the share of the noise
+// that remains on the walls. filtered(depth, camera) returns the depths of a cloud in the camera frame.
 struct StepSmear {
   double max_error_m;
   double noise_gain;

@@ -44,7 +44,7 @@ inline double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * (b - a)).norm();
 }
 
-// By the side of every edge in the triangle's plane.
+// Distance to the triangle: to its plane if the point lies inside all edges, else to the nearest edge.
 inline double to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a).normalized();
   if (n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
@@ -60,7 +60,7 @@ inline double distance(const TriangleMesh& mesh, const Vec3& p) {
   return min;
 }
 
-// By the solid angles of all triangles: 1 inside, 0 outside.
+// Winding number from the solid angles of all triangles: 1 inside, 0 outside.
 inline double winding(const TriangleMesh& mesh, const Vec3& p) {
   double angle = 0;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -71,7 +71,7 @@ inline double winding(const TriangleMesh& mesh, const Vec3& p) {
   return angle / (4 * 3.14159265358979323846);
 }
 
-// What is left of the triangle after cutting at the six sides of a box; empty: it is not in it.
+// True if nothing of the polygon is left after clipping at the six sides of the box.
 inline bool clipped_away(std::vector<Vec3> polygon, const Vec3& low, const Vec3& high) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {1.0, -1.0}) {

@@ -1,4 +1,4 @@
-// Where real recordings and meshes are, for tests that read them.
+// The folder of real recordings and meshes, for tests that read them.
 #pragma once
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// REMOTE_TOUCH_DATA, else ../shared/data beside the project.
+// Returns the folder REMOTE_TOUCH_DATA if it is set, else ../shared/data beside the project.
 inline std::filesystem::path data_root() {
   if (const char* named = std::getenv("REMOTE_TOUCH_DATA")) return named;
   return std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR).parent_path() / "shared/data";

@@ -1,5 +1,5 @@
-// What the tests of result files share: a trace and a provenance that are hard to store, and looks into what
-// was read back.
+// Shared by the tests of result files: a trace and a provenance that are hard to store, and queries of files
+// that were read back.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// For tests that take another library of the same name than the system's.
+// Helper of tests that use another library instead of the system's library of the same name.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// What the tests of the file readers share: a folder to write in, PNG and PCD files, the message of a
+// Shared by the tests of the file readers: a folder to write in, PNG and PCD files, and the message of a
 // refusal.
 #pragma once
 
@@ -75,13 +75,13 @@ std::string pcd_header(const std::string& fields, const std::string& size, const
                        const std::string& count, const std::string& width, const std::string& height,
                        const std::string& points, const std::string& data);
 
-// That of an unorganised cloud of the float fields x, y, z.
+// Header of an unorganised cloud of the float fields x, y, z.
 std::string xyz_header(const std::string& points, const std::string& data);
 
 // An LZF block of literal runs only, as a compressor writes what does not repeat.
 std::string lzf_literals(const std::string& bytes);
 
-// What follows DATA binary_compressed: both sizes in bytes, and the block.
+// Body of a PCD file with DATA binary_compressed: both sizes in bytes, then the block.
 std::string compressed(const std::string& block, std::uint32_t raw_size);
 
 // An organised binary PCD file: a slanted plane as floats, with holes at the points 0, 5 and 7 (each marked

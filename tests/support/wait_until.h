@@ -1,4 +1,4 @@
-// For tests that wait for something in real time.
+// Helper of tests that wait for an event in real time.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace remote_touch {
 // longer.
 constexpr double kPatience_s = 600;
 
-// Whether it came true in that time.
+// Returns true if the condition held within that time.
 inline bool wait_until(const std::function<bool()>& is_so, double patience_s = kPatience_s) {
   const double until_s = steady_clock().now_s() + patience_s;
   while (!is_so() && steady_clock().now_s() < until_s) steady_clock().sleep_s(1e-3);

@@ -11,13 +11,13 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kShortest = 1e-5;  // of a way: parts are not halved any more
+constexpr double kShortest = 1e-5;  // parts of a path that are shorter than this are not halved again
 
 // A cubic on [from, until] by its Bernstein coefficients.
 struct Cubic {
   double b[4];
 
-  // Through values at both ends, and at one and two thirds.
+  // Returns the cubic with the values f at both ends and at one and two thirds.
   static Cubic through(const double (&f)[4]) {
     return {{f[0], (-5 * f[0] + 18 * f[1] - 9 * f[2] + 2 * f[3]) / 6,
              (2 * f[0] - 9 * f[1] + 18 * f[2] - 5 * f[3]) / 6, f[3]}};
@@ -31,7 +31,7 @@ struct Cubic {
   }
 };
 
-// Where a cubic is below min_m for the first time, or 1: nowhere on this part.
+// Returns the first position at which a cubic can be below min_m, within kShortest; 1: nowhere on this part.
 double first_below(const Cubic& cubic, double min_m, double from, double until) {
   if (cubic.least() >= min_m) return 1;
   if (until - from <= kShortest) return from;
@@ -73,7 +73,8 @@ double ClearWay::fraction(const Motion& motion, const Vec3& p_T, double distance
 
 namespace {
 
-// Where a way that has come to `from` passes the next plane between cells, or 1: its end.
+// Returns the position beyond `from` at which a path passes the next plane between cells; 1, its end, if
+// there is none.
 double next_plane(const Vec3& start, const Vec3& along, double from) {
   constexpr double kOnPlane = 1e-9;
   double next = 1;
@@ -88,9 +89,10 @@ double next_plane(const Vec3& start, const Vec3& along, double from) {
 
 }  // namespace
 
-// From cell to cell along the chord.
+// Steps from cell to cell along the chord. Returns the fraction at which the field can first be too low; 1:
+// nowhere.
 double ClearWay::first_below(const Chord& chord) const {
-  constexpr double kRounding_m = 1e-12;  // of two ways to compute the field at the start
+  constexpr double kRounding_m = 1e-12;  // difference of two ways to compute the field at the start
   for (double from = 0; from < 1;) {
     const double until = next_plane(chord.from, chord.along, from);
     const Vec3 middle = chord.from + 0.5 * (from + until) * chord.along;

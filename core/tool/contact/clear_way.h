@@ -1,9 +1,10 @@
-// How far a tool may move until the first point of a cloud would get into it: conservative advancement of
-// points through the tool's field (outer_field.h). Compare Xu and Barbic 2016. Not in the dissertation.
+// The part of a motion that a tool may make before the first point of a cloud gets into it, by conservative
+// advancement of points through the tool's field (outer_field.h). Compare Xu and Barbic 2016. Not in the
+// dissertation.
 //
-// Seen from the tool, a point moves on a curve. The field along the chord of the curve is a cubic in every
-// cell; how far the curve is from its chord is bounded by its second derivative. A cubic is above what its
-// Bernstein coefficients are above, so the result is certain, not sampled.
+// A point moves on a curve in the tool frame. The field along the chord of the curve is a cubic in every
+// cell, and the second derivative of the curve bounds its distance from the chord. A cubic is nowhere below
+// the smallest of its Bernstein coefficients, so the result is certain, not sampled.
 #pragma once
 
 #include "core/tool/dynamics/tool_pose.h"
@@ -14,13 +15,14 @@ namespace remote_touch {
 
 class ClearWay {
  public:
-  // What is less than this outside counts as touched, m; what is deeper than this inside is in the tool
+  // A point less than kTouch_m outside counts as touched, m. A point deeper than kInside_m is in the tool
   // already, as a new frame can put it there, and does not stop the tool.
   static constexpr double kTouch_m = 1e-6, kInside_m = 2e-6;
 
   // tool: made with outer_field; it has to outlive this.
   explicit ClearWay(const VoxelTool& tool);
-  // A place at which the field is look_ahead_m or more is outside after any motion by no more than this.
+  // Returns the longest motion, m, after which a position with a field of look_ahead_m or more is still
+  // outside.
   double safe_motion_m(double look_ahead_m) const;
 
   // A motion as moved() makes it, in tool axes: the fraction s of the displacement, for s from 0 to 1.
@@ -29,22 +31,22 @@ class ClearWay {
 
     Vec3 a_T;
     double shift_m, turn_rad;
-    Eigen::Matrix3d turned;  // from the tool's axes before to those after it
+    Eigen::Matrix3d turned;  // rotates from the tool axes before the motion to those after it
   };
-  // Points at which the field is larger than this are outside during all of a motion, if they are within
+  // Returns the field value above which points stay outside during the whole motion, if they are within
   // reach_m of the tool's origin.
   double far_m(const Motion& motion, double reach_m) const {
     return kTouch_m + max_slope_ * (motion.shift_m + motion.turn_rad * (reach_m + motion.shift_m));
   }
-  // How much of a motion the tool may go so that a point which is outside stays there; 1: all. p_T,
-  // distance_m: the point before the motion, and the field there.
+  // Returns the fraction of a motion that the tool may make so that a point that is outside stays there; 1:
+  // all of it. p_T, distance_m: the point before the motion, and the field there.
   double fraction(const Motion& motion, const Vec3& p_T, double distance_m) const;
 
  private:
   struct Chord {
     Vec3 from, along;  // cells
     double bend_m;     // the field on the curve is less than on the chord by no more than bend_m s (1 - s)
-    double min_m;      // as low as the field may go
+    double min_m;      // lowest field value allowed
   };
   double first_below(const Chord& chord) const;
 

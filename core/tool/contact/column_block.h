@@ -8,12 +8,13 @@
 
 namespace remote_touch {
 
-// Columns begin at whole cache lines, each at another place of its page: columns that are whole pages apart
-// would share the same few lines of a cache, and more of them than it has ways would push each other out.
+// Columns begin at whole cache lines, each at a different offset in its page. Columns that are whole pages
+// apart would share the same few lines of a cache, and evict each other if there are more of them than cache
+// ways.
 template <std::size_t kCount>
 class ColumnBlock {
  public:
-  // What was in the columns is lost when they grow.
+  // Makes room for `size` values in each column. The contents of the columns are lost if they grow.
   void grow(std::size_t size) {
     if (size <= size_) return;
     size_ = size;

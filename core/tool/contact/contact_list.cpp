@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-5;  // of normals, and more
+constexpr double kRounding = 1 + 1e-5;  // factor that covers the rounding of normals, and more
 // The collision list reaches a little less far than the field.
 constexpr double kMaxReach_m = kFieldMargin_m - 2e-4;
 
@@ -53,7 +53,7 @@ void ContactList::append_contacts(double side) {
   disks_.append_contacts(chosen_, finder_, kernels_, side, contacts_);
 }
 
-// The nearest disk of every cell of the tool, by their bounds.
+// Finds the nearest disk of every cell of the tool, by the bounds of the disks.
 void ContactList::gather_cells() {
   const NearDisks& disks = disks_;
   thinning_.begin();
@@ -66,14 +66,14 @@ void ContactList::gather_cells() {
     const double bound_m = disks.bound_m(disk);
     if (cell == nearest_.size()) nearest_.push_back({bound_m, disk});
     Nearest& nearest = nearest_[cell];
-    const bool is_nearer = bound_m < nearest.bound_m;  // without a branch: hard to foresee
+    const bool is_nearer = bound_m < nearest.bound_m;  // no branch: it would be hard to predict
     nearest.bound_m = is_nearer ? bound_m : nearest.bound_m;
     nearest.disk = is_nearer ? disk : nearest.disk;
   }
 }
 
-// Of every cell the deepest contact, with as few searches as their bounds allow: there can be thousands of
-// disks, and only the deepest of a cell is made into a contact.
+// Computes the deepest contact of every cell with as few searches as the bounds of the disks allow. There can
+// be thousands of disks, and only the deepest one of a cell becomes a contact.
 void ContactList::gather_deepest(double side) {
   const NearDisks& disks = disks_;
   gather_cells();
@@ -99,7 +99,8 @@ void ContactList::gather_deepest(double side) {
 
 NearContacts ContactList::near(const ToolPose& pose, double side, double within_m) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  // Of a disk that is searched the lower bound is not what counts: in a notch of the tool it can be deeper.
+  // A disk that is searched can be deeper than its lower bound, in a notch of the tool. So all disks within
+  // kSearch_m are included.
   const double near_m = std::min(std::max(within_m, NearDisks::kSearch_m), p_.look_ahead_m);
   NearContacts found{{}, -kInfinite, near_m < p_.look_ahead_m ? near_m : kInfinite};
   contacts_.clear();
@@ -139,8 +140,7 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
   return found;
 }
 
-// Points farther away than the voxels reach, and than disks can touch, need not be known unless none is
-// nearer.
+// Points beyond the reach of the voxels and of touchable disks are queried only if no point is nearer.
 Touched ContactList::touched(const ToolPose& pose) {
   const double voxels_m = 2 * finder_.tool().grid.size_m, shown_m = std::max(p_.look_ahead_m, voxels_m);
   const double disk_m = p_.contact_rule == TouchRule::voxels ? 0 : max_disk_m_;

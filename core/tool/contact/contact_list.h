@@ -17,14 +17,14 @@
 
 namespace remote_touch {
 
-// What a detection finds for the printed rule.
+// The result of a detection for the printed rule.
 struct VoxelContacts {
-  // (6.5) with depth 0, or (6.8) with depth 1 where there are collisions.
+  // The contacts of (6.5) with depth 0. If there are collisions, those of (6.8) with depth 1 instead.
   std::span<const ToolContact> contacts;
-  bool touched = false, collided = false;  // some point is in the tool; in its interior
+  bool touched = false, collided = false;  // a point is in the tool; a point is in its interior
 };
 
-// Lists are valid until the next call. If there are more contacts than the motion program takes, they are
+// Lists are valid until the next call. If there are more contacts than MotionProgram::kMaxContacts, they are
 // thinned.
 class ContactList final : public NearContactSource {
  public:
@@ -32,20 +32,23 @@ class ContactList final : public NearContactSource {
               const Kernels& kernels);
 
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
-  void reserve(std::size_t padded_size);                   // for clouds of that size
+  void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
   const TouchFinder& finder() const { return finder_; }
-  const NearDisks& near_disks() const { return disks_; }  // of the last call of near()
-  // For TouchRule::continuous only: every point by itself, none merged, whose field value is at most reach_m,
-  // and at most look_ahead_m and the radius of the largest disk. Valid until the next call.
+  const NearDisks& near_disks() const { return disks_; }  // disks of the last near()
+  // Returns every single point, none merged, with a field value of at most reach_m, and of at most
+  // look_ahead_m plus the radius of the largest disk. Only for TouchRule::continuous. Valid until the next
+  // call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
-  // Every disk that the tool could touch within the smaller of within_m, but at least NearDisks::kSearch_m,
-  // and look_ahead_m, and no farther than the field reaches; side as for near_contact().
+  // Returns the contacts of all disks that the tool could touch within within_m, but at least
+  // NearDisks::kSearch_m; none beyond look_ahead_m or beyond the reach of the field. side: as for
+  // near_contact().
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
-  // The points in shell and interior voxels. Those without a normal are left out.
+  // Returns the contacts of the points in shell and interior voxels, except those without a normal.
   VoxelContacts in_voxels(const ToolPose& pose);
-  // Points in shell or interior voxels, and unless the rule is voxels those whose disk is touched.
+  // Counts the points in shell or interior voxels and, unless the rule is voxels, those whose disk is
+  // touched.
   Touched touched(const ToolPose& pose);
 
  private:
@@ -57,19 +60,19 @@ class ContactList final : public NearContactSource {
   const ToolParameters p_;
   const Kernels& kernels_;
   TouchFinder finder_;
-  NearDisks disks_;  // of the points, or of fewer that stand for all
+  NearDisks disks_;  // disks of the points, or of fewer points that represent all
   NearPoints points_;
   TouchedPoints touched_;
   double max_disk_m_ = 0, max_near_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
-  std::vector<std::uint32_t> cells_;  // of each near disk
+  std::vector<std::uint32_t> cells_;  // cell of each near disk
   struct Nearest {
     double bound_m;
     std::uint32_t disk;
   };
-  std::vector<Nearest> nearest_;       // of each cell, by their bounds
-  std::vector<std::uint32_t> chosen_;  // disks
+  std::vector<Nearest> nearest_;       // nearest disk of each cell, by bound
+  std::vector<std::uint32_t> chosen_;  // numbers of disks
 };
 
 }  // namespace remote_touch

@@ -27,7 +27,7 @@ std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double c
   return key;
 }
 
-// The slot of a key in this call, or an unused one; null in a crowded table.
+// Returns the slot of a key since begin(), or an unused one; null if the table is crowded.
 ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   std::size_t at = first_slot(key);
   for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kMaxCells)
@@ -55,7 +55,7 @@ void ContactThinning::thin(std::vector<ToolContact>& contacts, std::size_t max) 
 void ContactThinning::thin_in_cells(std::vector<ToolContact>& contacts, double cell_m) {
   begin();
   std::size_t kept = 0;
-  for (const ToolContact& contact : contacts) {  // no place before it is its own
+  for (const ToolContact& contact : contacts) {  // only contacts already read are overwritten
     const std::size_t place = cell(cell_and_octant(contact.r_T, contact.n_T, 1 / cell_m));
     if (place == kNoCell) continue;
     if (place == kept)

@@ -1,4 +1,4 @@
-// Fewer contacts where there are more than the motion needs.
+// Reduces the number of contacts if there are more than the motion needs.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,25 @@ namespace remote_touch {
 // construction only.
 class ContactThinning {
  public:
-  // Far more cells than a tool of a hand's size has within reach of a surface; further ones get kNoCell.
+  // Limit of the number of cells, far more than a tool of a hand's size has within reach of a surface.
+  // Further cells get kNoCell.
   static constexpr std::size_t kMaxCells = 4096;  // a power of two
   static constexpr std::size_t kNoCell = ~std::size_t{0};
 
   ContactThinning() : slots_(kMaxCells) {}
 
   void begin();
-  // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
+  // Returns the number of a cell: 0, 1, 2 ... in the order in which they are met after begin(), or kNoCell if
+  // the table is crowded.
   std::size_t cell(std::uint64_t cell_and_octant) {
     const Slot& first = slots_[first_slot(cell_and_octant)];
     return first.stamp == stamp_ && first.key == cell_and_octant ? first.cell : find_cell(cell_and_octant);
   }
 
-  // Keeps the deepest contact of every cell, in place, as long as there are more than the motion can take.
-  // Cells of kCell_m at first: a step rotates the tool so little that two points 4 mm apart require the same
-  // motion within a tenth of a millimetre, and the next detection finds what was dropped. Then larger cells,
-  // because contacts must stay spread over the tool.
+  // Keeps the deepest contact of every cell, in place, until there are no more than `max` contacts. The cells
+  // have the size kCell_m at first: a step rotates the tool so little that two points 4 mm apart require the
+  // same motion within a tenth of a millimetre, and the next detection finds the dropped points. Then the
+  // cells become larger, because contacts must stay spread over the tool.
   static constexpr double kCell_m = 4e-3;
   static constexpr auto kMaxCount = static_cast<std::size_t>(MotionProgram::kMaxContacts);
   void thin(std::vector<ToolContact>& contacts, std::size_t max = kMaxCount);
@@ -38,7 +40,7 @@ class ContactThinning {
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t cell = 0;
-    std::uint32_t stamp = 0;  // of the begin() that it belongs to
+    std::uint32_t stamp = 0;  // number of the begin() that the slot belongs to
   };
   static std::size_t first_slot(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 52; }
   Slot* slot_of(std::uint64_t key);
@@ -48,9 +50,9 @@ class ContactThinning {
   std::uint32_t stamp_ = 0, cells_ = 0;
 };
 
-// The cube of a grid over the tool frame that a position lies in, as one number.
+// Returns the number of the cube of a grid over the tool frame in which a position lies.
 std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
-// The same, together with the signs of a direction's coordinates.
+// Returns the same number, combined with the signs of a direction's coordinates.
 std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double cells_per_m);
 
 }  // namespace remote_touch

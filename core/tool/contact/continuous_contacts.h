@@ -1,5 +1,6 @@
-// The points of a cloud for the continuous rule: contacts as the look-ahead rule has them, kept a small gap
-// away, and how far a motion may go until the first point would get into the tool. Not in the dissertation.
+// The points of a cloud for the continuous rule: the contacts of the look-ahead rule, kept a small gap away,
+// and the part of a motion that is possible before the first point gets into the tool. Not in the
+// dissertation.
 #pragma once
 
 #include <vector>
@@ -17,23 +18,24 @@ class ContinuousContacts final : public NearContactSource {
 
   // tool: made with outer_field; it has to outlive this.
   ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool);
-  // No motion is longer, because points that are not near could stop it.
+  // Returns the longest motion that is allowed, because points that are not near could stop a longer one.
   double max_motion_m() const { return max_motion_m_; }
 
   // Begins a tick with these points, and forgets which of them stopped the tool before. They have to outlive
   // it.
   void begin(ContactList& points);
 
-  // All within the look-ahead, whatever is asked for, with the gap. Points that have stopped the tool since
-  // begin() are contacts of their own: a step that runs against one of them is not tried again.
+  // Returns all contacts within the look-ahead, with the gap; within_m is ignored. Points that have stopped
+  // the tool since begin() are contacts of their own, so that a step against one of them is not tried again.
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
-  // A point is in the tool, also where near() has a disk for many that is not.
+  // True if a point is in the tool, even if near() represents it by a disk that is not.
   bool has_points_inside(const ToolPose& pose) const;
   double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;
-  // The same for a motion away from a surface, when a frame has put points anywhere: only those with a normal
-  // that faces the tool from ahead stop it, and they do at once if they are in it, as between walls that have
-  // closed. side: of the surface, as in near(). pre: the motion is a translation.
+  // Returns the clear fraction of a motion away from a surface after a frame that can have put points
+  // anywhere. Only points with a normal that faces the tool from ahead stop it. If such a point is in the
+  // tool, as between walls that have closed, the fraction is 0. side: side of the surface, as in near(). pre:
+  // the motion is a translation.
   double fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const;
 
  private:
@@ -42,7 +44,7 @@ class ContinuousContacts final : public NearContactSource {
   double known_fraction(const Vector6& a_g) const;
 
   const VoxelTool& tool_;
-  const double reach_m_;  // of the farthest point that is near, from the tool's centre of mass
+  const double reach_m_;  // largest distance of a near point from the tool's centre of mass
   ClearWay way_;
   const double max_motion_m_;
   ContactList* points_ = nullptr;

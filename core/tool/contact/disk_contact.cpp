@@ -18,15 +18,16 @@ Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
   return at.gradient_T - at.gradient_T.dot(disk.n_T) * disk.n_T;
 }
 
-// Down the field in the plane of the disk, to the lowest place of a line that begins at `place`. Along a line
-// the field of a convex tool is convex, and over an edge nearly a pair of lines: where the tangents at the
-// ends meet is a better end (Kelley's cutting planes). Returns whether it went anywhere.
+// Moves `place` down the field in the plane of the disk, to the lowest position on a line that begins there.
+// The field of a convex tool is convex along a line, and nearly a pair of straight lines over an edge: the
+// point where the tangents at the ends meet is a better end (Kelley's cutting planes). Returns true if the
+// position moved.
 bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const Vec3 along = slope_in_plane(disk, place.at);
   const double steep = along.norm();
   if (is_flat(steep, disk.radius_m, disk.extent_m)) return false;
   const Vec3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
-  // to the rim: |offset + t way| = radius
+  // The rim is at |offset + t direction| = radius.
   const double ahead = offset.dot(direction_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
   struct End {
     double t;
@@ -49,8 +50,8 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
   place.p_T = start_T + best.t * direction_T;
   place.at = best.at;
-  // On an edge the gradients of both sides make up one without a slope along the line: it alone tells the
-  // side of a disk that is met at a grazing angle.
+  // The gradients of both sides of an edge are combined into one without a slope along the line. Only this
+  // one shows the side of a disk that is met at a grazing angle.
   if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
     const double fraction = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
     place.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
@@ -58,9 +59,9 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   return best.t > 0;
 }
 
-// A flat tool on a flat surface: disks beside it lie in the plane of its face, and would be walls to its
-// sides. Where the field rises as the place leaves the plane, no more of the tool is there than a step of
-// kStep_m: +1 or -1, the side that the tool is on; 0 where it reaches on.
+// Returns the side of a disk that the tool is on, +1 or -1, for a flat tool on a flat surface; 0 if it is not
+// clear. Disks beside such a tool lie in the plane of its face, and would act as walls against its sides. If
+// the field rises over a step of kStep_m away from the plane, no more of the tool is on that side.
 double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place) {
   const auto leaves = [&](double side) {
     const Vec3 beyond = place.p_T - side * kStep_m * disk.n_T;
@@ -70,23 +71,25 @@ double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskP
   return front == back ? 0 : front ? 1 : -1;
 }
 
-// Which side of the disk the field is on, +1 where the sensor is; 0 where the disk meets it edge-on.
+// Returns the side of the disk that the tool is on by its field, +1 for the side of the sensor; 0 if the disk
+// meets the tool edge-on.
 double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
   const double facing = -at.gradient_T.dot(disk.n_T);
   if (std::abs(facing) <= kGrazing * steep) return 0;
   return facing < 0 ? -1 : 1;
 }
 
-// Which side of the disk the tool is on, likewise.
+// Returns the side of the disk that the tool is on: known_side in the tool, if known, else as facing_side().
 double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
   if (place.at.distance_m < 0 && known_side != 0) return known_side;
   const double steep = place.at.gradient_T.norm();
-  // Deep inside, at a ridge of the field, nothing tells; at a corner of the tool it is short too.
+  // A short gradient deep inside belongs to a ridge of the field and does not show the side; +1 is assumed.
+  // The gradient is short at a corner of the tool too, so the depth is checked.
   if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
   return facing_side(disk, place.at, steep);
 }
 
-// Out of the tool, and up where the field is flat.
+// Returns the unit direction in which the tool leaves the position soonest; +y if the field is flat there.
 Vec3 exit_distance(const FieldSample& at, double steep) {
   return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
 }

@@ -8,22 +8,24 @@
 
 namespace remote_touch {
 
-// In the tool frame. Without a normal (NaN) it is a point.
+// The disk of a point in the tool frame. Without a normal (NaN) it is a point.
 struct SurfaceDisk {
   Vec3 p_T, n_T;
   double radius_m;
   FieldSample at;       // the field at its centre
-  double extent_m = 0;  // of the points that it stands for, merged_points.h; 0: of one point
+  double extent_m = 0;  // extent of the points that it represents, merged_points.h; 0: one point
 
   bool has_normal() const { return n_T.allFinite(); }
 };
 
-// Whether a field of this slope in the plane of a disk counts as flat: no place of the disk is searched then.
+// True if a field of this slope in the plane of a disk counts as flat. No position on the disk is searched
+// then.
 inline bool is_flat(double slope, double radius_m, double extent_m) {
   return slope < disk_search::kFlatSlope && (extent_m == 0 || slope * radius_m < disk_search::kFlatDepth_m);
 }
 
-// Lower bound of the distance from the disk to the tool, if the field is nowhere steeper than at the centre.
+// Returns a lower bound of the distance from the disk to the tool, if the field is nowhere steeper than at
+// the centre.
 double lower_bound_m(const SurfaceDisk& disk);
 
 struct DiskPlace {
@@ -32,17 +34,18 @@ struct DiskPlace {
   bool at_rim = false;
 };
 
-// The position on the disk that is nearest to the tool, or deepest in it.
+// Returns the position on the disk that is nearest to the tool, or deepest in it.
 DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
 
-// The constraint of a disk at its nearest position, with the field there as distance. If that lies within the
-// disk, n is the disk's normal, on the side given by the field; at its rim, or for a point, n comes from the
-// tool's surface. Inside the tool known_side, +1 or -1 of the normal (0: not known), overrides the field: a
-// frame can put points anywhere in the tool, and then the field does not show where they came from.
+// Returns the constraint of a disk at its nearest position, with the field there as distance. If that
+// position lies within the disk, n is the disk's normal, on the side given by the field. At the rim, or for a
+// point, n comes from the tool's surface. Inside the tool known_side, +1 or -1 of the normal (0: not known),
+// overrides the field: a frame can put points anywhere in the tool, and then the field does not show where
+// they came from.
 ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
                          double known_side);
-// For a disk too far from the tool to be worth a search: at its centre, with its lower bound as distance.
-// pre: the bound is above 0.
+// Returns the constraint of a disk that is too far from the tool to be worth a search: at its centre, with
+// its lower bound as distance. pre: the bound is above 0.
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m);
 
 }  // namespace remote_touch

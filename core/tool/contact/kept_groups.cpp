@@ -17,7 +17,7 @@ void KeptGroups::search(const TouchFinder& finder, const ToolPose& pose, double 
   std::copy(found.begin(), found.end(), groups_.data());
 }
 
-// Groups without a point that a search for searched_m_ has to find.
+// Drops the groups without a point within searched_m_.
 void KeptGroups::drop_far_groups() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {

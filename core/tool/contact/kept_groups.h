@@ -1,8 +1,8 @@
 // The groups of points that a tool can have within reach, for one pose after the other.
 //
-// They are kept: a few more are searched than lie within reach, and while the tool has moved so little that
-// no other point can have come within reach, these are measured again; but not those that have been so far
-// away that none of their points can have come within reach either.
+// A search finds a few more groups than lie within reach. They are kept, and only measured again while the
+// tool has moved so little that no other point can have come within reach. A kept group is skipped if it has
+// been so far away that none of its points can have come within reach either.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,37 @@
 
 namespace remote_touch {
 
-// What a kernel measures. It writes nearest_m if is_new, else it reads it: groups whose nearest is more than
-// passed_m have no point within reach.
+// The groups for a kernel to measure. It writes nearest_m if is_new is true, else it reads nearest_m: groups
+// whose value is more than passed_m have no point within reach.
 struct GroupsInReach {
   const std::uint32_t* group;
   std::size_t count;
-  double* nearest_m;  // of each, the least field value of its points
+  double* nearest_m;  // least field value of the points of each group
   bool is_new;
   double passed_m;
 };
 
 class KeptGroups {
  public:
-  static constexpr double kSpare_m = 4e-4;  // what is searched beyond the reach
+  static constexpr double kSpare_m = 4e-4;  // distance beyond the reach that is searched too
 
-  void on_frame() { searched_m_ = -1; }   // a new cloud of the finder, whose size is reserved
-  void reserve(std::size_t padded_size);  // for clouds of that size
-  // Those that hold all points whose field value is reach_m or less, in order. Valid until the next call.
-  // pre: reach_m <= kFieldMargin_m - 2e-4.
+  void on_frame() { searched_m_ = -1; }   // the finder has a new cloud, whose size is reserved
+  void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
+  // Returns the groups that hold all points whose field value is reach_m or less, in order. Valid until the
+  // next call. pre: reach_m <= kFieldMargin_m - 2e-4.
   GroupsInReach within(const TouchFinder& finder, const ToolPose& pose, double reach_m);
-  void on_measured();  // after the kernel
+  void on_measured();  // call it after the kernel
 
  private:
   void search(const TouchFinder& finder, const ToolPose& pose, double reach_m);
   void drop_far_groups();
 
   Buffer<std::uint32_t> groups_;
-  Buffer<double> nearest_m_;  // of each group, where they were searched
+  Buffer<double> nearest_m_;  // least field value of each group at searched_at_
   std::size_t count_ = 0;
   ToolPose searched_at_;
   double searched_m_ = -1;
-  bool is_new_ = false;  // nothing was measured since the search
+  bool is_new_ = false;  // the groups were not measured since the search
 };
 
 }  // namespace remote_touch

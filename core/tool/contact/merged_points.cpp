@@ -14,12 +14,12 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kWorth = 2;  // times fewer points, or it is not done
-constexpr double kSquare = 1.5;    // spacings: every such square of a full grid has a point, however turned
-constexpr int kMaxSquares = 32;    // along a side
-constexpr double kMinAgreement = 0.5;  // length of the mean of the normals
+constexpr std::size_t kWorth = 2;      // factor by which the number of points must fall
+constexpr double kSquare = 1.5;        // spacings: at any angle, every such square of a full grid has a point
+constexpr int kMaxSquares = 32;        // number of squares along a side
+constexpr double kMinAgreement = 0.5;  // minimum length of the mean of the normals
 
-// The points of a cloud by the cubes of a grid.
+// The points of a cloud, sorted by the cubes of a grid.
 class Cubes {
  public:
   Cubes(std::span<const CloudPoint> points, double cube_m) : cube_m_(cube_m) {
@@ -30,7 +30,7 @@ class Cubes {
     for (const auto& number : numbers_) sorted_.push_back(points[number.second]);
   }
 
-  // The points of the cube with the first one at `first`.
+  // Returns the points of the cube whose first point has the index `first`.
   std::span<const CloudPoint> from(std::size_t first) const {
     std::size_t end = first;
     while (end < numbers_.size() && numbers_[end].first == numbers_[first].first) ++end;
@@ -38,7 +38,7 @@ class Cubes {
   }
   std::size_t size() const { return sorted_.size(); }
 
-  // Of the cube with that place and the 26 around it.
+  // Visits every point of the cube that contains p_W and of the 26 cubes around it.
   template <class Visit>  // (point)
   void for_each_around(const Vec3& p_W, const Visit& visit) const {
     for (int i = 0; i < 27; ++i) {
@@ -53,11 +53,11 @@ class Cubes {
 
  private:
   const double cube_m_;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers_;  // of the cube and of the point
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers_;  // numbers of the cube and of the point
   std::vector<CloudPoint> sorted_;
 };
 
-// In the middle of the points, if they are flat.
+// Returns the disk in the middle of the points; empty if they are not flat.
 std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
   const double spacing_m = points[0].spacing_m;
   MergedPoint disk{Vec3::Zero(), Vec3::Zero(), spacing_m, 0};
@@ -90,7 +90,7 @@ bool is_covered(const MergedPoint& disk, const Cubes& cubes) {
   });
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
-      const int right = 2 * x + 1 - side, up = 2 * y + 1 - side;  // of the middle, in half squares
+      const int right = 2 * x + 1 - side, up = 2 * y + 1 - side;  // position of the middle, in half squares
       const bool is_in_disk = right * right + up * up <= side * side;
       if (is_in_disk && !has_point[static_cast<std::size_t>(y * kMaxSquares + x)]) return false;
     }

@@ -1,5 +1,5 @@
-// Neighbours of a cloud that are so nearly flat that one disk can stand for all of them. Not in the
-// dissertation.
+// Merges neighbouring points of a cloud that are so nearly flat that one disk can represent all of them. Not
+// in the dissertation.
 #pragma once
 
 #include <span>
@@ -11,25 +11,25 @@ namespace remote_touch {
 
 struct CloudPoint {
   Vec3 p_W, n_W;     // NaN: no normal
-  double spacing_m;  // to its neighbours; 0: not known
+  double spacing_m;  // distance to its neighbours; 0: not known
 };
 
-// Where extent_m is 0 a point of the cloud. Otherwise the disk that stands for all points in a cube of a grid
+// A point of the cloud if extent_m is 0. Otherwise the disk that represents all points in a cube of a grid
 // over the world: in their middle, with their mean normal. Then
 // - none of them is farther from the middle than extent_m;
 // - each of them, and the rim of a disk of one spacing around it, lies within kFlat_m of its plane;
-// - the cloud covers it: within extent_m of the middle no square of 1.5 spacings is without a point of this
-//   or a neighbouring cube, so that it does not reach beyond an edge or over a hole.
+// - the cloud covers it: within extent_m of the middle, every square of 1.5 spacings contains a point of this
+//   or a neighbouring cube, so that the disk does not reach beyond an edge or over a hole.
 struct MergedPoint {
   Vec3 p_W, n_W;
   double spacing_m, extent_m;
 };
 
 inline constexpr double kFlat_m = 5e-6;
-// Points that are farther apart than this, most of them, are not merged.
+// Points are not merged if their median spacing is larger than this.
 inline constexpr double kMaxMergedSpacing_m = 6e-4;
 
-// Empty where merging would not save half of the points. pre: cube_m > 0.
+// Returns an empty list if merging would not save half of the points. pre: cube_m > 0.
 std::vector<MergedPoint> merged_points(std::span<const CloudPoint> points, double cube_m);
 
 }  // namespace remote_touch

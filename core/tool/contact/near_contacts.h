@@ -1,4 +1,4 @@
-// What the look-ahead rule needs from a scene: everything that the tool could touch soon.
+// The contacts that the look-ahead rule needs from a scene: everything that the tool could touch soon.
 #pragma once
 
 #include <limits>
@@ -16,20 +16,20 @@ struct NearContacts {
   double within_m = std::numeric_limits<double>::infinity();
 };
 
-// The interface between the look-ahead rule and what holds a tool: the points of a surface, or regions.
+// The interface between the look-ahead rule and the source of contacts: the points of a surface, or regions.
 class NearContactSource {
  public:
   virtual ~NearContactSource() = default;
-  // The contacts of a pose within within_m, or more of them, but none beyond the look-ahead; no more than the
-  // motion program takes. side: +1 or -1, the side of the surface that the tool was on before a frame put
-  // points into it; 0: not known. Valid until the next call.
+  // Returns the contacts of a pose within within_m. It may return more, but none beyond the look-ahead, and
+  // no more than MotionProgram::kMaxContacts. side: +1 or -1, the side of the surface that the tool was on
+  // before a frame put points into it; 0: not known. Valid until the next call.
   virtual NearContacts near(const ToolPose& pose, double side, double within_m) = 0;
-  // All within the look-ahead.
+  // Returns all contacts within the look-ahead.
   NearContacts near(const ToolPose& pose, double side) {
     return near(pose, side, std::numeric_limits<double>::infinity());
   }
-  // How much of a motion from this pose the tool may go; sources that know no better allow all of it. pre:
-  // pose is that of the last call of near().
+  // Returns the fraction of a motion from this pose that the tool may make. Sources without better knowledge
+  // allow all of it. pre: pose is that of the last call of near().
   virtual double clear_fraction(const ToolPose&, const Vector6&) { return 1; }
 };
 

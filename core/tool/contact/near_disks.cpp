@@ -84,7 +84,8 @@ void NearDisks::copy(std::size_t from, std::size_t to) {
   for (std::size_t column = 0; column < kDiskColumns; ++column) disks_[column][to] = disks_[column][from];
 }
 
-// What the kernel leaves: a place less than a cell outside the grid.
+// Completes the disks that the kernel leaves at NaN, because their centres lie less than a cell outside the
+// grid, and drops those beyond the limits.
 void NearDisks::finish_outside(const VoxelTool& tool, const DiskLimits& limits) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -9,10 +9,10 @@ namespace remote_touch {
 
 class NearPoints {
  public:
-  void on_frame() { groups_.on_frame(), count_ = 0; }  // a new cloud of the finder, whose size is reserved
-  void reserve(std::size_t padded_size);               // for clouds of that size
-  // The finder's points whose field value is reach_m or less, in the order of the cloud's tiles. pre: reach_m
-  // <= kFieldMargin_m - 2e-4.
+  void on_frame() { groups_.on_frame(), count_ = 0; }  // the finder has a new cloud, whose size is reserved
+  void reserve(std::size_t padded_size);               // reserves memory for clouds of this size
+  // Finds the finder's points whose field value is reach_m or less, in the order of the cloud's tiles. pre:
+  // reach_m <= kFieldMargin_m - 2e-4.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }

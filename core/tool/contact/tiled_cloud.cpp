@@ -16,11 +16,11 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
+constexpr double kSamePlace_m = 1e-6;  // closer points count as the same point
 constexpr std::uint32_t kTileSide_px = 8;
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 
-// The smallest sphere around the middle of the box of count items.
+// Returns the smallest sphere that contains `count` items and is centred in the middle of their box.
 template <class Item>  // (i) -> BoundingSphere
 BoundingSphere around(std::uint32_t count, const Item& item) {
   BoundingBox box;
@@ -68,7 +68,7 @@ void TiledCloud::add_tile(const PointCloud& cloud, std::span<const std::uint32_t
   finish_tile(first);
 }
 
-// Of the points added from first on, if there are any.
+// Finishes the tile of the points added from `first` on, if there are any.
 void TiledCloud::finish_tile(std::uint32_t first) {
   const auto count = static_cast<std::uint32_t>(x_.size()) - first;
   if (count == 0) return;
@@ -81,7 +81,7 @@ void TiledCloud::finish_tile(std::uint32_t first) {
   gather_groups(first);
 }
 
-// A tile that is the same in another cloud.
+// Copies a tile of another cloud without a change.
 void TiledCloud::copy_tile(const TiledCloud& all, const Tile& tile) {
   const auto first = static_cast<std::uint32_t>(x_.size());
   const auto append = [](std::vector<double>& to, const std::vector<double>& from, std::size_t begin,
@@ -160,11 +160,11 @@ void TiledCloud::Spheres::add(const BoundingSphere& sphere) {
   radius_m.push_back(sphere.radius_m);
 }
 
-// From the group of that point on.
+// Adds the bounding spheres of the groups, beginning with the group of point `first`.
 void TiledCloud::gather_groups(std::uint32_t first) {
   for (; first < x_.size(); first += kLanes) {
     std::uint32_t count = 0;
-    while (count < kLanes && x_[first + count] != kFarAway) ++count;  // padding stands last
+    while (count < kLanes && x_[first + count] != kFarAway) ++count;  // padding comes last
     group_spheres_.add(count == 0 ? kNoSphere : around(count, [&](std::uint32_t i) {
       return BoundingSphere{point(first + i), 0};
     }));
@@ -217,7 +217,7 @@ void TiledCloud::merge(double cube_m) {
   const bool is_coarse = std::none_of(spacing_m_.begin(), spacing_m_.end(), [](double spacing_m) {
     return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m;
   });
-  if (is_coarse) return;  // no copies of points that are not merged anyhow
+  if (is_coarse) return;  // points that are not merged anyway are not copied
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});

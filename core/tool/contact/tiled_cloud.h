@@ -34,7 +34,7 @@ struct TileBlock {
   std::uint32_t first, count;
 };
 
-// What becomes of the points of a cloud that is shown differently.
+// A change of the points of a cloud, for a cloud that is shown differently.
 class PointChange {
  public:
   struct Point {
@@ -42,20 +42,21 @@ class PointChange {
     double spacing_m;
   };
   virtual ~PointChange() = default;
-  // Whether it can change points in that sphere.
+  // True if it can change points in this sphere.
   virtual bool concerns(const BoundingSphere& sphere) const = 0;
-  // Changes a point, or returns false: it is not shown.
+  // Changes a point. Returns false if the point is not shown.
   virtual bool show(Point& point) const = 0;
 };
 
 class TiledCloud {
  public:
-  // The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64 points along a space-filling
-  // curve. Points that are not finite are left out. merged_cube_m: above 0, there is a merged() cloud where
-  // that is worth it. Allocates.
+  // Assigns the points of a cloud. The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64
+  // points along a space-filling curve. Points that are not finite are left out. merged_cube_m: if above 0, a
+  // merged() cloud is made where that is worth it. Allocates.
   void assign(const PointCloud& cloud, double merged_cube_m = 0);
-  // The tiles of another cloud that reach into a ball, their points changed, in the same order. Allocates
-  // unless reserve() was called for as many points, or for the pixels of an image, sides rounded up to 8.
+  // Assigns the tiles of another cloud that reach into a ball, with their points changed, in the same order.
+  // Allocates unless reserve() was called for as many points, or for the pixels of an image, sides rounded up
+  // to 8.
   void assign(const TiledCloud& all, const BoundingSphere& ball, const PointChange& change);
   void reserve(std::size_t points);
 
@@ -78,13 +79,15 @@ class TiledCloud {
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
-  // Distance to the points around it: the size of a pixel at the point's depth; in clouds without an image
-  // the side of a square of the tile's area per point.
+  // Returns the distance to the points around it. With an image: the size of a pixel at the point's depth, up
+  // to three times larger if the surface is seen at a slant. Otherwise: the median distance of the tile's
+  // points to their nearest neighbours, at most twice the median over all tiles.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
   double max_spacing_m() const { return max_spacing_m_; }
-  // Of what a point stands for around it: 0, or in a merged() cloud how far its points lie from it.
+  // Returns the largest extent of a point: 0, or in a merged() cloud the largest distance of a represented
+  // point from the middle of its disk.
   double max_extent_m() const { return max_extent_m_; }
-  // Fewer points that stand for all, merged_points(). Null where there are none.
+  // Returns the cloud of fewer points that represent all, merged_points(); null if there is none.
   const TiledCloud* merged() const { return merged_.get(); }
   int without_normal() const { return without_normal_; }
 

@@ -122,7 +122,8 @@ std::span<const std::uint32_t> TouchFinder::groups_within(const TiledCloud& clou
       rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
   }
   if (rows == 0) return {};
-  // From rows to tiles and groups. Two voxels: what the field far from the surface may be wrong by, and more.
+  // The search goes from rows to tiles and then to groups. The margin of two voxels is more than the error of
+  // the field far from the surface.
   const double size_m = tool_->grid.size_m;
   const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / size_m,
                           distance_m / size_m + 2, 1 / size_m};

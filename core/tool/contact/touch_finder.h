@@ -1,4 +1,4 @@
-// The collision list, 6.2.2: which points of the newest frame are in the tool, or near it.
+// The collision list, 6.2.2: the points of the newest frame that are in the tool, or near it.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ class TouchFinder {
   TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
 
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
-  void reserve(std::size_t padded_size);                   // for clouds of that size
+  void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
   const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
   // Upper bound of the length of the field's gradient where the field is below kFieldMargin_m, and of the
@@ -62,7 +62,7 @@ class TouchFinder {
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   const double max_slope_, grid_reach_m_, max_voxel_m_;
-  std::vector<std::int8_t> voxels_, nearness_;  // of every cell, and three readable bytes more
+  std::vector<std::int8_t> voxels_, nearness_;  // value of every cell, and three more readable bytes
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;
 };

@@ -40,7 +40,7 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
   return all;
 }
 
-// Disks whose nearest place has to be searched, and places outside the grid.
+// Adds the points whose disks have to be searched for the nearest position, and points outside the grid.
 void TouchedPoints::add_unclear(const TouchFinder& finder, const ToolPose& pose, const TouchLimits& limits,
                                 Touched& all) {
   const VoxelTool& tool = finder.tool();

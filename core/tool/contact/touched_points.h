@@ -1,7 +1,8 @@
-// What a pose touches of a cloud, every point counted.
+// Counts the points of a cloud that a pose touches, each point by itself.
 //
-// Groups of points are kept from one pose to the next (kept_groups.h). Most points are told by the voxel that
-// they lie in, or by how far away they are; the nearest place of a disk is searched where nothing else tells.
+// Groups of points are kept from one pose to the next (kept_groups.h). Most points are classified by the
+// voxel that they lie in, or by their distance. The nearest position on a disk is searched only if these do
+// not decide.
 #pragma once
 
 #include <limits>
@@ -23,14 +24,15 @@ class TouchedPoints {
  public:
   static constexpr double kTouch_m = 1e-4;  // a disk closer to the tool than this is touched
 
-  // with_disks: the disks of points are touched as well, not only points in voxels.
+  // Points with a touched disk count too if with_disks is true, not only points in voxels.
   TouchedPoints(double disk_radius_ratio, bool with_disks)
       : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {}
 
-  void on_frame() { groups_.on_frame(); }  // a new cloud of the finder, whose size is reserved
-  void reserve(std::size_t padded_size);   // for clouds of that size
-  // Of the points whose field value is reach_m or less: those in shell and interior voxels, if they are
-  // within voxels_m, and those whose disks are touched. pre: reach_m <= kFieldMargin_m - 2e-4.
+  void on_frame() { groups_.on_frame(); }  // the finder has a new cloud, whose size is reserved
+  void reserve(std::size_t padded_size);   // reserves memory for clouds of this size
+  // Counts the touched points among those whose field value is reach_m or less: points in shell and interior
+  // voxels, if they are within voxels_m, and points whose disks are touched. pre: reach_m <= kFieldMargin_m -
+  // 2e-4.
   Touched query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
                 double voxels_m);
 

@@ -34,7 +34,7 @@ std::optional<std::uint64_t> Voxmap::key_of(const Vec3& p_W) const {
   return key;
 }
 
-// Where the key is, or where it would be put.
+// Returns the slot that holds the key, or the one in which it would be put.
 std::size_t Voxmap::slot_of(std::uint64_t key) const {
   const std::size_t mask = slots_.size() - 1;
   std::uint64_t mixed = (key ^ key >> 30) * kMix;

@@ -18,7 +18,8 @@ class Voxmap {
   Voxmap(const PointCloud& cloud, double voxel_m);
 
   double voxel_m() const { return voxel_m_; }
-  // The middle of the surface voxel that holds a position; none if its voxel is free. Does not allocate.
+  // Returns the middle of the surface voxel that holds a position; none if its voxel is free. Does not
+  // allocate.
   std::optional<Vec3> surface_middle_W(const Vec3& p_W) const;
 
  private:

@@ -7,14 +7,14 @@
 
 namespace remote_touch {
 
-// As of ToolParameters.
+// The members mean the same as those of ToolParameters.
 struct EvenCoupling {
   double stiffness_N_per_m = 600, gyration_radius_m = 0.03;
   double max_force_N = 20, max_torque_Nm = 1;
 };
 
 Parameters parameters(EvenCoupling& p);
-// Tool settings with this coupling, and the defaults otherwise.
+// Returns tool settings with this coupling and the defaults otherwise.
 ToolParameters tool_parameters(const EvenCoupling& p);
 
 }  // namespace remote_touch

@@ -6,8 +6,9 @@ namespace remote_touch {
 
 namespace {
 
-// The slack s of all rows is kSlackScale z, and costs z^2 / 2 + kSlackCost z: per metre far more than any
-// contact can be worth, a wish being metres long at most, so it stays zero where the rows agree.
+// The slack s of all rows is kSlackScale z and costs z^2 / 2 + kSlackCost z. Per metre that is far more than
+// any contact can gain, because a desired motion is metres long at most. So the slack stays zero if the rows
+// are feasible.
 constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
 
 }  // namespace
@@ -30,7 +31,8 @@ Vector6 MotionProgram::row_of(const ToolContact& contact) const {
   return row;
 }
 
-// All at once, with the operations of row_of() in its order, or those that are of use one by one.
+// Adds all rows at once, with the operations of row_of() in its order. If that fails, adds the useful rows
+// one by one.
 void MotionProgram::add_rows(std::span<const ToolContact> contacts) {
   rigid_.clear();
   const std::size_t count = contacts.size();
@@ -93,7 +95,7 @@ ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const
   elastic_.add(row7, 0);  // the slack is never negative
   target7 << target, -kSlackCost;
   ProgramResult<7> loosened = elastic_.nearest(target7);
-  int kept = 0;  // without the row of the slack
+  int kept = 0;  // number of active rows, not counting the row of the slack
   for (int i = 0; i < loosened.active_count; ++i) {
     if (loosened.active[i] == rigid_.size()) continue;
     loosened.active[kept] = loosened.active[i], loosened.multiplier[kept++] = loosened.multiplier[i];

@@ -1,7 +1,8 @@
 // Gauss' least constraints for the tool, 6.2.3: the motion nearest to a desired one, in kinetic distance,
-// that the contacts allow. In tool axes, where the inertia is constant. At rest M times the displacement that
-// is left is a sum of contact normals; the wrench of a coupling (6.9) is one too only if M has its gyration
-// radius, MotionMetric::coupling. Then it is also the least elastic energy that the contacts allow.
+// that the contacts allow. It is computed in tool axes, where the inertia is constant. At rest, M times the
+// remaining displacement is a sum of contact normals. The wrench of a coupling (6.9) is such a sum only if M
+// has its gyration radius, MotionMetric::coupling. Then the elastic energy is also the least that the
+// contacts allow.
 #pragma once
 
 #include <span>
@@ -15,7 +16,7 @@ namespace remote_touch {
 
 // A linear constraint (6.3): n.a + (r x n).alpha >= depth.
 struct ToolContact {
-  Vec3 r_T;        // from the centre of mass to the contact point
+  Vec3 r_T;        // vector from the centre of mass to the contact point
   Vec3 n_T;        // unit, out of the surface: the tool may move freely along +n
   double depth_m;  // d: positive if the point is inside the tool, negative while it is still outside
   double side;     // +1 if n is the normal of the cloud, -1 if it is the opposite, 0 without a normal
@@ -29,7 +30,7 @@ struct ConstrainedMotion {
   bool elastic = false;           // the constraints were infeasible and relaxed, all by the same slack
 };
 
-// Of a body of 1 kg with the same gyration radius about every axis.
+// Returns the inertia of a body of 1 kg with the same gyration radius about every axis.
 inline Eigen::Matrix3d even_inertia_m2(double gyration_radius_m) {
   return Eigen::Matrix3d::Identity() * gyration_radius_m * gyration_radius_m;
 }
@@ -40,7 +41,7 @@ class MotionProgram {
 
   // M is that of motion_metric.
   MotionProgram(const ToolParameters& parameters, const VoxelTool& tool);
-  // For a body of this inertia about its centre of mass, divided by the mass.
+  // inertia_m2: inertia of the body about its centre of mass, divided by its mass.
   explicit MotionProgram(const Eigen::Matrix3d& inertia_m2);
 
   // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero
@@ -55,10 +56,10 @@ class MotionProgram {
   ConstrainedMotion read(const Vector6& y, int active_count, const int* active, const double* multiplier,
                          std::span<const ToolContact> contacts) const;
 
-  Eigen::Matrix3d root_, inverse_root_;  // of the inertia for 1 kg, so M^(1/2) of (6.4)
+  Eigen::Matrix3d root_, inverse_root_;  // roots of the inertia for 1 kg: M^(1/2) of (6.4) and its inverse
   QuadraticProgram<6> rigid_;
   QuadraticProgram<7> elastic_;
-  int number_[kMaxContacts] = {};  // of the contact behind each row
+  int number_[kMaxContacts] = {};  // index of the contact of each row
   double column_[6][kMaxContacts] = {}, depth_m_[kMaxContacts] = {};
 };
 

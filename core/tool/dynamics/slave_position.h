@@ -12,8 +12,8 @@ namespace remote_touch {
 class SlavePosition {
  public:
   explicit SlavePosition(ToolCommand rule) : rule_(rule) {}
-  // The tool's position, or the device's; without a device the last command is repeated. NaN before the
-  // first.
+  // Returns the tool's position or, with ToolCommand::hip, the device's. Without a valid device pose the last
+  // command is repeated, NaN before the first.
   Vec3 command_W(const ToolPose& tool, const std::optional<ToolPose>& device) {
     if (rule_ == ToolCommand::tool) return tool.p_W;
     if (device) last_W_ = device->p_W;

@@ -8,12 +8,13 @@
 
 namespace remote_touch {
 
-// On the distance field; 6.2.3 to 6.2.5 as printed; or on the distance field, with certified steps.
+// look_ahead: on the distance field. voxels: 6.2.3 to 6.2.5 as printed. continuous: on the distance field,
+// with certified steps.
 enum class TouchRule { look_ahead, voxels, continuous };
-enum class TorqueRule { inverse_jacobian, printed };  // of (6.9)
+enum class TorqueRule { inverse_jacobian, printed };  // torque of (6.9)
 enum class MotionMetric { tool, coupling };           // M of (6.4)
 enum class ToolForce { minus, plus, none };           // sign of the velocity term of (4.15), for a tool
-enum class ToolCommand { tool, hip };                 // what the slave robot follows, 5.2
+enum class ToolCommand { tool, hip };                 // pose that the slave robot follows, 5.2
 
 struct ToolParameters {
   TouchRule contact_rule = TouchRule::look_ahead;
@@ -28,8 +29,8 @@ struct ToolParameters {
   double rest_threshold_m = 1e-6;
   double stiffness_N_per_m = 600;  // K of (6.9) for a tool of 1 kg
   double gyration_radius_m = 0.03;
-  Vec3 stiffness_ratio{1, 1, 1};             // the diagonal of K, in world axes: along them
-  Vec3 rotational_stiffness_ratio{1, 1, 1};  // and about them
+  Vec3 stiffness_ratio{1, 1, 1};             // diagonal of K: factors along the world axes
+  Vec3 rotational_stiffness_ratio{1, 1, 1};  // factors about the world axes
   double max_force_N = 20;
   double max_torque_Nm = 1;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
@@ -41,7 +42,8 @@ struct ToolParameters {
 };
 
 Parameters parameters(ToolParameters& p);
-// merged_disk_m under the rules that use it, else 0; and 0 for points without disks, which would leave gaps.
+// Returns merged_disk_m for the rules that use it, else 0. Also 0 for points without disks, which would leave
+// gaps.
 double used_merged_disk_m(const ToolParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ToolParameters& p);

@@ -3,7 +3,7 @@
 namespace remote_touch {
 
 namespace {
-constexpr double kMaxHipDistance_m = 1e6;  // as for the proxy: a device farther away is no hand's
+constexpr double kMaxHipDistance_m = 1e6;  // same limit as for the proxy: no hand is farther away
 }
 
 std::optional<ToolPose> device_pose(const DeviceState& device) {

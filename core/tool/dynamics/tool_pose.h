@@ -23,20 +23,20 @@ struct ToolPose {
   }
 };
 
-// The pose of a tool that the device holds by its centre of mass; none for a device that is not finite, more
-// than 1000 km away or without an orientation.
+// Returns the pose of a tool that the device holds by its centre of mass. Empty if the device is not finite,
+// more than 1000 km away or without an orientation.
 std::optional<ToolPose> device_pose(const DeviceState& device);
 
 ToolPose moved(const ToolPose& pose, const Vector6& a_g);
-// (6.2): the displacement that takes one pose to the other in a unit step, in world axes.
+// Returns the displacement (6.2) that takes one pose to the other in a unit step, in world axes.
 Vector6 displacement(const ToolPose& from, const ToolPose& to);
 
-// The same displacement in other axes; q takes coordinates in the present axes to the new ones.
+// Returns the same displacement in other axes; q takes coordinates in the present axes to the new ones.
 Vector6 rotated(const Eigen::Quaterniond& q, const Vector6& a_g);
 
-// Upper bound of the displacement of any point of the tool, |a| + |alpha| reach.
+// Returns an upper bound of the displacement of any point of the tool, |a| + |alpha| reach.
 double max_point_displacement_m(const Vector6& a_g, double reach_m);
-// The displacement scaled down so that this bound is at most max_m.
+// Returns the displacement, scaled down so that this bound is at most max_m.
 Vector6 capped(const Vector6& a_g, double reach_m, double max_m);
 
 }  // namespace remote_touch

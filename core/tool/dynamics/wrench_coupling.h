@@ -18,7 +18,7 @@ struct WrenchSpring {
   double gyration_radius_m = 0;  // rotational stiffness = stiffness times this squared
   double max_force_N = 0, max_torque_Nm = 0;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
-  Vec3 ratio{1, 1, 1}, rotational_ratio{1, 1, 1};  // of each stiffness along and about x, y, z of the world
+  Vec3 ratio{1, 1, 1}, rotational_ratio{1, 1, 1};  // stiffness factors along and about x, y, z of the world
 };
 
 // The coupling (6.9) between tool and device, with this stiffness.

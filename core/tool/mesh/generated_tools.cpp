@@ -22,7 +22,8 @@ double capsule(const Vec3& p, const Vec3& from, const Vec3& to, double radius) {
   return (p - from - t * displacement).norm() - radius;
 }
 
-// Of a box with edges and corners of a radius; half sides to the outside.
+// The distance to a box with rounded edges and corners of this radius; half: half sides, measured to the
+// outside.
 double rounded_box(const Vec3& p, const Vec3& centre, const Vec3& half, double radius) {
   const Vec3 q = (p - centre).cwiseAbs() - (half - Vec3::Constant(radius));
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - radius;
@@ -35,7 +36,7 @@ double pebble(const Vec3& p, const Vec3& centre, double radius, double thick) {
   return std::sqrt(rim * rim + v.y() * v.y()) - thick;
 }
 
-// The smaller of two, with a fillet of about this width where they meet.
+// Returns the smaller of two distances, with a fillet of about this width where the bodies meet.
 double blend(double a, double b, double width) {
   const double h = std::max(width - std::abs(a - b), 0.0) / width;
   return std::min(a, b) - h * h * width / 4;
@@ -47,9 +48,10 @@ double blend_all(std::initializer_list<double> distances, double width) {
   return all;
 }
 
-// What the box of Fig 6.3 stops: four corners of equal reach, so that walls 110 and 90 mm apart hold the dog
-// at about 21.35 degrees in either sense. Head and the tip of the tail are balls of 10 mm at (+-34.75, 24);
-// the paws, of 8 mm, lie so that (26 cos + 35.12 sin) + 8 mm is the same 45 mm. Nothing else reaches there.
+// The tool that the box of Fig 6.3 stops: four corners of equal reach, so that walls 110 and 90 mm apart hold
+// the dog at about 21.35 degrees in either sense. The head and the tip of the tail are balls of 10 mm at
+// (+-34.75, 24). The paws, of 8 mm, lie so that (26 cos + 35.12 sin) + 8 mm is the same 45 mm. The code has
+// 0.1 mm more in x at all four corners. Nothing else reaches there.
 double husky_mm(const Vec3& p) {
   const Vec3 q(p.x(), std::abs(p.y()), p.z());                              // both sides are alike
   const double body = blend_all({capsule(q, {-22, 0, 6}, {20, 0, 8}, 8.8),  //
@@ -86,7 +88,8 @@ double key_mm(const Vec3& p) {
   return std::max(blend(blend(handle, shaft, 6), head, 4), -socket);
 }
 
-// As long, wide and high as the husky; edges of 8 mm, so that its outline from above is that of a plate.
+// A block as long, wide and high as the husky, with edges of 8 mm, so that its outline from above is that of
+// a plate.
 double block_mm(const Vec3& p) {
   return rounded_box(p, Vec3::Zero(), {47.5, 10, 34}, 8);
 }
@@ -95,7 +98,7 @@ double ball_mm(const Vec3& p) {
   return p.norm() - 10;
 }
 
-// A body given in mm, within +- half of the origin.
+// Makes the mesh of a body that is given in mm and lies within +- half of the origin.
 TriangleMesh meshed(double (*body_mm)(const Vec3&), const Vec3& half_mm, double cell_mm) {
   TriangleMesh mesh = marching_tetrahedra(body_mm, -half_mm, half_mm, cell_mm);
   for (Vec3& v : mesh.vertices) v *= kMm;

@@ -14,9 +14,9 @@ struct GeneratedTool {
   TriangleMesh (*make)();  // closed, in metres
 };
 
-std::span<const GeneratedTool> generated_tools();  // by name
+std::span<const GeneratedTool> generated_tools();  // sorted by name
 
-const GeneratedTool* find_generated_tool(const std::string& name);  // null: there is none of that name
+const GeneratedTool* find_generated_tool(const std::string& name);  // null if there is no tool of this name
 
 // Twelve triangles around a centre.
 TriangleMesh box_mesh(const Vec3& sides_m, const Vec3& centre = Vec3::Zero());

@@ -65,7 +65,7 @@ class March {
     return i == 0 || j == 0 || k == 0 || i + 1 == nodes_[0] || j + 1 == nodes_[1] || k + 1 == nodes_[2];
   }
 
-  // One corner apart makes a triangle, two and two a quadrangle.
+  // Adds a triangle if one corner is on the other side, and a quadrangle if two are.
   void tetrahedron(std::array<std::size_t, 4> n) {
     std::stable_partition(n.begin(), n.end(), [&](std::size_t m) { return values_[m] < 0; });
     const auto inside = std::count_if(n.begin(), n.end(), [&](std::size_t m) { return values_[m] < 0; });
@@ -81,14 +81,16 @@ class March {
     }
   }
 
-  // The corners in the order in which the normal points from a node inside to one outside.
+  // Adds a triangle, with its corners in the order in which the normal points from the node inside to the one
+  // outside.
   void triangle(std::array<int, 3> v, std::size_t in, std::size_t out) {
     const Vec3 &a = mesh_.vertices[v[0]], &b = mesh_.vertices[v[1]], &c = mesh_.vertices[v[2]];
     if ((b - a).cross(c - a).dot(place(out) - place(in)) < 0) std::swap(v[1], v[2]);
     mesh_.triangles.push_back(v);
   }
 
-  // The place between a node inside and one outside where the function vanishes, made once for each edge.
+  // Returns the vertex where the function vanishes between a node inside and one outside, made once for each
+  // edge.
   int vertex(std::size_t in, std::size_t out) {
     const std::size_t low = std::min(in, out), high = std::max(in, out);
     // Ends of an edge differ by 0 or 1 along every axis.
@@ -102,7 +104,7 @@ class March {
     return found->second;
   }
 
-  // Halving and false position in turns.
+  // Finds the root by bisection and false position in turns.
   Vec3 root(std::size_t in, std::size_t out) const {
     const Vec3 from = place(in), displacement = place(out) - from;
     double a = 0, b = 1, fa = values_[in], fb = values_[out];
@@ -122,7 +124,7 @@ class March {
   double cell_m_;
   std::array<int, 3> nodes_;
   std::vector<double> values_;
-  std::unordered_map<std::size_t, int> vertices_;  // by edge; looked up only, never walked
+  std::unordered_map<std::size_t, int> vertices_;  // vertex of each edge; looked up only, never iterated
   TriangleMesh mesh_;
   bool open_ = false;
 };

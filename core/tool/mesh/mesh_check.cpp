@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-// The root of a triangle's part in a forest of parents, with shorter ways left behind.
+// Returns the root of a triangle's part in a forest of parents, and shortens the paths on the way.
 int root_of(std::vector<int>& parent, int triangle) {
   while (parent[triangle] != triangle) triangle = parent[triangle] = parent[parent[triangle]];
   return triangle;

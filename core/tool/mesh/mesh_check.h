@@ -1,4 +1,4 @@
-// Whether a mesh encloses a solid, so that inside and outside are defined.
+// Checks whether a mesh encloses a solid, so that inside and outside are defined.
 #pragma once
 
 #include <string>
@@ -11,16 +11,17 @@ struct MeshCheck {
   int vertices = 0;
   int triangles = 0;
   int parts = 0;                 // sets of triangles connected by edges
-  int boundary_edges = 0;        // of one triangle
-  int non_manifold_edges = 0;    // of three or more
-  int inconsistent_edges = 0;    // of two triangles that run along them in the same direction
-  int degenerate_triangles = 0;  // a corner twice, or no area
-  int bad_vertices = 0;          // not finite
+  int boundary_edges = 0;        // edges of one triangle
+  int non_manifold_edges = 0;    // edges of three or more triangles
+  int inconsistent_edges = 0;    // edges of two triangles that run along them in the same direction
+  int degenerate_triangles = 0;  // triangles with a corner twice, or without area
+  int bad_vertices = 0;          // vertices that are not finite
   int bad_indices = 0;           // triangles with a corner that is no vertex
   double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
 
   bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }
-  // Every edge belongs to two triangles, in opposite directions. Equal vertices must be one.
+  // True if every edge belongs to two triangles, in opposite directions. Equal vertices must have been
+  // merged.
   bool closed() const {
     return readable() && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
   }
@@ -40,13 +41,14 @@ struct MeshEdge {
 };
 std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh);
 
-// For each triangle the number of its part, counted from 0 by the first triangle.
+// Returns the number of the part of each triangle. Parts are counted from 0 in the order of their first
+// triangles.
 std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, int& count);
 
-// Of the tetrahedra from a point to all triangles (or those of one part).
+// Returns the sum of the signed volumes of the tetrahedra from a point to all triangles.
 double signed_volume(const TriangleMesh& mesh);
 
-// Its area is negligible against the length of its edges.
+// True if a corner occurs twice, or the area is negligible against the length of the edges.
 bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
 }  // namespace remote_touch

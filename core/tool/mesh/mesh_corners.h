@@ -1,4 +1,4 @@
-// Whether the corners of a mesh from outside are vertices of it.
+// Checks whether the corners of a mesh from an external source are vertices of it.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,8 @@ namespace remote_touch {
 
 namespace {
 
-// The first vertex within reach takes the place of later ones; found by cells twice the reach wide.
+// Merges vertices: the first vertex within reach replaces later ones. It is found by cells twice the reach
+// wide.
 void weld(TriangleMesh& mesh, MeshRepair& done) {
   const BoundingBox box = bounding_box(mesh.vertices);
   const double reach = 1e-6 * box.sizes().maxCoeff();
@@ -54,7 +55,7 @@ void drop_useless(TriangleMesh& mesh, MeshRepair& done) {
     auto [a, b, c] = triangle;
     std::array<int, 3> corners = triangle;
     std::sort(corners.begin(), corners.end());
-    // A triangle without area whose corners differ holds its neighbours together: it stays.
+    // A triangle without area whose corners differ connects its neighbours, so it stays.
     if (a == b || b == c || c == a || !seen.insert(corners).second)
       ++done.dropped_triangles;
     else
@@ -63,8 +64,9 @@ void drop_useless(TriangleMesh& mesh, MeshRepair& done) {
   mesh.triangles = std::move(kept);
 }
 
-// Walks from triangle to triangle over edges of two, and turns those that run along an edge the same way.
-// Edges of three or more part the surface. Returns the component of each triangle.
+// Walks from triangle to triangle over edges of two, and flips triangles that run along an edge in the same
+// direction as their neighbour. The walk does not cross edges of three or more. Returns the component of each
+// triangle.
 std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   struct Neighbour {
@@ -144,7 +146,7 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRe
   std::map<int, std::vector<int>> parts;
   for (std::size_t t = 0; t < component.size(); ++t) parts[component[t]].push_back(static_cast<int>(t));
   for (const auto& [first, triangles] : parts) {
-    // About the part itself, so that a part with gaps has the sign of most of it.
+    // The volume is computed about the part itself, so that a part with gaps has the sign of most of it.
     const Vec3 o = mesh.vertices[mesh.triangles[triangles.front()][0]];
     double volume = 0;
     for (const int t : triangles) {

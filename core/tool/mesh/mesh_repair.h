@@ -14,9 +14,9 @@ struct MeshRepair {
   int filled_holes = 0;       // loops of boundary edges, each with a fan around its middle
 };
 
-// Every part is oriented outwards separately: a part that was a hollow in another becomes solid. What cannot
-// be closed (edges of three triangles, boundaries that are not loops) stays open: see inside_nodes_of_open().
-// pre: indices in range, vertices finite.
+// Repairs a mesh. Every part is oriented outwards separately: a part that was a hollow in another becomes
+// solid. Parts that cannot be closed (edges of three triangles, boundaries that are not loops) stay open: see
+// inside_nodes_of_open(). pre: indices in range, vertices finite.
 TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done);
 
 std::string text(const MeshRepair& done);  // "welded 12 vertices, filled 3 holes"; "nothing"

@@ -30,7 +30,7 @@ Vec3 area_vector(const std::vector<Vec3>& corners) {
   return sum;
 }
 
-// No triangle of its fan has an area: the limit is that of is_degenerate().
+// True if no triangle of the polygon's fan has an area; the limit is that of is_degenerate().
 bool is_line(const std::vector<Vec3>& corners) {
   double max_length = 0, max_area = 0;
   for (std::size_t i = 1; i < corners.size(); ++i) {
@@ -51,7 +51,7 @@ std::vector<Vec2> seen_flat(const std::vector<Vec3>& corners, const Vec3& normal
   return flat;
 }
 
-// Seen from the first corner all others come one after the other, within half a turn.
+// True if all other corners, seen from the first one, come one after the other within half a turn.
 bool has_fan(const std::vector<Vec2>& at) {
   for (std::size_t i = 2; i < at.size(); ++i)
     if (!(turn(at[0], at[1], at[i]) > 0) || !(turn(at[0], at[i - 1], at[i]) > 0)) return false;
@@ -64,7 +64,7 @@ bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return boxes_meet && !(turn(a, b, c) * turn(a, b, d) > 0) && !(turn(c, d, a) * turn(c, d, b) > 0);
 }
 
-// No edges meet but neighbours, and these in their corner only.
+// True if no edges meet, except neighbours in their common corner.
 bool is_simple(const std::vector<Vec2>& at) {
   const std::size_t n = at.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -76,7 +76,7 @@ bool is_simple(const std::vector<Vec2>& at) {
   return true;
 }
 
-// The triangle of a corner and its neighbours lies inside, and no other corner in it.
+// True if the triangle of a corner and its neighbours lies inside and contains no other corner.
 bool is_ear(const std::vector<Vec2>& at, const std::vector<int>& left, std::size_t place) {
   const std::size_t n = left.size(), before = (place + n - 1) % n, after = (place + 1) % n;
   const Vec2 &a = at[left[before]], &b = at[left[place]], &c = at[left[after]];
@@ -89,7 +89,7 @@ bool is_ear(const std::vector<Vec2>& at, const std::vector<int>& left, std::size
   return true;
 }
 
-// Cuts one ear after the other; none where there is none left.
+// Cuts off one ear after the other. Empty if no ear is found before the end.
 std::optional<Triangles> ears(const std::vector<Vec2>& at) {
   std::vector<int> left(at.size());
   std::iota(left.begin(), left.end(), 0);
@@ -107,7 +107,8 @@ std::optional<Triangles> ears(const std::vector<Vec2>& at) {
   return triangles;
 }
 
-// All have an area above zero: so they cannot make up for what others cover too much.
+// True if the areas of the triangles sum up to that of the polygon. All of them are positive, so an error of
+// one cannot cancel that of another.
 bool have_area(const Triangles& triangles, const std::vector<Vec2>& at) {
   double whole = 0, sum = 0;
   for (std::size_t i = 2; i < at.size(); ++i) whole += turn(at[0], at[i - 1], at[i]);

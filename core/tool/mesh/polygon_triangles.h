@@ -9,11 +9,11 @@
 
 namespace remote_touch {
 
-// Each triangle by the places of its corners in the list, in the direction of the polygon. Their areas sum up
-// to the area of the polygon: they neither overlap nor leave it. A convex polygon becomes a fan about its
-// first corner. None for a polygon whose edges cross or touch each other. Corners that are not in one plane
-// count as seen along the axis nearest to the polygon's normal. pre: three finite corners or more, neighbours
-// differ.
+// Returns each triangle as the indices of its corners in the list, in the direction of the polygon. Their
+// areas sum up to the area of the polygon: they neither overlap nor leave it. A convex polygon becomes a fan
+// about its first corner. Empty for a polygon whose edges cross or touch each other. Corners that are not in
+// one plane are projected along the axis nearest to the polygon's normal. pre: three finite corners or more,
+// neighbours differ.
 std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners);
 
 }  // namespace remote_touch

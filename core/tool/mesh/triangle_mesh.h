@@ -1,4 +1,4 @@
-// A surface of triangles: what a tool is made from.
+// A surface of triangles, from which a tool is made.
 #pragma once
 
 #include <array>

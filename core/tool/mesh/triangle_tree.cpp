@@ -12,11 +12,11 @@ namespace remote_touch {
 namespace {
 
 constexpr int kLeaf = 4;
-constexpr int kDeepest = 64;  // halving: no tree of 2^31 triangles is deeper than 32
-constexpr double kFar = 3;    // radii away, triangles count together
+constexpr int kDeepest = 64;  // trees are halved: no tree of 2^31 triangles is deeper than 32
+constexpr double kFar = 3;    // distance in radii from which on triangles are combined
 constexpr double kPi = 3.14159265358979323846;
 
-// From v to the segment from 0 to d, of squared length dd; vd = v d.
+// Returns the squared distance from v to the segment from 0 to d. dd: squared length of d; vd = v d.
 double squared_to_segment(const Vec3& v, const Vec3& d, double vd, double dd) {
   const double t = dd > 0 ? std::min(std::max(vd / dd, 0.0), 1.0) : 0;
   return (v - t * d).squaredNorm();
@@ -64,7 +64,7 @@ void TriangleTree::gather(const TriangleMesh& mesh, const std::vector<int>& orde
     }
 }
 
-// Halves by the middles of the triangles along the longest side of their box.
+// Builds the tree by halving the triangles, by their middles along the longest side of their box.
 int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int begin, int end) {
   const int index = static_cast<int>(nodes_.size());
   nodes_.emplace_back();
@@ -92,8 +92,8 @@ int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int b
   return index;
 }
 
-// Over the inside of the triangle the distance to its plane, else that to the nearest edge: right for slivers
-// too, where a decision by regions goes wrong.
+// Returns the squared distance to the plane if p is over the inside of the triangle, else to the nearest
+// edge. It is right for slivers too, where a decision by regions goes wrong.
 double TriangleTree::squared_to(const Face& f, const Vec3& p) {
   const Vec3 v = p - f.a;
   const double vb = v.dot(f.ab), vc = v.dot(f.ac);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kNowhere_m = -1;
 
-// Detections are left for the motion itself after the way out, a look the other way, and the way back.
+// Returns the maximum number of steps out. It leaves detections for a check of the other direction, the way
+// back and the motion itself.
 int max_steps(int detections_per_tick) {
   return std::max(0, (detections_per_tick - 4) / 3);
 }
@@ -31,7 +32,7 @@ bool ContinuousMotion::is_clear(const NearContacts& near, const ToolPose& pose) 
   return near.deepest_m <= ContinuousContacts::kGap_m && !near_.has_points_inside(pose);
 }
 
-// A surface is close on the side that held the tool, and none is in it.
+// True if a surface is close on the side that held the tool, and no point is in the tool.
 bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& pose) const {
   const Vec3 push_T = pose.q_WT.conjugate() * push_W_;
   return is_clear(near, pose) &&
@@ -39,7 +40,8 @@ bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& po
                      [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
 }
 
-// Out to the first place that is supported. Returns how far, or kNowhere_m.
+// Moves the pose out to the first position that is supported. Returns the distance, or kNowhere_m if there is
+// none.
 double ContinuousMotion::leave(ToolPose& pose, int& detections) {
   for (double done_m = 0;;) {
     const NearContacts near = near_.near(pose, 0);
@@ -53,7 +55,8 @@ double ContinuousMotion::leave(ToolPose& pose, int& detections) {
   }
 }
 
-// Towards the points that held the tool, until one stops it. Returns how far.
+// Moves the pose by up to distance_m towards the points that held the tool, until one stops it. Returns the
+// distance.
 double ContinuousMotion::approach(ToolPose& pose, double distance_m, int& detections) {
   double done_m = 0;
   while (done_m < distance_m) {
@@ -73,7 +76,7 @@ void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& repor
   ToolPose outside = pose;
   const double out_m = leave(outside, report.detections);
   if (out_m <= 0) return;
-  // Where no point is in the tool the surface is gone, and may as well have gone the other way.
+  // If no point is in the tool, the surface has left it, and may have gone the other way as well.
   if (is_clear(near_.near(pose, 0), pose)) {
     ToolPose ahead = pose;
     if (approach(ahead, out_m, report.detections) < out_m) return;

@@ -1,13 +1,13 @@
-// The continuous rule: the look-ahead rule, with no step longer than until the first point would get into the
+// The continuous rule: the look-ahead rule with steps that end before the first point would get into the
 // tool. So between two frames no point that is outside gets into a closed tool (clear_way.h).
 //
 // A frame can put its points anywhere, also into the tool or past it. A tool that points held is then moved
-// out, along the direction in which they pushed it, to the first place where no point is in it and a surface
-// is close on the side that held it; and from there back until the first point stops it. So it stays on its
-// side of the surface, however thin it is, if the surface moved by less than frame_reach_m. Where a surface
-// on the other side is nearer, or one that faces the tool is in the way, it stays where it is. What is still
-// in the tool then is left as the look-ahead rule does it, without certainty for the points that are passed
-// in that tick. Not in the dissertation.
+// out, in the direction in which they pushed it, to the first position where no point is in it and a surface
+// is close on the side that held it. From there it moves back until the first point stops it. So it stays on
+// its side of the surface, however thin the surface is, if the surface moved by less than frame_reach_m. The
+// tool stays where it is if a surface on the other side is nearer, or if a surface that faces the tool is in
+// the way. Points that are still in the tool then are left as in the look-ahead rule, without certainty for
+// the points that are passed in that tick. Not in the dissertation.
 #pragma once
 
 #include "core/tool/contact/continuous_contacts.h"
@@ -21,7 +21,8 @@ class ContinuousMotion final : public ToolMotion {
   ContinuousMotion(const ToolParameters& parameters, const VoxelTool& tool);
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
-  // How far a held tool is moved out at most: frame_reach_m, or less where the budget of detections is small.
+  // Returns the longest distance by which a held tool is moved out: frame_reach_m, or less if the budget of
+  // detections is small.
   double frame_reach_m() const { return frame_reach_m_; }
 
  private:

@@ -8,11 +8,11 @@ namespace remote_touch {
 
 namespace {
 
-// A contact within this distance of the gap is touched. Less than it in a step is no displacement.
+// A contact within this distance of the gap is touched.
 constexpr double kTouching_m = 1e-6;
-// Deeper than this behind the gap, a frame has put it there.
+// A contact deeper than this behind the gap was put there by a frame.
 constexpr double kTolerance_m = 2 * ContinuousContacts::kGap_m;
-// Steps without progress, or that no contact lets be made, in a row that end a tick.
+// Number of steps in a row without progress, or that no contact permits, that ends a tick.
 constexpr int kGodObjectPatience = 8;
 
 }  // namespace
@@ -69,7 +69,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   if (touched_.empty()) return a_gu;
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
-  if (motion.elastic) {  // the gap has no room between two walls; J a >= 0 always has a = 0
+  if (motion.elastic) {  // two walls leave no room for the gap; J a >= 0 always has a = 0
     for (ToolContact& contact : touched_) contact.depth_m = 0;
     motion = program_.solve(desired_T, touched_);
   }
@@ -79,7 +79,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   return rotated(pose.q_WT, motion.a_g);
 }
 
-// With a disk or with a point.
+// The new contact can be with a disk or with a point.
 double GodObjectMotion::free_fraction(const Vector6& a_c, const ToolPose& pose, const NearContacts& near) {
   const Vector6 a_T = rotated(pose.q_WT.conjugate(), a_c);
   const Vec3 shift_T = a_T.head<3>(), turn_T = a_T.tail<3>();
@@ -104,7 +104,7 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     const NearContacts near = near_.near(pose, settling_ ? side_ : 0);
     ++report.detections;
     if (near.deepest_m <= kTolerance_m) settling_ = false;
-    if (near.contacts.empty()) side_ = 1;  // what held the tool is left behind
+    if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
     gather_touched(near);
     const Vector6 a_gu = displacement(pose, device);
     const Vector6 a_c = constrained(a_gu, pose, report);

@@ -12,22 +12,22 @@
 // on the hand are those of the constraints at the last pose, k M (a_c - a_u): none for the part of the motion
 // that no contact hinders, also where the tool has not caught up yet.
 //
-// What plays the part of the mesh. The source has two meshes at rest, and contacts of corners with faces and
-// of edges with edges. Here the faces of the scene are the small disks around its points (disk_contact.h): a
-// point against the surface of the tool, and the surface of the tool against a disk, with the normal of the
-// disk. Points are never passed (clear_way.h); for disks the time of contact is that of the linearised
-// motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
+// The mesh of the scene. The source has two meshes at rest, and contacts of corners with faces and of edges
+// with edges. Here the faces of the scene are the small disks around its points (disk_contact.h): a point
+// against the surface of the tool, and the surface of the tool against a disk, with the normal of the disk.
+// Points are never passed (clear_way.h); for disks the time of contact is that of the linearised motion.
+// Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
 // Contacts are kept ContinuousContacts::kGap_m away: while no frame has put points into the tool, a contact
 // within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do
 // not accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and
 // not of the tool, so that the spring is the same as with the other methods.
 //
-// New frames. In the source nothing but the hand moves. Points that a frame puts into the tool are contacts
-// of the present pose like any others: J a >= 0 lets the tool go out but does not take it out, and where it
-// waits at the device, a_u = 0 and there is no force. So a surface that moves into a tool is not felt before
-// the hand moves, and has passed the tool when it comes out at the other side. Which side of a disk in the
-// tool is out is known as with the look-ahead rule: the side from which a surface was touched last.
+// New frames. In the source only the hand moves. Points that a frame puts into the tool are contacts of the
+// present pose like any others: J a >= 0 lets the tool go out but does not take it out, and if it waits at
+// the device, a_u = 0 and there is no force. So a surface that moves into a tool is not felt before the hand
+// moves, and it has passed the tool when it comes out at the other side. The outer side of a disk in the tool
+// is known as with the look-ahead rule: it is the side from which a surface was touched last.
 #pragma once
 
 #include "core/tool/contact/continuous_contacts.h"
@@ -51,7 +51,7 @@ std::string validate(const ToolGodObjectParameters& p);
 inline double max_stiffness_N_per_m(const ToolGodObjectParameters& p) {
   return p.coupling.stiffness_N_per_m;
 }
-// The spring, its limits and how contacts are counted, as ToolRenderer takes them.
+// Returns the spring, its limits and the way in which contacts are counted, for ToolRenderer.
 ToolParameters tool_parameters(const ToolGodObjectParameters& p);
 
 class GodObjectMotion final : public ToolMotion {
@@ -61,11 +61,11 @@ class GodObjectMotion final : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:
-  // The rows of J: those of the contacts that are touched.
+  // Gathers the rows of J: the contacts that are touched.
   void gather_touched(const NearContacts& near);
-  // a_c, world axes, and what holds it.
+  // Returns a_c in world axes, and reports the contacts that hold it.
   Vector6 constrained(const Vector6& a_gu, const ToolPose& pose, ToolMotionReport& report);
-  // Up to the first new contact.
+  // Returns the fraction of a_c up to the first new contact.
   double free_fraction(const Vector6& a_c, const ToolPose& pose, const NearContacts& near);
 
   const ToolGodObjectParameters p_;
@@ -73,7 +73,7 @@ class GodObjectMotion final : public ToolMotion {
   ContinuousContacts near_;
   MotionProgram program_;
   std::vector<ToolContact> touched_;
-  double side_ = 1;        // of the surface that held the tool last: +1 is the side of the sensor
+  double side_ = 1;        // side of the surface that held the tool last: +1 is the side of the sensor
   bool settling_ = false;  // a frame came, and points are still in the tool
 };
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kCollision_m = LookAheadProgram::kCollision_m;
 
-// Looks without progress that end a tick: on noisy surfaces the tool can go to and fro by a hair for ever.
+// Number of looks without progress that ends a tick. On noisy surfaces the tool could move to and fro by a
+// hair forever.
 constexpr int kLookAheadPatience = 8;
 
 ContactState state_of(const NearContacts& near) {
@@ -27,10 +28,10 @@ Vec3 touched_direction(const NearContacts& near) {
 
 }  // namespace
 
-// The step of a look, and what held it. Out of what a frame put deep into the tool steps of max_step_m would
-// be many. A step may be as long as the deepest place is deep: all within that distance of it is tool, so the
-// place stays in the tool or comes to its surface, and is not jumped over. What the step runs into beyond the
-// look-ahead the next look finds.
+// Returns the step of a look, and reports the contacts that hold it. Points that a frame put deep into the
+// tool would need many steps of max_step_m. So a step may be as long as the deepest position is deep:
+// everything within that distance of it is tool, so the position stays in the tool or comes to its surface,
+// and is not jumped over. The next look finds anything that the step runs into beyond the look-ahead.
 Vector6 LookAheadMotion::step_of(const LookAheadProgram::Look& look, const ToolPose& pose,
                                  ToolMotionReport& report) {
   report.active_count = look.motion.active_count;
@@ -56,14 +57,14 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
     const NearContacts& near = look.near;
     ++report.detections;
     if (near.deepest_m <= kCollision_m) settling_ = false;
-    if (near.contacts.empty()) side_ = 1;  // what held the tool is left behind
+    if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
     if (report.detections == detections + 1) first = state_of(near);
     same_state = same_state && state_of(near) == first;
 
     report.touch_W = pose.q_WT * touched_direction(near);
     const double remaining_m = max_point_displacement_m(a_gu, reach_m_);
     if (near.contacts.empty() && remaining_m <= p_.look_ahead_m && source.clear_fraction(pose, a_gu) == 1) {
-      // Nothing is as near as the device.
+      // No contact is as near as the device.
       report.steps += pose == device ? 0 : 1;
       pose = device;
       if (same_state) report.first_step_m = pose.p_W - start_W;
@@ -77,12 +78,12 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
                      (near.deepest_m <= kCollision_m && progress.has_ended()) ||
                      stopped >= kLookAheadPatience;
     if (report.at_rest || report.detections >= p_.detections_per_tick) break;
-    // What a frame put into the tool is left first.
+    // The tool first leaves points that a frame put into it, so they do not stop it.
     const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);
     stopped = clear * max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
     pose = clear == 1 && a_g == a_gu ? device : moved(pose, clear * a_g);
     ++report.steps;
-    if (same_state) report.first_step_m = pose.p_W - start_W;  // with the step that ends the first state
+    if (same_state) report.first_step_m = pose.p_W - start_W;  // includes the step that ends the first state
   }
   return report;
 }

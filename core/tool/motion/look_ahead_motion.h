@@ -10,14 +10,14 @@ namespace remote_touch {
 
 class LookAheadMotion {
  public:
-  // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
+  // reach_m: distance of the farthest point of the tool from its centre of mass, for the source of contacts.
   LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
       : p_(parameters), reach_m_(reach_m), program_(parameters, tool, reach_m) {}
-  // As ToolMotion::move(). detections: what the tick has used of its budget before.
+  // Same as ToolMotion::move(). detections: number that the tick has already used of its budget.
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated,
                         int detections = 0);
 
-  // Of the surface that held the tool last: +1 is the side of the sensor.
+  // Returns the side of the surface that held the tool last: +1 is the side of the sensor.
   double side() const { return side_; }
 
  private:

@@ -1,8 +1,8 @@
 // One look of the look-ahead rule: the contacts of a pose, and the motion that they allow.
 //
-// A contact that is farther away than the motion takes any place of the tool cannot limit that motion. So the
-// nearest contacts are asked for first, and farther ones only where the motion is longer: the motion is still
-// the one that all contacts within the look-ahead allow. Not in the dissertation.
+// A contact that is farther away than the motion moves any point of the tool cannot limit that motion. So the
+// nearest contacts are queried first, and farther ones only if the motion is longer. The motion is still the
+// one that all contacts within the look-ahead allow. Not in the dissertation.
 #pragma once
 
 #include "core/tool/contact/near_contacts.h"
@@ -11,30 +11,33 @@ namespace remote_touch {
 
 class LookAheadProgram {
  public:
-  // Deeper than this the tool is in a collision; less is what a linear constraint leaves on a bent surface.
+  // A contact deeper than this is a collision. A smaller depth is the error of a linear constraint on a
+  // curved surface.
   static constexpr double kCollision_m = 1e-4;
-  static constexpr double kMinFirst_m = 1.5e-4;  // nothing less is asked for
+  static constexpr double kMinFirst_m = 1.5e-4;  // smallest distance that is queried
 
   struct Look {
-    // Contacts nearer than kMinFirst_m, and of those farther away what was asked for. None: nothing is within
-    // the look-ahead.
+    // Contacts nearer than kMinFirst_m, and farther ones within the distance queried. Empty: nothing is
+    // within the look-ahead.
     NearContacts near;
-    // The admissible motion, world axes; where nothing is near, towards the device by the look-ahead at most.
+    // The admissible motion, world axes; if nothing is near, the motion towards the device by the look-ahead
+    // at most.
     Vector6 a_g = Vector6::Zero();
-    ConstrainedMotion motion;  // the same in tool axes, and what held it; zero where nothing is near
+    ConstrainedMotion motion;  // the same in tool axes, and the contacts that hold it; zero if none is near
   };
 
-  // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
+  // reach_m: distance of the farthest point of the tool from its centre of mass, for the source of contacts.
   LookAheadProgram(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
       : look_ahead_m_(parameters.look_ahead_m),
         reach_m_(reach_m),
-        // The place of a contact is where the field is known.
+        // A contact can lie anywhere where the field is known.
         contact_reach_m_(reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
         program_(parameters, tool) {}
 
-  // a_gu: the motion to the device, world axes. side: as for near(). Out of a collision, (6.7), else towards
-  // the device, (6.4). Its list of contacts is valid until the source is asked again. While no contact is
-  // left out because there are too many, the motion does not depend on earlier looks, up to rounding.
+  // Returns the motion out of a collision, (6.7), else towards the device, (6.4). a_gu: the motion to the
+  // device, world axes. side: as for near(). The list of contacts is valid until the next query of the
+  // source. If no contact is left out because there are too many, the motion does not depend on earlier
+  // looks, up to rounding.
   Look look(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
 
  private:
@@ -42,7 +45,7 @@ class LookAheadProgram {
 
   const double look_ahead_m_, reach_m_, contact_reach_m_;
   MotionProgram program_;
-  double first_m_ = kMinFirst_m;  // what the next look asks for first
+  double first_m_ = kMinFirst_m;  // distance that the next look queries first
 };
 
 }  // namespace remote_touch

@@ -7,7 +7,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kFullPoints = 10;  // more points than these push no more in sum
+constexpr int kFullPoints = 10;  // more points than this push no more in sum
 
 struct PreparedVoxmap final : FramePreparation {
   PreparedVoxmap(const PointCloud& cloud, double voxel_m) : map(cloud, voxel_m) {}
@@ -47,7 +47,7 @@ void PenaltyMotion::Push::add(const Vec3& r_T, const Vec3& n_T, double depth_m, 
   stiffness_T += k_p_N_per_m * line * line.transpose();
 }
 
-// World axes. The depth of a point falls by its line times the displacement of the tool.
+// Returns the step in world axes. The depth of a point falls by its line times the displacement of the tool.
 Vector6 PenaltyMotion::balancing_step(const ToolPose& pose, const ToolPose& device, const Push& push) const {
   const double k = p_.coupling.stiffness_N_per_m;
   const double turning = k * p_.coupling.gyration_radius_m * p_.coupling.gyration_radius_m;

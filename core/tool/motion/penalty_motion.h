@@ -1,10 +1,10 @@
-// Penalty methods for comparison: points push the tool, and nothing constrains it. Of N points that touch,
-// each pushes with the force
+// Penalty methods for comparison: points push the tool, and nothing constrains it. Each of N points that
+// touch pushes with the force
 //
 //   f_i = k_p d_i n_i at r_i,
 //
-// where r_i is the point, d_i its depth and n_i a normal; where N > 10, all f_i are multiplied by 10 / N, as
-// in the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool moves towards
+// where r_i is the point, d_i its depth and n_i a normal. If N > 10, all f_i are multiplied by 10 / N, as in
+// the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool moves towards
 // the pose at which the wrench of the points and that of the coupling balance, linearised at the present
 // pose, by half a voxel at most. Two force laws:
 //
@@ -60,7 +60,7 @@ inline std::string validate(const ToolPenaltyParameters&) {
 inline double max_stiffness_N_per_m(const ToolPenaltyParameters& p) {
   return p.coupling.stiffness_N_per_m;
 }
-// The spring, its limits and how contacts are counted, as ToolRenderer takes them.
+// Returns the spring, its limits and the way in which contacts are counted, for ToolRenderer.
 ToolParameters tool_parameters(const ToolPenaltyParameters& p);
 
 // The part that both force laws share.
@@ -69,7 +69,7 @@ class PenaltyMotion : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) final;
 
  protected:
-  // max_step_m: of any point of the tool.
+  // max_step_m: maximum displacement of any point of the tool in a step.
   PenaltyMotion(const ToolPenaltyParameters& parameters, const VoxelTool& tool, double max_step_m)
       : p_(parameters), reach_m_(tool.reach_m), max_step_m_(max_step_m) {}
 
@@ -78,9 +78,9 @@ class PenaltyMotion : public ToolMotion {
     int points = 0;
     Vector6 wrench_T = Vector6::Zero();  // N, N m
     Eigen::Matrix<double, 6, 6> stiffness_T =
-        decltype(stiffness_T)::Zero();  // of the wrench, by displacement
+        decltype(stiffness_T)::Zero();  // decrease of the wrench by displacement
 
-    // A point at r_T, depth_m deep along the unit vector n_T, that pushes with k_p.
+    // Adds a point at r_T, depth_m deep along the unit vector n_T, that pushes with k_p.
     void add(const Vec3& r_T, const Vec3& n_T, double depth_m, double k_p_N_per_m);
   };
   virtual Push push(const ToolPose& pose, const ContactList& contacts) const = 0;
@@ -115,7 +115,7 @@ class VoxmapPenalty final : public PenaltyMotion {
   Push push(const ToolPose& pose, const ContactList& contacts) const override;
 
   const Pointshell shell_;
-  std::shared_ptr<const Voxmap> map_;  // of the newest frame
+  std::shared_ptr<const Voxmap> map_;  // voxmap of the newest frame
 };
 
 // The tool has to outlive the result.

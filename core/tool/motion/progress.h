@@ -1,5 +1,5 @@
-// Whether a tool still gets nearer to its device within a tick: steps that go back and forth for ever count
-// as rest, however long they are.
+// Detects whether a tool still gets nearer to its device within a tick. Steps that go back and forth forever
+// count as rest, however long they are.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@ namespace remote_touch {
 
 class MotionProgress {
  public:
-  // min_m: getting nearer by this or less is no progress. patience: number of updates without progress that
-  // end it.
+  // min_m: an approach by this or less is no progress. patience: number of updates without progress after
+  // which the progress has ended.
   MotionProgress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
 
-  // remaining_m: displacement to the device that is left, as max_point_displacement_m() measures it.
+  // remaining_m: remaining displacement to the device, as max_point_displacement_m() measures it.
   void update(double remaining_m) {
     without_ = remaining_m < nearest_distance_m_ - min_m_ ? 0 : without_ + 1;
     nearest_distance_m_ = std::min(nearest_distance_m_, remaining_m);

@@ -60,7 +60,7 @@ void ToolRenderer::replace_points(std::shared_ptr<const TiledCloud> points) {
 }
 
 void ToolRenderer::displace(const Vector6& by) {
-  if (by.isZero(0)) return;  // so that nothing is rounded
+  if (by.isZero(0)) return;  // avoids rounding of the pose
   pose_ = moved(pose_, by);
   frame_correction_m_ += by.head<3>();
 }
@@ -88,7 +88,7 @@ void ToolRenderer::on_frame(const Frame& frame) {
   frame_correction_m_ += correction;
 }
 
-// Switched on again, the estimate starts anew.
+// The estimate starts anew when it is switched on again.
 void ToolRenderer::parameters_changed() {
   if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
 }
@@ -102,14 +102,15 @@ void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
   take_report(report, normal_W_, out);
 }
 
-// Where the force takes the tool to be. Between frames what holds it goes on along v_hat, and so would the
-// tool, (4.15): the force rises evenly instead of by a step at each frame.
+// Returns the pose of the tool for the coupling. The surface that holds the tool continues along v_hat
+// between frames, and the tool would continue with it, (4.15). So the force rises evenly instead of by a step
+// at each frame.
 ToolPose ToolRenderer::coupled_pose(double time_s) const {
   ToolPose pose = allowed_W_.isZero(0) ? pose_ : moved(pose_, allowed_W_);
   const bool is_known = p_.velocity_estimate || measured_rate_per_s_.has_value();
   if (!is_known || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
-  const double sign = p_.velocity_force == ToolForce::minus ? 1 : -1;  // of u_hat = HIP - P - v t
+  const double sign = p_.velocity_force == ToolForce::minus ? 1 : -1;  // 1: u_hat = HIP - P - v t
   if (measured_rate_per_s_)
     return measured_rate_per_s_->isZero(0) ? pose : moved(pose, sign * since_frame_s * *measured_rate_per_s_);
   pose.p_W += sign * since_frame_s * velocity_.vector();
@@ -123,7 +124,7 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double time_s) {
   out.tool.emplace();
   const std::optional<ToolPose> goal = device_pose(device);
   if (!goal) {
-    out.status = RenderStatus::device_not_finite;  // hold still and let go
+    out.status = RenderStatus::device_not_finite;  // the tool rests and the force is zero
   } else {
     if (!placed_) pose_ = *goal, placed_ = true;
     if (order_.newest() < 0) {
@@ -148,7 +149,8 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double time_s) {
   return out;
 }
 
-// What the pose at the end of the tick is in contact with: apart from the budget, for it is not the method's.
+// Writes the contacts of the pose at the end of the tick. They do not count in the budget of detections,
+// because the method does not need them.
 void ToolRenderer::measure(RenderOutput& out) {
   if (!is_measured_ || !(pose_ == measured_at_)) {
     touched_ = contacts_.touched(pose_);

@@ -14,11 +14,11 @@
 
 namespace remote_touch {
 
-// How a surface moved from one frame to the next, as a motion of the tool: world axes, about its centre of
-// mass.
+// The motion of a surface from one frame to the next, as a motion of the tool: world axes, about its centre
+// of mass.
 struct ToolSurfaceMotion {
-  Vector6 displacement = Vector6::Zero();  // what the tool is moved by, m and rad
-  Vector6 rate_per_s = Vector6::Zero();    // with which what holds the tool goes on, m/s and rad/s
+  Vector6 displacement = Vector6::Zero();  // displacement of the tool, m and rad
+  Vector6 rate_per_s = Vector6::Zero();    // rate of the surface that holds the tool, m/s and rad/s
 };
 
 // The device holds the tool at its centre of mass. Points without a normal are ignored by the printed rule,
@@ -28,7 +28,8 @@ class ToolRenderer : public Renderer {
   // pre: validate(parameters) is empty.
   ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                const Kernels& kernels);
-  // With a rule of its own instead of parameters.contact_rule, which then says how contacts are counted.
+  // Moves the tool by `rule` instead of parameters.contact_rule, which then only defines how contacts are
+  // counted.
   ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                const Kernels& kernels, std::unique_ptr<ToolMotion> rule);
 
@@ -44,9 +45,9 @@ class ToolRenderer : public Renderer {
   void displace(const Vector6& by);
   bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
   const ToolPose& pose() const { return pose_; }
-  // Points pushed the tool in the last step of the last tick.
+  // True if points pushed the tool in the last step of the last tick.
   bool is_held() const { return is_held_; }
-  // What is near the tool where it is: valid until the next call of any function.
+  // Returns the contacts near the tool at its present pose. Valid until the next call of any function.
   NearContacts near() { return contacts_.near(pose_, 0); }
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override;
@@ -66,12 +67,12 @@ class ToolRenderer : public Renderer {
   SurfaceVelocity velocity_;
 
   ToolPose pose_;
-  Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the points push the tool
+  Vec3 normal_W_ = Vec3::Zero();  // contact normal: direction in which the points push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
   bool is_held_ = false;          // points pushed the tool in the last step of the tick
   double frame_arrived_s_ = 0;
-  std::optional<Vector6> measured_rate_per_s_;  // in place of the estimate
+  std::optional<Vector6> measured_rate_per_s_;  // replaces the estimate
   Vector6 allowed_W_ = Vector6::Zero();         // ToolMotionReport::allowed_W of the last tick
   SlavePosition slave_;
   FrameOrder order_;

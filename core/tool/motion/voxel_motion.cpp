@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// Looks in contact without progress that end a tick: contact and collision can take turns for ever.
+// Number of looks in contact without progress that ends a tick: contact and collision can alternate forever.
 constexpr int kVoxelPatience = 4;
 
 }  // namespace
@@ -25,11 +25,11 @@ VoxelMotion::PoseQuery VoxelMotion::query(const ToolPose& pose, ContactList& con
   return {found.touched ? ContactState::contact : ContactState::free, found.contacts};
 }
 
-// What the tool would do from here: (6.2) when free, (6.4) in contact, (6.7) in a collision.
+// Returns the desired step from here: (6.2) when free, (6.4) in contact, (6.7) in a collision.
 VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const Vector6& a_gu,
                                                    const PoseQuery& here, ToolMotionReport& report) {
   report.active_count = 0, report.push_W.setZero();
-  // No farther than the budget leads.
+  // The step is no longer than the budget of detections allows.
   if (here.state == ContactState::free) return {capped(a_gu, reach_m_, p_.detections_per_tick * sub_step_m_)};
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion;
@@ -40,7 +40,7 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
     motion = program_.solve(Vector6::Zero(), here.contacts);
     trapped = motion.elastic;
     const double motion_m = max_point_displacement_m(motion.a_g, reach_m_);
-    if (trapped)  // as in a wedge: the tool stays between the points and follows the device
+    if (trapped)  // a wedge: the tool stays between the points and follows the device
       motion = program_.solve(desired_T, here.contacts);
     else if (motion_m > 0)  // the length of (6.7) has no meaning
       motion.a_g *= p_.max_step_m / motion_m;
@@ -50,9 +50,9 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
   return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped};
 }
 
-// Moves along a displacement in sub-steps until the state is another, which is then found by bisection, or to
-// its end. Where the budget ends the tool stays at the last place that was looked at. Returns whether it came
-// to the end.
+// Moves along a displacement in sub-steps, to its end or until the state changes; the change is found by
+// bisection. A change from contact to free does not count. If the budget is used up, the tool stays at the
+// last pose that was queried and accepted. Returns true if it came to the end.
 bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, const ToolPose* goal,
                           ContactList& contacts, ToolMotionReport& report) const {
   const ToolPose start = pose;
@@ -62,7 +62,7 @@ bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, c
   const auto at = [&](double fraction) {
     return fraction == 1 && goal ? *goal : moved(start, fraction * a_g);
   };
-  double before = 0;  // the share of the way up to which the state was the old one
+  double before = 0;  // fraction of the displacement up to which the state was the old one
   for (int i = 1; i <= sub_steps; ++i) {
     if (spent(report)) return false;
     const double fraction = i == sub_steps ? 1 : static_cast<double>(i) / sub_steps;
@@ -71,10 +71,10 @@ bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, c
       pose = at(fraction), here = there, before = fraction;
       continue;
     }
-    // Into contact: the touching end counts, 6.2.5; out of a collision: the end outside.
-    // One detection is kept for the end, in case the last look was at the other side.
+    // The end `after` is used: the touching one on the way into contact, 6.2.5, and the one outside on the
+    // way out of a collision. One detection is kept for it, in case the last query was at the other end.
     double after = fraction;
-    bool seen = true;  // the last look was at `after`
+    bool seen = true;  // the last query was at `after`
     const double accuracy = from == ContactState::entrenched ? p_.exit_accuracy_m : p_.free_accuracy_m;
     while ((after - before) * motion_m > accuracy && report.detections + 1 < p_.detections_per_tick) {
       const double middle = 0.5 * (before + after);
@@ -84,7 +84,7 @@ bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, c
       if (seen) there = between;
     }
     pose = at(after);
-    here = seen ? there : query(pose, contacts, report);  // lists are those of the last pose looked at
+    here = seen ? there : query(pose, contacts, report);  // lists are those of the last pose queried
     return false;
   }
   return true;

@@ -16,7 +16,7 @@ class VoxelMotion final : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:
-  struct PoseQuery {  // what is known about a pose
+  struct PoseQuery {  // state and contacts of a pose
     ContactState state = ContactState::free;
     std::span<const ToolContact> contacts;
   };

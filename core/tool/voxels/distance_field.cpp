@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kCubeSize = 4;  // cells along a cube
 
-// What is nearest to the corners of all cubes.
+// The triangles that are nearest to the corners of all cubes.
 class CubeCorners {
  public:
   CubeCorners(const TriangleTree& tree, const VoxelGrid& grid) : tree_(tree), grid_(grid) {
@@ -34,11 +34,11 @@ class CubeCorners {
     return grid_.origin_T + grid_.size_m * Vec3(i, j, k);
   }
 
-  // The faces nearest to the corners of a cube, each once; the first corner's first.
+  // The faces nearest to the corners of a cube, each once, beginning with that of the first corner.
   struct Faces {
     std::array<int, 8> face;
     int count = 0;
-    bool near = false;  // a place within kExactField_m of the surface may be in the cube
+    bool near = false;  // a position within kExactField_m of the surface may be in the cube
   };
   Faces around(int i, int j, int k) const {
     Faces faces;
@@ -49,12 +49,13 @@ class CubeCorners {
       const auto end = faces.face.begin() + faces.count;
       if (std::find(faces.face.begin(), end, corner.face) == end) faces.face[faces.count++] = corner.face;
     }
-    const double to_corner = std::sqrt(3.0) / 2 * kCubeSize * grid_.size_m;  // from anywhere in the cube
+    // Largest distance from a position in the cube to the nearest corner.
+    const double to_corner = std::sqrt(3.0) / 2 * kCubeSize * grid_.size_m;
     faces.near = std::sqrt(squared) <= kExactField_m + to_corner;
     return faces;
   }
 
-  // To the nearest of these faces.
+  // Returns the distance from p to the nearest of these faces.
   double upper_bound(const Faces& faces, const Vec3& p) const {
     double squared = tree_.squared_to(faces.face[0], p);
     for (int f = 1; f < faces.count; ++f) squared = std::min(squared, tree_.squared_to(faces.face[f], p));
@@ -72,10 +73,12 @@ class CubeCorners {
   std::vector<TriangleTree::Nearest> nearest_;
 };
 
-// The nearest of a list of faces, each looked at only if a ball around it comes nearer than the best so far.
+// Finds the nearest of a list of faces. A face is evaluated only if a ball around it comes nearer than the
+// best so far.
 class NearFaces {
  public:
-  // All that can be nearest to a place within radius_m of the centre, where something is upper_m away.
+  // Gathers all faces that can be nearest to a position within radius_m of the centre, if a face is upper_m
+  // away from the centre.
   void gather(const TriangleTree& tree, const Vec3& centre, double radius_m, double upper_m) {
     centre_ = centre;
     tree.faces_within(centre, upper_m + 2 * radius_m, faces_);

@@ -1,4 +1,5 @@
-// Which nodes of a grid are inside a mesh: by lines through a closed one, by winding numbers of an open one.
+// Finds the nodes of a grid that are inside a mesh: by lines through a closed mesh, by winding numbers of an
+// open one.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,8 +16,9 @@ struct Snapped {
   std::int64_t y, z;
 };
 
-// Twice the area that the edge u v makes with q, exact; its sign tells the side. Where q is on the line of
-// the edge it counts as moved by (e, e^2), e tiny: both triangles at an edge see it on the same side of it.
+// Twice the area of the triangle that the edge u v makes with q, exact. Its sign is the side of q. If q is on
+// the line of the edge, it counts as moved by (e, e^2), e tiny, so that both triangles at an edge see it on
+// the same side.
 struct Side {
   std::int64_t area;
   int sign;
@@ -35,8 +37,8 @@ std::int64_t unit_for(const VoxelGrid& grid) {
   return unit;
 }
 
-// Where a triangle crosses the line along x through q, it changes the winding number of all nodes from there
-// on: down where the surface is left in the direction of x.
+// Adds the crossing of a triangle and the line along x through q, if they cross. It changes the winding
+// number of all nodes from there on: down if the line leaves the surface there in the direction of x.
 void cross(const Snapped& a, const Snapped& b, const Snapped& c, std::int64_t y, std::int64_t z, int columns,
            int* row) {
   const Side bc = side_of(b, c, y, z), ca = side_of(c, a, y, z), ab = side_of(a, b, y, z);
@@ -48,7 +50,7 @@ void cross(const Snapped& a, const Snapped& b, const Snapped& c, std::int64_t y,
   if (node < columns) row[static_cast<int>(node)] -= bc.sign;
 }
 
-// The first and last whole unit's node of a range of units, within 0 to last.
+// Returns the first and the last node in a range of units, within 0 to last.
 std::array<int, 2> nodes_within(std::int64_t low, std::int64_t high, std::int64_t unit, int last) {
   const std::int64_t first = low <= 0 ? 0 : (low + unit - 1) / unit;
   return {static_cast<int>(first),
@@ -96,7 +98,8 @@ namespace {
 
 constexpr int kBlockSize = 4;
 
-// Above 1/2 by more than rounding: where symmetry makes it 1/2, it is outside on every machine.
+// True if the winding number is above 1/2 by more than rounding. A node at which symmetry makes it 1/2 is
+// outside on every machine.
 bool is_inside(const TriangleTree& tree, const VoxelGrid& grid, int i, int j, int k) {
   return tree.winding_number(grid.origin_T + grid.size_m * Vec3(i, j, k)) > 0.5 + 1e-9;
 }

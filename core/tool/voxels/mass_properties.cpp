@@ -11,8 +11,8 @@ Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moments) {
 
 }  // namespace
 
-// For a tetrahedron (0, a, b, c) of volume V: the integral of x is V (a + b + c) / 4, and that of x x^T is
-// V / 20 (s s^T + a a^T + b b^T + c c^T), s = a + b + c.
+// The integrals over a tetrahedron (0, a, b, c) of volume V are V (a + b + c) / 4 for x, and
+// V (s s^T + a a^T + b b^T + c c^T) / 20 for x x^T, with s = a + b + c.
 MassProperties mass_properties(const TriangleMesh& mesh) {
   MassProperties all;
   if (mesh.vertices.empty()) return all;
@@ -36,7 +36,7 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
 }
 
 MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes) {
-  // In units of the voxel and by integers, so that nothing is lost over millions of nodes.
+  // The sums are integers in units of the voxel, so that nothing is lost over millions of nodes.
   const std::size_t columns = grid.cells[0] + 1, rows = grid.cells[1] + 1;
   Vec3 first = Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
@@ -53,7 +53,7 @@ MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uin
   const Vec3 mean = first / count;
   all.volume_m3 = count * size * size * size;
   all.centre = grid.origin_T + size * mean;
-  const Eigen::Matrix3d own = Eigen::Matrix3d::Identity() / 12;  // of each cube
+  const Eigen::Matrix3d own = Eigen::Matrix3d::Identity() / 12;  // second moments of each cube
   all.inertia_m2 = size * size * inertia_of(second / count - mean * mean.transpose() + own);
   return all;
 }

@@ -11,12 +11,14 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kAccuracy_m = 2e-6;  // of the largest value on a part of the surface, towards too large
+constexpr double kAccuracy_m = 2e-6;  // accuracy of the largest value on a part of the surface, upwards
 constexpr int kMaxHalvings = 8;
-// Floats of the nodes, and places on the surface that a fraction of a nanometre puts into the next cell.
+// Covers the rounding of nodes to float, and of positions on the surface that a fraction of a nanometre puts
+// into the next cell.
 constexpr double kRounding_m = 1e-8;
 
-// Upper bound of the field on a triangle: f + bend / 2 |x - middle|^2 is convex, so largest at a corner.
+// Returns an upper bound of the field on a triangle: f + bend / 2 |x - middle|^2 is convex, so largest at a
+// corner.
 double largest(const CellField& field, const std::array<Vec3, 3>& corners, int halvings) {
   const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
   double value = -HUGE_VAL, squared = 0;
@@ -36,7 +38,7 @@ double largest(const CellField& field, const std::array<Vec3, 3>& corners, int h
 
 using Polygon = std::vector<Vec3>;
 
-// What of a convex polygon is where sign x coordinate <= limit (Sutherland and Hodgman).
+// Keeps the part of a convex polygon where sign x coordinate <= limit (Sutherland and Hodgman).
 void cut(Polygon& polygon, int axis, double sign, double limit, Polygon& kept) {
   kept.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -49,7 +51,7 @@ void cut(Polygon& polygon, int axis, double sign, double limit, Polygon& kept) {
   std::swap(polygon, kept);
 }
 
-// The largest value of the field on the part of a triangle in the unit cell; 0 if there is none above.
+// Returns the largest value of the field on the part of a triangle in the unit cell; 0 if none is above 0.
 double excess_on(const CellField& field, const std::array<Vec3, 3>& triangle, Polygon& part, Polygon& kept) {
   constexpr double kBeyond = 1e-9;
   part.assign(triangle.begin(), triangle.end());
@@ -63,14 +65,14 @@ double excess_on(const CellField& field, const std::array<Vec3, 3>& triangle, Po
   return all;
 }
 
-// Whether the plane of a triangle passes the unit cell by.
+// True if the plane of a triangle does not meet the unit cell.
 bool passes_by(const std::array<Vec3, 3>& triangle) {
   const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   const double reach = 0.5 * normal.cwiseAbs().sum();
   return std::abs(normal.dot(Vec3::Constant(0.5) - triangle[0])) > reach * (1 + 1e-6) + 1e-12;
 }
 
-// By how much the nodes of every cell are too high.
+// Returns the amount by which the nodes of every cell are too high.
 std::vector<float> excess_of_cells(const TriangleMesh& mesh, const VoxelGrid& grid,
                                    const std::vector<float>& nodes) {
   std::vector<float> excess(grid.cell_count(), 0);

@@ -1,7 +1,7 @@
-// The distance field of a tool, lowered so that it says "outside" of no place in the tool.
+// The distance field of a tool, lowered so that it is nowhere positive in the tool.
 //
-// Between its nodes the trilinear field is not the distance: over sharp edges, and in parts thinner than a
-// voxel, places inside the tool have positive values. Within a cell, a face or an edge of the grid a
+// The trilinear field between the nodes is not the distance: over sharp edges, and in parts thinner than a
+// voxel, positions inside the tool have positive values. Within a cell, a face or an edge of the grid a
 // trilinear field is harmonic, so on the solid part of a cell it is largest on the surface of the mesh, or at
 // a node inside, where it is negative. So it is enough to lower the nodes of each cell by the largest value
 // that the field takes on the surface in that cell: nothing where the surface is flat, part of a voxel at its
@@ -16,12 +16,13 @@
 
 namespace remote_touch {
 
-// distance_m: of every node, with its sign. The result is nowhere above it, and its trilinear field nowhere
-// above 0, but for a nanometre of rounding, in or on a closed mesh. pre: the grid encloses the mesh.
+// distance_m: signed distance of every node. The result is nowhere above it. The trilinear field of the
+// result is nowhere above 0 in or on a closed mesh, except for a nanometre of rounding. pre: the grid
+// encloses the mesh.
 std::vector<float> outer_field(const TriangleMesh& mesh, const VoxelGrid& grid,
                                const std::vector<float>& distance_m);
 
-// Upper bound of the length of the gradient of the trilinear field where that is within_m or less.
+// Returns an upper bound of the length of the trilinear field's gradient where the field is within_m or less.
 double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m,
                  double within_m = kExactField_m);
 

@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 struct Chosen {
-  double squared_m2;  // to the middle of the cube
+  double squared_m2;  // squared distance to the middle of the cube
   Vec3 p_T;
 };
 

@@ -14,7 +14,7 @@ struct Pointshell {
   std::size_t size() const { return p_T.size(); }
 };
 
-// One point for each cube of spacing_m of the tool frame that has voxels of the shell: that voxel which is
+// Returns one point for each cube of spacing_m of the tool frame that has voxels of the shell: the voxel
 // nearest to the middle of the cube, moved onto the surface along the gradient of the field. The source takes
 // the middle of the cube.
 Pointshell make_pointshell(const VoxelTool& tool, double spacing_m);

@@ -1,5 +1,5 @@
-// How steep a trilinear field can be around a place: the range of its gradient in blocks of cells, so that a
-// point that slides along a flat face of a tool is known to stay outside with one look.
+// Bounds of the slope of a trilinear field around a position: the range of its gradient in blocks of cells.
+// So a point that slides along a flat face of a tool is known to stay outside after one look.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,14 @@ class SlopeBlocks {
 
   SlopeBlocks(const VoxelGrid& grid, const std::vector<float>& distance_m);
 
-  // Lower bound of how much the field changes anywhere on the way from `at` by `along` (both in cells from
-  // the grid's origin); minus infinity for a way of more than kAround cells along an axis, or from outside.
+  // Returns a lower bound of the change of the field anywhere on the path from `at` by `along` (both in cells
+  // from the grid's origin). Minus infinity if the path is longer than kAround cells along an axis, or starts
+  // outside.
   double min_change_m(const Vec3& at, const Vec3& along) const;
 
  private:
   struct Range {
-    float low[3], high[3];  // of the change per cell along each axis, m
+    float low[3], high[3];  // range of the change per cell along each axis, m
   };
   Range range_around(const VoxelGrid& grid, const std::vector<float>& distance_m,
                      const std::array<int, 3>& block) const;

@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of the cell that holds `at` (in voxels from the origin), its first node and the place within it.
+// The first node of the cell that holds `at` (in voxels from the origin), and the position within the cell.
 struct InCell {
   std::array<int, 3> cell;
   Vec3 fraction;
@@ -55,7 +55,8 @@ FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T) {
   FieldSample sample = trilinear(tool, within);
   if (within == at) return sample;
   const Vec3 out = grid.size_m * (at - within);
-  // From the nearest place of the surface, which is where the field there points away from.
+  // The gradient leads away from the nearest position of the surface, which the field and its gradient at
+  // `within` give.
   const double distance = out.norm();
   sample.gradient_T = (out + sample.distance_m * sample.gradient_T).normalized();
   sample.distance_m += distance;
@@ -68,7 +69,7 @@ namespace {
   throw InputError(name, problem);
 }
 
-// Vertices that no triangle uses must not move the box.
+// Drops vertices that no triangle uses, because they must not extend the box.
 void drop_unused(TriangleMesh& mesh) {
   std::vector<int> now(mesh.vertices.size(), -1);
   std::vector<Vec3> used;
@@ -122,7 +123,8 @@ void take(VoxelTool& tool, const MassProperties& mass, const std::string& name) 
   tool.inertia_m2 = mass.inertia_m2;
 }
 
-// Which nodes are inside, the mass from them or from the mesh, and the frame T.
+// Moves the tool to its frame T, sets its grid and mass properties, and returns the nodes that are inside.
+// The mass is computed from these nodes if the mesh is open, else from the mesh.
 std::vector<std::uint8_t> place(VoxelTool& tool, const VoxelToolSettings& settings, bool open,
                                 const std::string& name) {
   if (open) {
@@ -141,7 +143,7 @@ std::vector<std::uint8_t> place(VoxelTool& tool, const VoxelToolSettings& settin
   return std::move(nodes.inside);
 }
 
-// Whether no interior lies within two cells of a cell.
+// True if no interior voxel lies within two cells of a cell.
 bool is_thin(const VoxelTool& tool, int i, int j, int k) {
   const auto& cells = tool.grid.cells;
   for (int z = std::max(k - 2, 0); z <= std::min(k + 2, cells[2] - 1); ++z)
@@ -155,7 +157,7 @@ bool is_thin(const VoxelTool& tool, int i, int j, int k) {
 
 void count_voxels(const VoxelTool& tool, ToolReport& report) {
   const auto& cells = tool.grid.cells;
-  // Of the surface, for what is thinner than a voxel has no shell either.
+  // The thin fraction is that of the surface cells, because a part thinner than a voxel has no shell either.
   const std::vector<std::uint8_t> crossed = crossed_cells(tool.mesh, tool.grid);
   std::size_t surface = 0, thin = 0, shell = 0, interior = 0;
 #pragma omp parallel for schedule(dynamic) reduction(+ : surface, thin, shell, interior)

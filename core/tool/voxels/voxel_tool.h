@@ -30,13 +30,13 @@ struct VoxelGrid {
 };
 
 struct VoxelTool {
-  TriangleMesh mesh;              // in the tool frame; closed, except for what a repair could not close
+  TriangleMesh mesh;              // tool frame; closed, except for parts that a repair left open
   VoxelGrid grid;                 // encloses the mesh and kFieldMargin_m around it
-  std::vector<Voxel> voxels;      // of every cell, see voxels_of()
-  std::vector<float> distance_m;  // to the mesh at every node, positive outside
+  std::vector<Voxel> voxels;      // value of every cell, see voxels_of()
+  std::vector<float> distance_m;  // distance to the mesh at every node, positive outside
   double volume_m3 = 0;
-  // About the centre of mass in tool axes, of uniform density, divided by the mass: the lower right block of
-  // M of (6.4) for a tool of 1 kg.
+  // Inertia about the centre of mass in tool axes, of uniform density, divided by the mass: the lower right
+  // block of M of (6.4) for a tool of 1 kg.
   Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Identity();
   double reach_m = 0;  // largest distance of a vertex from the origin
 };
@@ -46,26 +46,27 @@ inline constexpr double kFieldMargin_m = 6e-3;
 
 struct FieldSample {
   double distance_m;  // positive outside the tool
-  Vec3 gradient_T;    // of the trilinear field, out of the tool; about a unit vector, not normalised
+  Vec3 gradient_T;    // gradient of the trilinear field, out of the tool; about 1 long, not normalised
 };
 
-// The field between its nodes, trilinear. Outside the grid: the distance to the grid's box plus the field at
-// the nearest position of the box, with the gradient towards p; at most a voxel more than the true distance.
+// Returns the field between its nodes, trilinear. Outside the grid it is the distance to the grid's box plus
+// the field at the nearest position of the box, with the gradient towards p. It is at most a voxel less than
+// the true distance; beside the edges and corners of the box it can be millimetres more.
 FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
 
 struct VoxelToolSettings {
   double voxel_m = 5e-4;
   double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
   bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
-  // distance_m is lowered as outer_field.h says: no place in a closed tool is outside. The voxels stay the
-  // same.
+  // Lowers distance_m as outer_field.h describes: no position in a closed tool is outside. The voxels stay
+  // the same.
   bool outer_field = false;
 };
 
-// What was done to a mesh and how well voxels fit it.
+// The changes that were made to a mesh, and how well voxels fit it.
 struct ToolReport {
-  MeshCheck check;                      // of the mesh as given
-  Vec3 sides_m = Vec3::Zero();          // of its box, after scaling
+  MeshCheck check;                      // check of the mesh as given
+  Vec3 sides_m = Vec3::Zero();          // sides of its box, after scaling
   bool inverted = false;                // all faces pointed inwards, and were flipped
   MeshRepair repaired;                  // all zero without repair
   bool by_winding_number = false;       // repaired, and still open
@@ -74,10 +75,10 @@ struct ToolReport {
 };
 std::string text(const ToolReport& report);
 
-// The mesh scaled, moved with its centre of mass into the origin, and made into voxels and a distance field.
-// name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair), without
-// volume, with vertices that are not finite, with corners that are no vertices, too fine for kMaxCells, or
-// thinner than a voxel everywhere.
+// Scales the mesh, moves it with its centre of mass into the origin, and makes voxels and a distance field of
+// it. name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair),
+// without volume, with vertices that are not finite, with corners that are no vertices, too fine for
+// kMaxCells, or thinner than a voxel everywhere.
 inline constexpr double kMaxCells = 150e6;
 VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
                           const std::string& name = "mesh");

@@ -9,12 +9,14 @@ namespace remote_touch {
 
 namespace {
 
-// A face at the share 0 of a cell lies between two cells, at 1/2 in the middle of one.
+// Returns the distance of a face from the nearest plane between cells, in cells: 0 between two cells, 1/2 in
+// the middle of one.
 double off_the_cells(double face) {
   return std::abs(face - std::round(face));
 }
 
-// Across the box and the margins; odd or even, whichever puts the sides of the box farther from the middles.
+// Returns the number of cells across the box and the margins: odd or even, whichever puts the sides of the
+// box farther from the middles of cells.
 double cells_along(double low, double high, double voxel_m) {
   const double half = (high - low) / 2 / voxel_m;
   const double cells = std::ceil(2 * (half + kFieldMargin_m / voxel_m));
@@ -28,8 +30,8 @@ struct Corners {
   Vec3 v[3], normal;
 };
 
-// Whether the triangle touches the box of centre c and half sides h. Every axis on which their shadows are
-// apart tells that it does not: three of the box, the normal, nine products of edges.
+// True if the triangle touches the box of centre c and half sides h. It does not if their projections are
+// apart on one of these axes: three of the box, the normal, nine products of edges.
 bool touches(const Corners& triangle, const Vec3& c, const Vec3& h) {
   constexpr double kSlack = 1e-9;
   const Vec3 a = triangle.v[0] - c, b = triangle.v[1] - c, d = triangle.v[2] - c;
@@ -48,7 +50,7 @@ bool touches(const Corners& triangle, const Vec3& c, const Vec3& h) {
   return true;
 }
 
-// Halves the cells low to high (included) until one is left.
+// Marks the touched cells in the range low to high (included), by halving it until one cell is left.
 void mark(const Corners& triangle, const VoxelGrid& grid, Cell low, Cell high,
           std::vector<std::uint8_t>& crossed) {
   Vec3 centre, half;

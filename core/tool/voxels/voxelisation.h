@@ -12,7 +12,7 @@ namespace remote_touch {
 // neither inside nor outside. pre: vertices finite, at least one.
 VoxelGrid grid_around(const TriangleMesh& mesh, double voxel_m);
 
-// How many cells grid_around() would make; a double, so that it cannot overflow.
+// Returns the number of cells of grid_around(); a double, so that it cannot overflow.
 double cells_around(const TriangleMesh& mesh, double voxel_m);
 
 // 1 for the cells that the surface passes through or touches (separating axes, Akenine-Moeller 2001). The

@@ -1,5 +1,5 @@
-// Up to which strength (a speed, an angle, an acceleration) a surface carries a tool, by each contact rule:
-// what figures tool-lifts and tool-shapes share.
+// Strength (a speed, an angle, an acceleration) up to which a surface carries a tool, by each contact rule;
+// shared by figures tool-lifts and tool-shapes.
 #pragma once
 
 #include <limits>
@@ -39,7 +39,7 @@ class CarrySweep {
   struct Limit {
     double carried = 0;  // the largest strength up to which every run is carried; 0: none
     double lost = std::numeric_limits<double>::infinity();      // the next one; infinite: none is lost
-    double all_lost = std::numeric_limits<double>::infinity();  // from here on no run is carried
+    double all_lost = std::numeric_limits<double>::infinity();  // no run is carried from here on
   };
   Limit limit(std::size_t setting, Carrier rule) const;
 
@@ -51,12 +51,13 @@ class CarrySweep {
   SweepResult result_;
 };
 
-// In how many rows a limit is not between two columns: a run is lost below `low`, or carried above `high`.
+// Number of rows in which a limit is not between two columns: a run is lost below `low`, or carried above
+// `high`.
 double rows_apart(const Table& table, const std::string& carried, const std::string& lost,
                   const std::string& low, const std::string& high);
 
-// Over the first column of a table: what is derived (columns *_bound), dashed, and up to where every run is
-// carried (columns *_carried), as dots.
+// Panel over the first column of a table: derived limits (columns *_bound) are dashed, and strengths up to
+// which every run is carried (columns *_carried) are dots.
 Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
                   std::pair<double, double> place);
 

@@ -19,8 +19,9 @@ constexpr double kSpacing_m = 0.0015;
 // The surface under a plate that reaches half_m to either side.
 using Under = std::function<UnderPlate(double half_m)>;
 
-// As printed what counts is the interior of the plate, 6.2.4; by look-ahead all of it; by the continuous rule
-// the way out, too, on which the highest place has to come free.
+// Jump that a contact rule allows. The printed rule counts the interior of the plate, 6.2.4. Look-ahead
+// counts the whole plate. The continuous rule also counts the way out, on which the highest position has to
+// come free.
 double jump_m(Carrier rule, double thickness_m, const UnderPlate& under) {
   if (rule == Carrier::voxels) return thickness_m - 2 * ToolSettings{}.voxel_m + under.drop_m;
   const double through_m = thickness_m + under.drop_m;
@@ -63,7 +64,7 @@ Jump on_edge(Carrier rule, double thickness_m, double slope_deg, double turn_deg
   });
 }
 
-// On a corner one of its faces may be what holds the plate: the way out of the continuous rule then leads
+// One of the faces of a corner may be what holds the plate. The way out of the continuous rule then leads
 // along that face's normal.
 Jump on_corner(Carrier rule, double thickness_m, double slope_deg) {
   const double slope_rad = slope_deg * kRadiansPerDegree;
@@ -87,7 +88,8 @@ Jump on_plane(Carrier rule, double extent_m) {
   return derived(rule, extent_m, [](double) { return UnderPlate{}; });
 }
 
-// As without noise, at least and at most are those of a plate that reaches a spacing less, or a disk more.
+// The least and the largest jump are those of a plate that reaches a spacing less, or a disk more, as without
+// noise.
 Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m) {
   const double shell_m = rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0;
   const double way_out_m = rule == Carrier::continuous ? ToolParameters{}.frame_reach_m : 0;

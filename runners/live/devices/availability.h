@@ -1,4 +1,4 @@
-// What `remote-touch devices` prints about an adapter.
+// The availability of a device, as `remote-touch devices` prints it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace remote_touch {
 struct Availability {
   bool compiled_in = true;
   bool found = false;  // a device that can be opened is present now
-  std::string detail;  // what was found, or why nothing was and what would help; one line
+  std::string detail;  // the device found, or the reason why there is none and what would help; one line
 };
 
 }  // namespace remote_touch

@@ -15,14 +15,14 @@
 
 namespace remote_touch {
 
-// Where the page wants the hand to be, world frame.
+// The pose that the page requests for the hand, in the world frame.
 struct HandPose {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   std::uint32_t buttons = 0;
 };
 
-// From the thread of the page to the haptic loop.
+// Passes the newest pose from the thread of the page to the haptic loop.
 using HandPoses = TripleBuffer<HandPose>;
 
 class BrowserDevice final : public HapticDevice {
@@ -31,7 +31,7 @@ class BrowserDevice final : public HapticDevice {
   static constexpr double kMaxSpeed_m_per_s = 1;  // a third of what the safety gate allows by default
   static constexpr double kMaxTurning_rad_per_s = 6;
 
-  // start: where the hand is until the page moves it. placement: that of the loop.
+  // start: the state of the hand until the page moves it. placement: that of the loop.
   BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
                 double rate_hz, Clock& clock);
 
@@ -46,7 +46,7 @@ class BrowserDevice final : public HapticDevice {
   void follow(double interval_s);
   void turn(double interval_s);
 
-  // After a longer pause the hand goes on from where it is.
+  // The largest number of steps in one read(). After a longer pause the hand continues from its last pose.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::shared_ptr<HandPoses> poses_;

@@ -28,13 +28,13 @@ class DeadlineSocket {
 
   // Reads what has arrived, without waiting; EAGAIN if nothing has.
   Transfer read_ready(void* data, std::size_t size) noexcept;
-  // 0 when there is something to read, or the end of the stream.
+  // Returns 0 if there is something to read, or if the stream has ended; else an errno value.
   int wait_readable(double deadline_s) noexcept;
   Transfer read_some(void* data, std::size_t size, double deadline_s) noexcept;
   Transfer write_some(const void* data, std::size_t size, double deadline_s) noexcept;
 
-  // Nothing is sent or received from now on, and calls in progress return. From any thread, while this object
-  // exists.
+  // Shuts the connection down: nothing is sent or received any more, and calls in progress return. Any thread
+  // may call it while this object exists.
   void cut() noexcept;
 
  private:

@@ -30,7 +30,7 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
   place_ = address.substr(0, mark);
   if (mark == std::string::npos) return;
   std::istringstream settings(address.substr(mark + 1));
-  settings.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  settings.exceptions(std::ios::badbit);  // throws without memory, instead of reporting the end
   for (std::string setting; std::getline(settings, setting, '&');) {
     const std::size_t equals = setting.find('=');
     const std::string key = setting.substr(0, equals);
@@ -66,7 +66,7 @@ double DeviceAddress::number(const std::string& key, double otherwise, double mi
   const std::string text = word(key, "");
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  // Written so that what is no number is refused too.
+  // The comparison is negated so that NaN is refused too.
   if (error != std::errc() || end != text.data() + text.size() || !(value >= min && value <= max))
     throw refusal(key + " is \"" + text + "\": expected a number from " + short_text(min) + " to " +
                   short_text(max));

@@ -17,7 +17,7 @@ class DeviceAddress {
   DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
 
   const std::string& place() const { return place_; }  // empty if the user gave none
-  // As the user wrote it, for messages.
+  // Returns the address as the user wrote it, for messages.
   const std::string& written() const { return written_; }
 
   bool has(const std::string& key) const { return settings_.count(key) > 0; }

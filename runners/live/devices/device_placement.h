@@ -12,8 +12,8 @@ namespace remote_touch {
 // the limit is 0 (unknown). A motion scale of device_scale makes springs stiffer by that factor.
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
-// From device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and
-// torques are rotated but not scaled, so the hand feels scale times the stiffness; to_device() multiplies
+// Transforms device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and
+// torques are rotated but not scaled, so the hand feels scale times the stiffness. to_device() multiplies
 // them by fraction, see force_scale().
 class DevicePlacement {
  public:

@@ -17,7 +17,8 @@ namespace remote_touch {
 
 namespace {
 
-// The trajectory of an experiment, with the scenario at whose frames it may look as long as it lives.
+// The trajectory of an experiment. It owns the scenario, because it may read the scenario's frames at any
+// time.
 class Script final : public Trajectory {
  public:
   explicit Script(const DeviceContext& context)
@@ -32,7 +33,7 @@ class Script final : public Trajectory {
   const std::unique_ptr<const Trajectory> trajectory_;
 };
 
-// Where the experiment begins.
+// The hand starts at the first pose of the experiment's trajectory.
 std::unique_ptr<HapticDevice> open_browser(const std::string& address, const DeviceContext& context) {
   if (!address.empty()) throw InputError("--device browser:" + address, "expected browser:");
   if (!context.poses) throw InputError("--device browser:", "needs a page: expected with --view");

@@ -12,12 +12,12 @@
 
 namespace remote_touch {
 
-// What a device may need. All but poses must outlive it.
+// The objects that a device may need. All but poses must outlive it.
 struct DeviceContext {
   const Experiment& experiment;
   const Kernels& kernels;
   Clock& clock;
-  std::shared_ptr<HandPoses> poses = nullptr;  // from a page of the viewer, for browser:
+  std::shared_ptr<HandPoses> poses = nullptr;  // poses from a page of the viewer, for browser:
 };
 
 struct DeviceEntry {

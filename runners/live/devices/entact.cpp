@@ -22,7 +22,7 @@ struct Eapi {
   static constexpr int kOk = 1;
 
   SharedLibrary library;
-  int (*open)(Handle handles[], int size) = nullptr;  // tells how many answered
+  int (*open)(Handle handles[], int size) = nullptr;  // returns how many answered
   int (*connect_device)(Handle handles[], int index, char ip_address[]) = nullptr;
   int (*close)() = nullptr;
   int (*set_mode)(Handle, int mode) = nullptr;
@@ -30,7 +30,7 @@ struct Eapi {
   int (*read_task_position)(Handle, double* position, int size) = nullptr;
   int (*read_task_velocity)(Handle, double* velocity, int size) = nullptr;
   int (*write_force)(Handle, double* force, int size) = nullptr;
-  // Not in every version.
+  // Functions that some versions lack; null then.
   int (*is_homed)(Handle) = nullptr;
   int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
 };
@@ -88,7 +88,7 @@ Entact::Entact(const std::string& address, const std::string& subject, Clock& cl
     throw;
   }
   traits_.name = product();
-  traits_.sensed_axes = traits_.actuated_axes = 6;  // of the turns, the W5D exerts two
+  traits_.sensed_axes = traits_.actuated_axes = 6;  // the W5D exerts only two of the three torques
 }
 
 Entact::~Entact() {
@@ -96,7 +96,7 @@ Entact::~Entact() {
   eapi_.close();
 }
 
-// By value: the vendor takes the address as one it may write.
+// The address is passed by value, because the vendor's function may write to it.
 void Entact::connect(std::string address, const std::string& subject) {
   std::array<Eapi::Handle, 16> handles{};
   const bool is_found = address.empty()
@@ -110,7 +110,7 @@ void Entact::connect(std::string address, const std::string& subject) {
   eapi_.set_mode(handle_, Eapi::disabled);
 }
 
-// Homing is known to fail now and then where it should not.
+// Homing is known to fail now and then without a cause, so it is tried up to 20 times.
 void Entact::home(const std::string& subject) {
   if (eapi_.is_homed != nullptr && eapi_.is_homed(handle_) == Eapi::kOk) return;
   for (int attempt = 0; attempt < 20; ++attempt)
@@ -128,7 +128,7 @@ std::string Entact::product() const {
   return text.substr(0, text.find_first_of("\r\n"));
 }
 
-// The position, then the turn by rows.
+// The pose is the position, then the rotation matrix by rows.
 DeviceFault Entact::sense(DeviceReading& reading) noexcept {
   if (const DeviceFault fault = switch_on()) return fault;
   std::array<double, 12> pose{};
@@ -154,7 +154,7 @@ int Entact::tell(const Wrench& wrench) noexcept {
   return eapi_.write_force(handle_, commanded.data(), 6);
 }
 
-// Force control is entered with no force, and a force must be told before the device tells where it is.
+// Enters force control with zero force. The device reports its pose only after a force was written.
 DeviceFault Entact::switch_on() noexcept {
   if (is_released()) return kReleased;
   if (has_motors_on_) return {};
@@ -170,7 +170,7 @@ DeviceFault Entact::exert(const Wrench& wrench) noexcept {
   return {};
 }
 
-// Without motors a force is not told: nothing says that such a call would be answered.
+// No force is written while the motors are off: it is not documented whether such a call returns.
 void Entact::switch_off() noexcept {
   if (has_motors_on_.exchange(false)) tell({});
   eapi_.set_mode(handle_, Eapi::disabled);

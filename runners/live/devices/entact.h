@@ -18,7 +18,7 @@ namespace remote_touch {
 // answers. A device that is not homed must be held in its calibration position.
 std::unique_ptr<HapticDevice> open_entact(const std::string& address, Clock& clock);
 
-// Of the library only: devices are searched for when one is opened.
+// Checks the library only: the library searches for devices when one is opened.
 Availability entact_availability();
 
 }  // namespace remote_touch

@@ -33,7 +33,7 @@ struct Dhd {
   int (*set_force_and_torque_and_gripper_force)(double fx, double fy, double fz, double tx, double ty,
                                                 double tz, double gripper, char id) = nullptr;
   const char* (*error_get_last_str)() = nullptr;
-  // Those that older versions lack.
+  // Functions that older versions lack; null then.
   int (*error_get_last)() = nullptr;
   const char* (*get_system_name)(char id) = nullptr;
   bool (*has_active_wrist)(char id) = nullptr;
@@ -133,7 +133,7 @@ DeviceFault ForceDimension::last_fault(const char* what) const noexcept {
   return fault_of(kDhdFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
 }
 
-// A device without a wrist is asked for no turn.
+// The orientation and the angular velocity of a device without a wrist are not used.
 DeviceFault ForceDimension::sense(DeviceReading& reading) noexcept {
   Vec3 p, v, w = Vec3::Zero();
   double frame[3][3];
@@ -160,7 +160,7 @@ int ForceDimension::tell(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
   return dhd_.set_force_and_torque_and_gripper_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0, id_);
 }
 
-// What was told before the motors go on is what they exert first.
+// Zero force is written before the motors are switched on, because they first exert the last written force.
 DeviceFault ForceDimension::switch_on() noexcept {
   if (tell(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
     return last_fault("Force Dimension: the motors cannot be switched on");
@@ -173,7 +173,7 @@ DeviceFault ForceDimension::exert(const Wrench& wrench) noexcept {
   return {};
 }
 
-// Nobody is left to tell whether one of them fails.
+// Errors are ignored: there is no caller left to report them to.
 void ForceDimension::switch_off() noexcept {
   tell(Vec3::Zero(), Vec3::Zero());
   dhd_.enable_force(0, id_);

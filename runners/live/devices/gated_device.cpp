@@ -13,8 +13,9 @@ bool is_finite(const DeviceReading& r) {
 
 }  // namespace
 
-// Either release() sees that a call is under way, or that call sees at its end that it must switch off; both
-// where they overlap. Every order leaves the motors off, since a force is told only after they are on.
+// Either release() sees that a call is in progress, or that call sees at its end that it must switch off;
+// both happen if they overlap. Every order leaves the motors off, since a force is written only after they
+// are on.
 void GatedDevice::leave_vendor() noexcept {
   if (released_) switch_off();
   in_vendor_ = false;
@@ -47,8 +48,8 @@ DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
   return exert(wrench);
 }
 
-// Vendors' calls rarely expect company: one under way may end, but is not waited for longer than it should
-// take.
+// Few vendors' functions allow calls from two threads: waits for a call in progress, but at most
+// kPatience_ns, which is longer than a call should take.
 void GatedDevice::release() noexcept {
   released_ = true;
   const std::int64_t until_ns = clock().now_ns() + kPatience_ns;

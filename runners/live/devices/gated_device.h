@@ -21,7 +21,8 @@ class GatedDevice : public HapticDevice {
   bool is_released() const { return released_; }
 
  private:
-  // In the thread of the ticks. Fills in all that the vendor reports; the caller checks that it is finite.
+  // Fills in all that the vendor reports; the caller checks that it is finite. Called in the thread of the
+  // ticks.
   virtual DeviceFault sense(DeviceReading& reading) noexcept = 0;
   // Called once, before any force command.
   virtual DeviceFault switch_on() noexcept = 0;

@@ -12,12 +12,12 @@ namespace remote_touch {
 namespace {
 
 constexpr double kOpenWithin_s = 1;
-// Together, with 1 ms for the rest of a message that has begun, below the 10 ms after which a tick must have
-// told a fault.
+// Their sum, with 1 ms each for the rest of a message that has begun, is below 10 ms: by then a tick must
+// have reported a fault.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
 constexpr double kLastAnswerWithin_s = 20e-3;
 constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kTurnNap_ns = 100'000;
-constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
+constexpr double kStateLasts_s = 20e-3;  // if the last command is older, the state is requested again
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
 
@@ -38,8 +38,9 @@ Vec3 to_service(const Vec3& v) {
   return {v.x(), -v.z(), v.y()};
 }
 
-// Whether the force that the service reports follows the commands. A gate, damping and other programs at the
-// same service may change it much; what is found is a force that does not come at all, and one from nowhere.
+// Checks whether the force that the service reports follows the commands. A gate, damping and other programs
+// at the same service may change it much, so only two faults are reported: a commanded force is missing, or a
+// force was not commanded.
 class ForceCheck {
  public:
   explicit ForceCheck(double now_s) : followed_s_(now_s) {}
@@ -65,7 +66,7 @@ DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading&
   if (!has_handle) return {};
   if (!message.handle || !message.handle->has_orientation) return kHandleGone;
   const Eigen::Vector4d& q = message.handle->orientation;
-  // The service rounds; zeros, from a handle that sleeps, are another matter.
+  // The service rounds, so the norm may differ a little from 1. A handle that sleeps sends zeros: a fault.
   if (std::abs(q.norm() - 1) > 0.1) return kNoOrientation;
   const Vec3 axis = from_service(q.head<3>());
   reading.orientation = Eigen::Quaterniond(q.w(), axis.x(), axis.y(), axis.z()).normalized();
@@ -123,8 +124,8 @@ class Haply final : public HapticDevice {
       throw address.refusal("the name of the device cannot be sent back; name another with device=ID");
     traits_.name = "Haply Inverse3 " + opened_.device_id;
     traits_.sensed_axes = opened_.handle_id.empty() ? 3 : 6;
-    // A service that does not keep to the protocol is told here and not in the first tick, which has nothing
-    // to allocate then either.
+    // A service that does not follow the protocol is reported here and not in the first tick. After this read
+    // the first tick has nothing to allocate.
     DeviceReading first;
     if (const DeviceFault fault = read_within(first, kOpenWithin_s))
       throw address.refusal(std::string("no first state (") + fault.what +
@@ -139,7 +140,8 @@ class Haply final : public HapticDevice {
   void release() noexcept override;
 
  private:
-  // Who holds it may use the link. Only release() ever contends, and it keeps it: nobody waits in a tick.
+  // Exclusive use of the link during one call. Only release() competes for it, and keeps it, so no tick
+  // waits.
   class TickGuard {
    public:
     explicit TickGuard(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
@@ -166,7 +168,7 @@ class Haply final : public HapticDevice {
   ForceCheck check_;
 
   std::atomic<bool> taken_{false}, is_released_{false};
-  Vec3 sent_N_ = Vec3::Zero();  // in the service's axes
+  Vec3 sent_N_ = Vec3::Zero();  // last command, in the service's axes
   double sent_s_ = 0;
   bool is_answer_due_ = false;
 };
@@ -187,7 +189,8 @@ DeviceFault Haply::drain(std::string_view& text, double deadline_s) noexcept {
   return fault;
 }
 
-// The answer to the last command; when that was long ago, or there was none, to one without force.
+// Returns the answer to the last command in text. If that is older than kStateLasts_s, or no answer is due,
+// sends a command with zero force and returns the answer to that.
 DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
   const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
   if (const DeviceFault fault = drain(text, deadline_s)) return fault;
@@ -221,7 +224,8 @@ DeviceFault Haply::write(const Wrench& wrench) noexcept {
   if (!turn) return kReleased;
   const bool is_force = wrench.force_N.allFinite();
   const double deadline_s = clock().now_s() + kWriteWithin_s;
-  // With a second command under way the answers would stay one behind. What is not sent lets the device idle.
+  // The answer that is due is read first: with two commands in progress the answers would stay one behind. If
+  // it is missing, no command is sent, and the device idles.
   std::string_view late;
   if (const DeviceFault fault = drain(late, deadline_s)) return fault;
   const DeviceFault fault = send(is_force ? to_service(wrench.force_N) : Vec3::Zero(), deadline_s);
@@ -237,7 +241,7 @@ void Haply::release() noexcept {
   if (is_mine) {
     const bool is_older_due = is_answer_due_;
     const double deadline_s = clock().now_s() + kLastAnswerWithin_s;
-    // The answers are waited for: a connection that ends with unread bytes can lose the command.
+    // Waits for the answers: a connection that is closed with unread bytes can lose the command.
     std::string_view text;
     if (!send(Vec3::Zero(), deadline_s) && !drain(text, deadline_s) && is_older_due)
       opened_.link->receive(text, deadline_s);

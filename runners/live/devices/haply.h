@@ -2,10 +2,10 @@
 //
 // The address is ws://HOST:PORT, by default ws://127.0.0.1:10001, and settings:
 //   force=vector|values  the key of the force in a command: that of 3.5, or that of 3.1 to 3.4
-//   rate=HZ              of the loop, 100 to 8000, by default 1000
-//   device=ID handle=ID  where there are several; by default the first of the inventory
-//   check=on|off         of the force that the service reports: by default it is a fault when it does not
-//                        follow what is commanded for 50 ms
+//   rate=HZ              rate of the loop, 100 to 8000, by default 1000
+//   device=ID handle=ID  the ones to use if there are several; by default the first of the inventory
+//   check=on|off         check of the force that the service reports: if on, the default, it is a fault if
+//                        that force does not follow the commands for 50 ms
 //
 // The service sends one state for each command and measures it when the command arrives: what a tick reads is
 // one period old, so less old at a higher rate.
@@ -34,8 +34,8 @@ using HaplyLinkOpener =
 
 // Throws InputError. To get a first state it sends a command with zero force.
 //
-// release() of the device sends such a command as soon as no thread is in read() or write(), waiting for that
-// 10 ms at most and for the answer 20 ms at most, and then always ends the connection: from then on no
+// release() of the device sends such a command as soon as no thread is in read() or write(). It waits for
+// that 5 ms at most and for the answer 20 ms at most, and then always ends the connection: from then on no
 // command of this process reaches the service. According to its documentation the service lets the device
 // idle when commands stop.
 std::unique_ptr<HapticDevice> open_haply(const std::string& address, Clock& clock,

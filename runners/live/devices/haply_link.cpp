@@ -1,8 +1,8 @@
 #include "runners/live/devices/haply_link.h"
 
 #ifdef REMOTE_TOUCH_HAPLY
-// The one file that includes Boost.Beast: it costs ten seconds to compile. Its fences between threads that
-// run handlers, of which there are none here, are what the thread sanitizer does not know.
+// The one file that includes Boost.Beast, which takes ten seconds to compile. The thread sanitizer does not
+// support Asio's fences between threads that run handlers; there are no such threads here.
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -36,15 +36,16 @@ using boost::system::error_code;
 
 // Far more than an inventory of some devices; a longer message is refused.
 constexpr std::size_t kMaxMessage = 1 << 16;
-// For the rest of a message that has begun to come: on one machine it comes at once.
+// Time for the rest of a message that has begun to arrive: on one machine it arrives at once.
 constexpr double kRestWithin_s = 1e-3;
 
-// Parts in which a message may come. A peer that sends more, such as one ping after the other, each of which
-// is answered, is cut off at the deadline even if there was no wait.
+// The number of transfers that one call may make regardless of the deadline. With a peer that causes more,
+// for instance one ping after the other, each of which is answered, the call ends at the deadline even if it
+// never had to wait.
 constexpr int kMaxParts = 64;
 
-// Where Beast's blocking calls get and put their bytes. By themselves they know no deadline, and they may
-// wait on a socket more than once for one message; here each wait ends by the deadline of the whole call.
+// The stream below Beast's blocking calls. These have no deadline, and they may wait on a socket more than
+// once for one message; here each wait ends by the deadline of the whole call.
 class DeadlineStream {
  public:
   // NOLINTNEXTLINE(readability-identifier-naming): the name that Beast asks for
@@ -64,12 +65,12 @@ class DeadlineStream {
   template <class Buffers>
   std::size_t write_some(const Buffers& buffers, error_code& ec) {
     if (is_over()) return result({0, ETIMEDOUT}, ec);
-    // A frame's head and its text in one packet.
+    // The head of a frame and its text are sent in one packet.
     char bytes[1024];
     const std::size_t size = boost::asio::buffer_copy(boost::asio::buffer(bytes), buffers);
     return result(socket.write_some(bytes, size, deadline_s_), ec);
   }
-  // Beast wants those that throw to exist.
+  // Beast requires that the throwing versions exist.
   template <class Buffers>
   std::size_t read_some(const Buffers& buffers) {
     error_code ec;
@@ -85,7 +86,7 @@ class DeadlineStream {
     return bytes;
   }
 
-  // What follows is one call, for one message.
+  // Starts a call, for one message, with this deadline.
   void begin(double deadline_s) {
     deadline_s_ = deadline_s;
     parts_ = 0;
@@ -145,9 +146,9 @@ class BeastLink final : public HaplyLink {
   }
 
   DeviceFault receive(std::string_view& text, double deadline_s) noexcept override {
-    // While nothing has come Beast is not asked: a wait that it sees end without bytes breaks its stream. It
-    // holds back no whole message but the first, which may come with the handshake: after that the service
-    // answers each command once, and one command is under way.
+    // Beast is not called until bytes have arrived, because a wait that ends without bytes breaks its stream.
+    // Its buffer cannot hold a whole message, except the first, which may arrive with the handshake: after
+    // that the service answers each command once, and one command is in progress.
     if (has_first_ && !lost_)
       if (const int error = web_.next_layer().socket.wait_readable(deadline_s))
         return {"the Haply service does not answer", error};
@@ -164,7 +165,7 @@ class BeastLink final : public HaplyLink {
  private:
   template <class Call>
   DeviceFault within(double deadline_s, Call call) noexcept {
-    // Beast must not be asked again after an error.
+    // Beast must not be called again after an error.
     if (lost_) return lost_;
     web_.next_layer().begin(deadline_s);
     error_code ec;
@@ -178,7 +179,7 @@ class BeastLink final : public HaplyLink {
   }
 
   const Clock& clock_;
-  boost::asio::io_context context_;  // for Beast's timers, which are never set; it is not run
+  boost::asio::io_context context_;  // required by Beast's timers, which are never set; it is not run
   websocket::stream<DeadlineStream, false> web_;
   beast::flat_static_buffer<kMaxMessage> message_;
   bool has_first_ = false;

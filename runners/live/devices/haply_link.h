@@ -22,7 +22,8 @@ class HaplyLink {
   // text: valid until the next call.
   virtual DeviceFault receive(std::string_view& text, double deadline_s) noexcept = 0;
 
-  // Nothing is sent or received from now on, and calls in progress return. From any thread.
+  // Ends the connection: nothing is sent or received any more, and calls in progress return. Any thread may
+  // call it.
   virtual void cut() noexcept = 0;
 };
 

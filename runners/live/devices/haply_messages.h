@@ -17,10 +17,10 @@ namespace remote_touch {
 struct HaplyDeviceState {
   std::string_view id;
   std::string_view
-      basis;  // in the inventory: the axes of this connection, "XYZ" when they are the service's own
+      basis;  // axes of this connection, in the inventory only; "XYZ" if they are the service's own
   bool has_position = false, has_force = false;
   Vec3 position_m = Vec3::Zero(), velocity_m_per_s = Vec3::Zero();
-  Vec3 force_N = Vec3::Zero();  // that the service reports as commanded now
+  Vec3 force_N = Vec3::Zero();  // force that the service reports as commanded now
 };
 
 // State of the handle on it.
@@ -47,16 +47,16 @@ enum class HaplyForceKey { vector, values };
 // The command that sets the force.
 class HaplyForceCommand {
  public:
-  // False: a name that cannot be written.
+  // Returns false if the id cannot be written into a command.
   bool set_device(std::string_view id, HaplyForceKey key) noexcept;
-  // force_N: finite. Valid until the next call.
+  // Returns the command as text, valid until the next call. force_N: finite.
   std::string_view text(const Vec3& force_N) noexcept;
 
  private:
   void append(std::string_view text) noexcept;
 
   std::array<char, 512> text_{};
-  std::size_t head_ = 0, size_ = 0;  // length of the part before the numbers, and of all
+  std::size_t head_ = 0, size_ = 0;  // length of the part before the numbers, and total length
 };
 
 }  // namespace remote_touch

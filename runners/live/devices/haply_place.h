@@ -1,4 +1,4 @@
-// Where Haply's service listens, from its address.
+// The host, port and target at which Haply's service listens.
 #pragma once
 
 #include <string>

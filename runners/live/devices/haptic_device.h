@@ -27,7 +27,7 @@ struct DeviceReading {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // takes the handle's axes to the device's
   Vec3 velocity_m_per_s = Vec3::Zero();
   Vec3 angular_velocity_rad_per_s = Vec3::Zero();
-  std::uint32_t buttons = 0;  // those that are down, one bit each
+  std::uint32_t buttons = 0;  // one bit for each button, set while it is down
 };
 
 // The capabilities of a device; 0 if the vendor does not report them.
@@ -38,7 +38,7 @@ struct DeviceTraits {
   double continuous_force_N = 0;
   double max_torque_Nm = 0;
   double max_stiffness_N_per_m = 0;
-  double tick_rate_hz = 1000;  // of the device's own loop
+  double tick_rate_hz = 1000;  // rate of the device's own loop
 };
 
 // One tick: reads, renders and writes.
@@ -55,7 +55,7 @@ class DeviceCycle {
 class HapticDevice {
  public:
   explicit HapticDevice(Clock& clock) : clock_(clock) {}
-  virtual ~HapticDevice() = default;  // of an adapter: releases and closes the device
+  virtual ~HapticDevice() = default;  // an adapter's destructor releases and closes the device
 
   virtual const DeviceTraits& traits() const = 0;
 
@@ -68,8 +68,8 @@ class HapticDevice {
   // Wrench on the hand, device axes; the caller has already limited it.
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
-  // Zero force from now on, even if another thread hangs in a tick; read() and write() may return kReleased.
-  // Can be called from any thread, more than once.
+  // Sets the force to zero from now on, even if another thread hangs in a tick; read() and write() may then
+  // return kReleased. Any thread may call it, more than once.
   virtual void release() noexcept = 0;
   // Called from a tick: undoes release() if the device can exert forces again. False: the device has to be
   // opened again.

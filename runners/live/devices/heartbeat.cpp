@@ -12,10 +12,11 @@ bool Heartbeat::beat(std::int64_t now_ns) noexcept {
   return !released_.exchange(false, std::memory_order_acq_rel);
 }
 
-// A beat may come between the look and letting go: the device is let go then too, and the next beat says so.
+// A beat may come between the check of the time and the release: the device is released then too, and the
+// next beat reports it.
 void Heartbeat::check(std::int64_t now_ns) noexcept {
   const std::int64_t last_ns = last_ns_.load(std::memory_order_acquire);
-  const bool is_known = last_ns == kNone || last_ns == stalled_at_ns_;  // once a stall
+  const bool is_known = last_ns == kNone || last_ns == stalled_at_ns_;  // one release per stall
   if (is_known || now_ns - last_ns <= max_ns_) return;
   device_.release();
   released_.store(true, std::memory_order_release);

@@ -12,14 +12,14 @@ class Heartbeat {
  public:
   Heartbeat(HapticDevice& device, double max_s);
 
-  // From the loop, at the start of every tick. The first one starts the watch. False: the device was released
-  // since the last beat.
+  // The loop calls it at the start of every tick. The first call starts the watch. Returns false if the
+  // device was released since the last beat.
   bool beat(std::int64_t now_ns) noexcept;
-  // After the last beat: no more are expected.
+  // Ends the watch: no more beats are expected.
   void rest() noexcept { last_ns_.store(kNone, std::memory_order_release); }
 
-  // From a thread that does not depend on the loop, about every period_s(): releases the device when there
-  // was no beat for longer than max_s.
+  // Releases the device if there was no beat for longer than max_s. A thread that does not depend on the loop
+  // must call it about every period_s().
   void check(std::int64_t now_ns) noexcept;
   double period_s() const { return 1e-9 * static_cast<double>(max_ns_) / 5; }
   // True if the device was released and no beat has come since.
@@ -32,7 +32,7 @@ class Heartbeat {
   HapticDevice& device_;
   const std::int64_t max_ns_;
   std::atomic<std::int64_t> last_ns_ = kNone;
-  std::int64_t stalled_at_ns_ = kNone;  // of check() alone
+  std::int64_t stalled_at_ns_ = kNone;  // last beat before the newest stall; used by check() alone
   std::atomic<bool> released_ = false;
   std::atomic<int> stalls_ = 0;
 };

@@ -7,7 +7,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kDeepest = 64;  // what a message nests; more would only fill the stack
+constexpr int kDeepest = 64;  // greatest nesting that is read; more would only fill the stack
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -40,7 +40,7 @@ bool JsonReader::word(std::string_view text) {
 
 bool JsonReader::number(double& value) {
   const char first = next();
-  // from_chars would take "nan" and "inf" for numbers.
+  // The first character is checked, because from_chars also reads "nan" and "inf" as numbers.
   const char* digits = first == '-' ? at_ + 1 : at_;
   if (digits >= end_ || !is_digit(*digits)) return false;
   const auto [end, error] = std::from_chars(at_, end_, value);

@@ -25,7 +25,7 @@ class JsonReader {
     return items('[', ']', element);
   }
 
-  // Only finite numbers; false for what is not JSON, such as NaN.
+  // Reads a finite number; false for text that is not JSON, such as NaN.
   bool number(double& value);
   bool boolean(bool& value);
   bool string(std::string_view& value);
@@ -45,8 +45,8 @@ class JsonReader {
   }
   bool skip(int depth);
   bool word(std::string_view text);
-  char next();        // after white space; 0 at the end
-  bool take(char c);  // when it is the next
+  char next();        // first character after white space; 0 at the end
+  bool take(char c);  // skips c if it is the next character; else false
 
   const char* at_;
   const char* end_;

@@ -55,11 +55,11 @@ class OpenHaptics : public GatedDevice {
   unsigned device_ = HdLibrary::invalid_handle;
   DeviceTraits traits_;
 
-  // Of the thread of the ticks.
-  DeviceFault frame_fault_;    // of the frame before or of this one's beginning
-  bool has_reported_ = false;  // a force, in this frame
+  // Members used only by the thread of the ticks.
+  DeviceFault frame_fault_;    // fault at the end of the frame before, or at the beginning of this one
+  bool has_reported_ = false;  // true if a force was written in this frame
 
-  DeviceFault scheduler_fault_;  // set while no callback can be
+  DeviceFault scheduler_fault_;  // set only while no callback can be in progress
   DeviceCycle* cycle_ = nullptr;
   std::atomic<long> callbacks_{0};
   std::atomic<bool> in_callback_{false}, has_ended_{false};
@@ -80,7 +80,7 @@ OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject,
   learn_traits();
 }
 
-// The last frame tells no force, for whoever switches the motors on next.
+// Writes zero force in a last frame, for the program that switches the motors on next.
 OpenHaptics::~OpenHaptics() {
   release();
   constexpr std::array<double, 3> kNone{};
@@ -155,14 +155,16 @@ DeviceFault OpenHaptics::exert(const Wrench& wrench) noexcept {
   return newest_error("OpenHaptics: the force cannot be set");
 }
 
-// A force can be told only within a frame, which belongs to the scheduler's thread; no motors, no force.
+// Disables the motors and writes no force: a force can be written only within a frame, and frames belong to
+// the scheduler's thread.
 void OpenHaptics::switch_off() noexcept {
   hd_.make_current_device(device_);
   hd_.disable(HdLibrary::force_output);
 }
 
-// One tick in one frame. Without a force of its own it would have that of the frame before, and after the
-// last one nobody takes it back.
+// Makes one tick in one frame. Writes zero force if the tick wrote none, because the device would then keep
+// the force of the frame before. Also writes zero after release(), and in the last frame, because nothing
+// would set the force to zero after it.
 bool OpenHaptics::frame(DeviceCycle& cycle) noexcept {
   hd_.begin_frame(device_);
   if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) frame_fault_ = fault;
@@ -185,7 +187,8 @@ unsigned OpenHaptics::on_schedule(void* self) noexcept {
   return HdLibrary::callback_done;
 }
 
-// True after the last tick; false when no callback came for long, though none is under way.
+// Waits for the end of the ticks. Returns true after the last tick; false if no callback came for longer than
+// kMaxSilence_s although none is in progress.
 bool OpenHaptics::is_scheduler_done() noexcept {
   long before = -1;
   for (double called_s = 0; !has_ended_; clock().sleep_s(kCheckPeriod_s)) {

@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of what the vendor names as the most.
+// Fraction of the vendor's maximum force and torque that is allowed.
 constexpr double kDeviceFraction = 0.9;
 
 Vec3 cut(const Vec3& v, double max_length) {
@@ -55,13 +55,13 @@ DeviceFault SafetyGate::trouble(const DeviceReading& reading, const DeviceFault&
   return {};
 }
 
-// How much of the command counts.
+// Returns the fraction of the command to apply, 0 to 1, and advances the state.
 double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
   if (state_ == GateState::waiting) {
     const double engage_torque_Nm =
         limits_.max_force_N > 0 ? limits_.engage_force_N * limits_.max_torque_Nm / limits_.max_force_N : 0;
-    // A limit of 0 lets no torque get to the device, so none can come as a jolt. If the limit of the force is
-    // 0, the threshold is 0, and a command without torque must still begin.
+    // If the limit of the torque is 0, no torque reaches the device, so it cannot jump. If the limit of the
+    // force is 0, the threshold is 0, and a command without torque must still engage.
     const double torque_Nm = command.torque_Nm.norm();
     const bool has_torque = limits_.max_torque_Nm > 0 && torque_Nm > 0 && torque_Nm >= engage_torque_Nm;
     if (command.force_N.norm() >= limits_.engage_force_N || has_torque) return 0;
@@ -89,7 +89,7 @@ Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const Device
       gap_s > limits_.max_command_age_s || now_s - command_time_s > limits_.max_command_age_s;
   if (is_stale) state_ = GateState::waiting;
   const double part = is_stale ? 0 : fraction(now_s, command);
-  // After a gap the force that was written last is old: no step is larger than that of an ordinary tick.
+  // The last written force is old after a gap, so a step is never larger than that of a tick of 2 ms.
   const double step_s = std::min(gap_s, 0.002);
   last_.force_N = cut(towards(last_.force_N, cut(part * command.force_N, limits_.max_force_N),
                               limits_.force_slew_N_per_s * step_s),

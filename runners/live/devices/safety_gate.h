@@ -16,29 +16,30 @@ enum class GateState { waiting, ramping, engaged, latched };
 // Independent rules:
 // - A fault of the device, a reading or a command that is not finite, or a hand faster than the limits: no
 //   force, until rearm().
-// - No tick for max_command_age_s, or a command older than that: force falls to zero at the slew rate, then
-//   as at the start.
+// - No tick for max_command_age_s, or a command older than that: force falls to zero at the slew rate, and
+//   must then start again as described next.
 // - Force starts only while the command is below engage_force_N, and its torque below the same fraction of
 //   its limit, and rises linearly over ramp_s, so that it does not jump when the hand is inside something.
 // - Force and torque are limited to their maximum magnitudes, and change no faster than the slew rates.
-// No allocation, no lock, no clock of its own. Not a certified safety function.
+// The gate allocates nothing, takes no lock and has no clock of its own. It is not a certified safety
+// function.
 class SafetyGate {
  public:
   explicit SafetyGate(const SafetyLimits& limits) : limits_(limits) {}
 
-  // The part of a command made at command_time_s that may be written at now_s, which never decreases. fault:
-  // of the reading.
+  // Returns the part of a command made at command_time_s that may be written at now_s, which never decreases.
+  // fault: that of the reading.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
               double command_time_s) noexcept;
-  // As after a fault of the device: no force, until rearm().
+  // Sets the force to zero until rearm(), as after a fault of the device.
   void latch(const DeviceFault& reason) noexcept;
-  // The device was released from outside: starts again.
+  // Starts again after the device was released from outside; a latch stays.
   void restart() noexcept;
-  // After a latch, on request of the user; from any thread.
+  // Ends a latch at the next pass(), on request of the user. Any thread may call it.
   void rearm() noexcept { rearm_.store(true, std::memory_order_relaxed); }
 
   GateState state() const { return state_; }
-  const DeviceFault& reason() const { return reason_; }  // of a latch
+  const DeviceFault& reason() const { return reason_; }  // reason of the newest latch
 
  private:
   DeviceFault trouble(const DeviceReading& reading, const DeviceFault& fault,

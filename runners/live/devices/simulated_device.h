@@ -48,7 +48,7 @@ class SimulatedDevice final : public HapticDevice {
   long long ticks_ = 0;
   DeviceState state_;
   DeviceReading last_;
-  std::exception_ptr failure_;  // of the script
+  std::exception_ptr failure_;  // exception that the script threw
   DeviceFault fault_;           // its text is in failure_
   std::atomic<bool> armed_ = true;
 };

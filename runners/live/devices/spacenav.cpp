@@ -16,19 +16,20 @@ namespace {
 
 constexpr double kConnectWithin_s = 0.5;
 constexpr double kHolds_s = 0.5;
-constexpr double kMaxStep_s = 0.1;  // of one reading; after a longer pause the pose does not jump
-constexpr int kMaxFrames = 256;     // of one reading; the daemon sends some hundred a second
+constexpr double kMaxStep_s = 0.1;  // longest step of one reading: no jump of the pose after a pause
+constexpr int kMaxFrames = 256;     // most frames in one reading; the daemon sends some hundred a second
 
 constexpr DeviceFault kGone{"spacenavd has closed the connection"};
 constexpr DeviceFault kNoFrame{"what the socket sends is not what spacenavd sends"};
 
-// What the daemon sends: an event and its numbers. Other events tell of mice and settings that change.
+// The daemon sends frames of an event and its numbers. Other events report changes of mice and settings.
 enum Event : std::int32_t { kMotion = 0, kPress = 1, kRelease = 2, kLastEvent = 15 };
 using Frame = std::array<std::int32_t, 8>;
 
 std::string socket_of(const DeviceAddress& address) {
   if (!address.place().empty()) return address.place();
-  // Asked here and not in runners/cli: it means the same to libspnav, and so to every program of spacenavd.
+  // The variable is read here and not in runners/cli, because it has the same meaning in libspnav, and so in
+  // every program that uses spacenavd.
   const char* from_environment = std::getenv("SPNAV_SOCKET");
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
 }
@@ -83,14 +84,14 @@ class Spacenav final : public HapticDevice {
   DeviceFault take(const Frame& frame, double now_s) noexcept;
   void move(double step_s) noexcept;
 
-  const double speed_, angular_velocity_, box_m_;  // the first two for each count
+  const double speed_, angular_velocity_, box_m_;  // m/s and rad/s for each count of deflection; m
   DeadlineSocket socket_;
   DeviceTraits traits_;
   DeviceFault fault_;
 
-  std::array<char, sizeof(Frame)> bytes_{};  // of a frame that has begun
+  std::array<char, sizeof(Frame)> bytes_{};  // bytes received of a frame that is not yet whole
   std::size_t filled_ = 0;
-  std::array<std::int32_t, 6> counts_{};  // the last deflection told
+  std::array<std::int32_t, 6> counts_{};  // the last deflection received
   double reported_s_ = 0, moved_s_;
   DeviceReading pose_;
 };
@@ -131,7 +132,8 @@ void Spacenav::move(double step_s) noexcept {
   const Vec3 along = speed_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
   const Vec3 about = angular_velocity_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
   const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
-  // At a face of the box the position stands although the mouse is pushed.
+  // The velocity is that of the clamped position: its component towards a face of the box is zero there,
+  // although the mouse is pushed.
   pose_.velocity_m_per_s = step_s > 0 ? Vec3((to - pose_.position_m) / step_s) : along;
   pose_.position_m = to;
   pose_.angular_velocity_rad_per_s = about;

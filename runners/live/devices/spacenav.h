@@ -2,8 +2,8 @@
 //
 // The address is the path of the daemon's socket, by default that of the environment variable SPNAV_SOCKET,
 // or /var/run/spnav.sock, and settings:
-//   speed=M_PER_S      for each count of deflection, by default 0.0005; a mouse gives up to about 350
-//   turning=RAD_PER_S  likewise, by default 0.003
+//   speed=M_PER_S      speed for each count of deflection, by default 0.0005; a mouse sends up to about 350
+//   turning=RAD_PER_S  angular speed for each count of deflection, by default 0.003
 //   box=M              half the width of the workspace, by default 0.15; the position is kept within
 //
 // The deflection is a velocity, integrated to a pose from the middle of the box, where the device starts. A
@@ -27,7 +27,7 @@ namespace remote_touch {
 // fault, and the device must be opened again. write() and release() do nothing.
 std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& clock);
 
-// Whether the daemon answers; it does not report which mouse it has, if any.
+// Reports whether the daemon answers; the daemon does not report which mouse it has, if any.
 Availability spacenav_availability(const std::string& address, const Clock& clock);
 
 }  // namespace remote_touch

@@ -6,7 +6,8 @@
 
 namespace remote_touch {
 
-// From x towards the user, y right, z up to ours, x right, y up, z towards the user, and back.
+// The first function converts from x towards the user, y right, z up to our axes: x right, y up, z towards
+// the user. The second one converts back.
 inline Vec3 from_user_right_up(const Vec3& v) {
   return {v.y(), v.z(), v.x()};
 }
@@ -22,7 +23,7 @@ inline Eigen::Matrix3d rotation_from_user_right_up(const Eigen::Matrix3d& rotati
   return rotated;
 }
 
-// Within the errors of encoders and single precision; false for values that are not finite.
+// True if m is a rotation within the errors of encoders and single precision; false if a value is not finite.
 inline bool is_rotation(const Eigen::Matrix3d& m) {
   constexpr double kSlack = 1e-3;
   return ((m * m.transpose() - Eigen::Matrix3d::Identity()).array().abs() < kSlack).all() &&

@@ -105,7 +105,7 @@ void CameraFeed::handle(SensorFrame& sensed) {
   renderer_.prepare(frame);
   send(std::move(frame), sensed.captured_s);
   counts_.processing_s += clock_.now_s() - begin_s;
-  sensed_points_.add(sensed, source_->view());  // after the frame was sent, so that it is not later
+  sensed_points_.add(sensed, source_->view());  // done after the frame was sent, so as not to delay it
 }
 
 void CameraFeed::send(Frame frame, double sensed_s) {

@@ -1,4 +1,4 @@
-// From the sensor to the servo: frames are processed and prepared, one step at a time.
+// Passes frames from the sensor to the servo, processed and prepared, one step at a time.
 #pragma once
 
 #include <atomic>
@@ -15,14 +15,14 @@
 
 namespace remote_touch {
 
-// Takes frames to be recorded. False: the recorder's queue is full.
+// Queues a frame to be recorded. Returns false if the recorder's queue is full.
 using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint64_t fixtures_off)>;
 
 struct CameraCounts {
   int received = 0;
   int passed_over = 0;  // frame numbers that never came: not sent, or a newer frame came first
   int reversed = 0;     // not newer than the frame before; dropped
-  int incomplete = 0;   // without the colours that the sensor's view promises, or of another size; dropped
+  int incomplete = 0;   // colours that the sensor's view promises are missing, or the size differs; dropped
   int overtaken = 0;    // ready, but replaced by a newer one before the servo took them
   int unrecorded = 0;   // dropped, because the recorder's queue was full
   double max_pause_s = 0;
@@ -40,17 +40,20 @@ class CameraFeed {
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
              TripleBuffer<LiveFrame>& out, FrameSink sink, std::function<void(const Frame&)> on_frame = {});
 
-  // Waits at most patience_s for the next frame and passes it on. False: there will be no more. It checks
-  // each frame against the needs of the renderer and the rules, as FrameStream does in a simulated run.
+  // Waits at most patience_s for the next frame and passes it on. Returns false if there will be no more. It
+  // checks each frame against the needs of the renderer and the rules, as FrameStream does in a simulated
+  // run.
   bool step(double patience_s) noexcept;
 
-  // For other threads.
+  // Other threads may call the following functions, except sensed().
   CameraCounts counts() const;  // so far
   std::string ended() const;    // why there will be no more frames; empty while there may be
   // True if they ended with an input error: a frame that cannot be used, as ended() says.
   bool has_refused() const { return refused_.load(std::memory_order_acquire); }
-  double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the clock
-  bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }    // a frame, to the servo
+  // The time of the clock when the newest frame was ready; the start of the run before the first frame.
+  double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }
+  // True if a frame was sent to the servo.
+  bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }
   const SensorView& view() const { return source_->view(); }
   const SensedPoints& sensed() const { return sensed_points_; }  // pre: step() is no longer called
 
@@ -58,7 +61,7 @@ class CameraFeed {
   void handle(SensorFrame& sensed);
   bool is_newer(const SensorFrame& sensed);
   void send(Frame frame, double sensed_s);
-  bool end(std::string why);  // false
+  bool end(std::string why);  // returns false
 
   const std::unique_ptr<DepthSource> source_;
   const FrameProcessing processing_;
@@ -71,9 +74,9 @@ class CameraFeed {
   const std::function<void(const Frame&)> on_frame_;  // a viewer's; may be empty
   SensorFrame sensed_;
   CameraCounts counts_;
-  SensedPoints sensed_points_;  // of the frames that were sent
+  SensedPoints sensed_points_;  // points in the frames that were sent
   mutable std::mutex reported_mutex_;
-  CameraCounts reported_;  // after the newest frame
+  CameraCounts reported_;  // copy of counts_, made after the newest frame
   int index_ = 0, last_number_ = -1;
   double last_captured_s_ = 0;
   std::deque<Frame> held_;

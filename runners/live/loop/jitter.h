@@ -1,4 +1,4 @@
-// How late the ticks of a haptic loop are on this machine, with nothing to do in them.
+// Measures the lateness of the ticks of a haptic loop on this machine, if a tick has nothing to do.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace remote_touch {
 struct Jitter {
   std::vector<double> late_s;  // delay of every tick
   long long missed = 0;        // ticks that never began
-  std::string real_time;       // what the system granted, see become_real_time()
+  std::string real_time;       // rights that the system granted, see become_real_time()
 };
 
 // Measures the loop of devices that have none of their own. stop: ends it early.

@@ -33,7 +33,7 @@ class LiveContact {
   };
 
   const double ball_radius_m_;  // 0: watches nothing
-  std::mutex mutex_;            // of the frames
+  std::mutex mutex_;            // guards the frames
   std::array<KeptFrame, kKeptFrames> frames_;
   std::size_t next_ = 0;
   bool is_over_ = false;  // the first contact is known: frames are no longer kept

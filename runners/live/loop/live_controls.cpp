@@ -54,7 +54,7 @@ std::string LiveControls::change(const ParameterChanges& changes) try {
   return error.what();
 }
 
-// The whole experiment is checked with all that was changed so far. Throws InputError.
+// Returns the whole experiment with all changes so far, checked. Throws InputError.
 Experiment LiveControls::checked(const std::vector<double>& values) const {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {

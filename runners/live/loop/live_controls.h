@@ -1,5 +1,5 @@
-// Parameters that someone changes while a live run goes on. A change is checked outside the haptic loop, and
-// made by the loop between two ticks.
+// Parameters that the user changes during a live run. A change is checked outside the haptic loop, and made
+// by the loop between two ticks.
 #pragma once
 
 #include <atomic>
@@ -17,25 +17,26 @@ namespace remote_touch {
 class LiveControls {
  public:
   enum class Camera { simulated, other };
-  // With another camera than the experiment's scenario only the renderer's parameters can change. An
-  // experiment with changes of its own has none.
+  // Only the renderer's parameters can change if the camera is not the experiment's scenario. An experiment
+  // with changes of its own has no live parameters.
   LiveControls(const Experiment& experiment, const Kernels& kernels, Camera camera);
 
-  // Those of the renderer in the order of Renderer::live_parameters(), then those of the scenario.
+  // The parameters of the renderer, in the order of Renderer::live_parameters(), then those of the scenario.
   const std::vector<LiveParameter>& parameters() const { return parameters_; }
 
-  // Their present values, as the loop has them or will have them in one of its next ticks. From the thread of
-  // change().
+  // Their present values: the loop uses them already, or will in one of its next ticks. Only the thread of
+  // change() may call it.
   const std::vector<double>& values() const { return values_; }
   bool has_changed() const;
-  // From one thread. Empty: the loop will make these changes together; else why not, in one line.
+  // Requests changes. Returns an empty text if the loop will make them together, else the reason why not, in
+  // one line. Only one thread may call it.
   std::string change(const ParameterChanges& changes);
 
-  // For the run.
+  // The run uses the following functions.
   Ring<ParameterChanges>& asked() { return asked_; }
   std::unique_ptr<const Scenario> scenario() const;  // null with another camera
-  // For a device with motors: no greater stiffness than at the start, since nobody knows whether it is
-  // stable.
+  // Refuses a greater stiffness than at the start from now on. A device with motors needs this limit, because
+  // it is not known whether a greater stiffness is stable.
   void limit_stiffness() { has_stiffness_limit_ = true; }
 
  private:

@@ -11,28 +11,28 @@
 
 namespace remote_touch {
 
-// Its memory has a bound: after hours of running, too, some hundred MB.
+// Its memory is bounded: some hundred MB even after hours.
 struct LiveLog {
   static constexpr std::size_t kMaxRows = 1'800'000;  // half an hour at 1 kHz: 0.4 GB, more with a tool
 
-  Trace trace;                     // of the first max_rows ticks
-  std::vector<double> row_step_s;  // of its ticks: taking the frame and rendering
+  Trace trace;                     // the first max_rows ticks
+  std::vector<double> row_step_s;  // time for taking the frame and rendering, for each tick of the trace
   std::size_t max_rows = kMaxRows;
   std::int64_t ticks = 0;
   bool is_whole() const { return trace.length() == static_cast<std::size_t>(ticks); }
 
-  Samples step_s;                 // of every tick: taking the frame and rendering
-  Samples interval_s;             // between the starts of ticks
-  GreatestOfPieces pieces;        // of those, over the run
-  Samples latency_s;              // of every frame taken: sensor's time stamp to the first write it counts in
-  Samples waited_s;               // of every frame taken: ready to taken
-  std::int64_t missed_ticks = 0;  // tick numbers that were skipped
-  std::int64_t exhausted_ticks = 0;   // that ended before the tool came to rest
-  std::int64_t zero_force_ticks = 0;  // in which the gate was waiting or latched
-  std::int64_t contact_ticks = 0;     // in which a point was touched or the renderer's force was not zero
-  std::int64_t stale_ticks = 0;       // with no new frame for kStaleFrame_s
-  std::int64_t reversed_frames = 0;   // taken although older than the frame before; should be 0
-  double max_force_N = 0;             // written to the device
+  Samples step_s;                     // time for taking the frame and rendering, every tick
+  Samples interval_s;                 // time between the starts of ticks
+  GreatestOfPieces pieces;            // greatest interval in each piece of the run
+  Samples latency_s;                  // sensor's time stamp to the first write it affects, every frame taken
+  Samples waited_s;                   // time from ready to taken, every frame taken
+  std::int64_t missed_ticks = 0;      // tick numbers that were skipped
+  std::int64_t exhausted_ticks = 0;   // ticks that ended before the tool came to rest
+  std::int64_t zero_force_ticks = 0;  // ticks in which the gate was waiting or latched
+  std::int64_t contact_ticks = 0;     // ticks that touched a point or whose rendered force was not zero
+  std::int64_t stale_ticks = 0;       // ticks before which no new frame came for kStaleFrame_s
+  std::int64_t reversed_frames = 0;   // frames taken although older than the one before; should be 0
+  double max_force_N = 0;             // greatest force written to the device
 
   static constexpr double kStaleFrame_s = 0.2;
 

@@ -23,7 +23,7 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
   return true;
 }
 
-// If the recording fails, the log goes on, and the other way round: each is worth having without the other.
+// If the recording fails, the log continues, and vice versa: each is useful without the other.
 template <class Write>
 void LiveLogger::record(const Write& write) {
   if (!recorder_ || recording_failed_) return;
@@ -89,7 +89,7 @@ void LiveLogger::step() noexcept {
   try {
     answer();
   } catch (const std::exception&) {
-    // No memory for a report: the run is more important.
+    // A report is skipped if there is no memory for it: the run is more important.
   }
 }
 
@@ -115,7 +115,7 @@ std::string LiveLogger::keep() {
   return recorder_ ? recorder_->keep() : std::string();
 }
 
-// Told once: others may be reading it.
+// Writes why_ only once, because other threads may be reading it.
 void LiveLogger::fail(const std::string& why) {
   if (failed_) {
     why_too_ = why;

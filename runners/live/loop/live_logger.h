@@ -38,12 +38,12 @@ class LiveLogger {
   // Returns a line on the file that keeps the recording; empty if nothing was recorded. pre: as for finish().
   std::string keep();
 
-  // For the camera: false if kMaxFrames frames are waiting for the disk.
+  // Queues a frame of the camera. Returns false if kMaxFrames frames are waiting for the disk.
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   // Returns the reason why the recording or the log has failed, and the file that keeps what was recorded;
   // empty if neither has failed. Other threads may call it.
   std::string failure() const;
-  LiveLog take() { return std::move(log_); }  // after finish()
+  LiveLog take() { return std::move(log_); }  // pre: finish() was called
   // Calls the question once, in a step(), with the log at that time.
   void ask(std::function<void(const LiveLog&)> question);
 

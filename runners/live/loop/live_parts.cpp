@@ -96,7 +96,7 @@ std::unique_ptr<SessionRecorder> LiveParts::recorder(const Experiment& experimen
   return std::make_unique<SessionRecorder>(options_.record, view, registered, provenance, names);
 }
 
-// Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.
+// Ticks are numbered in steps of the experiment's rate, so the time of a faster loop would run ahead.
 void LiveParts::require_rate() const {
   const double device_hz = device_->traits().tick_rate_hz;
   if (std::abs(device_hz - rate_hz_) > 0.01 * rate_hz_)
@@ -117,7 +117,7 @@ void LiveParts::run_loop() noexcept {
 
 LiveResult LiveParts::finish() {
   LiveResult result;
-  is_over();  // a loop that has ended by itself may be ahead of the last look
+  is_over();  // the loop may have ended by itself after the last check
   result.refused = why_refused();
   const std::string ended = with_refusal(ended_, result.refused);
   logger_->finish([&](const LiveLog& log) {
@@ -193,7 +193,7 @@ std::string LiveParts::why_over() const {
   if (camera_->has_refused()) return camera_->ended();
   if (const std::string why = logger_->failure(); !why.empty()) return why;
   if (clock_.now_ns() >= ends_ns_) return "its duration is over";
-  // The adapter has left its loop although no tick told it to.
+  // The adapter has left its loop although tick() did not return false.
   if (loop_ended_) return kLoopEnded;
   return {};
 }
@@ -220,7 +220,7 @@ void LiveParts::report_force_scale() const {
 }
 
 std::string LiveParts::camera_trouble() const {
-  if (camera_->has_refused()) return {};  // the run ends, and why is said then
+  if (camera_->has_refused()) return {};  // the run ends and then reports the reason
   const char* const held = camera_->has_sent() ? "the last cloud stays" : "there is nothing to touch";
   if (const std::string why = camera_->ended(); !why.empty()) return "no more frames (" + why + "): " + held;
   if (clock_.now_s() - camera_->newest_s() <= LiveLog::kStaleFrame_s) return {};

@@ -16,8 +16,9 @@
 
 namespace remote_touch {
 
-// How many points renderers have to make room for, so that no frame needs memory from the system: those of
-// an image, whole tiles of it; of a cloud, which may grow, twice those of its first frame.
+// The number of points for which renderers have to reserve memory, so that no frame needs memory from the
+// system. For images: the number of pixels, with width and height rounded up to multiples of 16. For clouds,
+// which may grow: twice the number that the view expects, plus 256.
 std::size_t expected_points(const SensorView& view);
 
 class LiveParts {
@@ -27,7 +28,7 @@ class LiveParts {
   LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
             std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source);
 
-  // The haptic loop, until the run ends; it then releases the device.
+  // Runs the haptic loop until the run ends, and then releases the device.
   void run_loop() noexcept;
   // While the loop runs, other threads must call camera().step(), heartbeat().check(), logger().step() and
   // logger().sync(). One thread must call is_over() and report_changes() every kReportPeriod_s, which inform
@@ -36,13 +37,13 @@ class LiveParts {
   Heartbeat& heartbeat() { return servo_->heartbeat(); }
   LiveLogger& logger() { return *logger_; }
   static constexpr double kReportPeriod_s = 0.01;
-  // Whether something other than stop() has ended the run.
+  // True if something other than stop() has ended the run.
   bool is_over();
   void report_changes();
 
   // Ends the loop.
   void stop() { stop_ = true; }
-  // From any thread.
+  // Any thread may call it.
   void release() noexcept { device_->release(); }
   // pre: none of the steps is called any more.
   LiveResult finish();
@@ -72,12 +73,12 @@ class LiveParts {
   std::int64_t ends_ns_ = 0;
   double force_scale_ = 1;
   std::atomic<bool> stop_ = false, loop_failed_ = false, loop_ended_ = false;
-  std::exception_ptr loop_failure_;  // of the loop's thread, for finish()
+  std::exception_ptr loop_failure_;  // exception that ended the loop, for finish()
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;
   std::mutex told_mutex_;
-  std::vector<std::string> told_;  // by the camera's thread, for report_changes()
+  std::vector<std::string> told_;  // lines from the camera's thread, for report_changes()
   TripleBuffer<LiveFrame> frames_;
   Ring<LiveTick> rows_;
   std::unique_ptr<LiveLogger> logger_;
@@ -85,7 +86,7 @@ class LiveParts {
   std::unique_ptr<Servo> servo_;
   LiveContact contact_;
   const std::vector<Phase> phases_;  // see simulated_phases()
-  std::string ended_;                // why
+  std::string ended_;                // reason why the run has ended; empty: not yet
   LiveTrouble reported_;
   // The time at which report_changes() first found the device released by the heartbeat; -1 if it is not
   // released.

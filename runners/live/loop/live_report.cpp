@@ -26,7 +26,8 @@ double missed_percent(const LiveLog& log, double ticks) {
   return ticks > 0 ? 100 * missed / (ticks + missed) : 0;
 }
 
-// At most that many samples of "this share took longer", closer where few did.
+// Returns at most kSamples + 1 points of the share of times that were as long or longer, over the time. They
+// are closer where the share is small.
 Table longer_than(const LiveReport::Times& times) {
   constexpr double kSamples = 400;
   const auto count = static_cast<double>(times.sorted.size());

@@ -13,9 +13,9 @@ struct LiveReport {
   struct Times {
     const char* name;
     const char* word;            // file-safe
-    std::vector<double> sorted;  // seconds; of a long run a part of them, see Samples
-    std::size_t count;           // of all
-    double least, greatest;      // of all
+    std::vector<double> sorted;  // seconds; only a part of them after a long run, see Samples
+    std::size_t count;           // number of all times
+    double least, greatest;      // least and greatest of all times
   };
   struct Count {
     const char* name;

@@ -22,11 +22,11 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kPatience_s = 0.05;  // of the camera's thread: it notices an end in that time
-constexpr double kLook_s = 0.02;      // of the thread that writes through to the disk, likewise
+constexpr double kPatience_s = 0.05;  // the camera's thread notices an end within this time
+constexpr double kLook_s = 0.02;      // the thread that syncs the disk notices an end within this time
 constexpr auto kMaxStop = std::chrono::seconds(2);
 
-// Ends it, and waits for that, when it is destroyed.
+// Returns a thread that calls step every period_s. Its destructor ends it and waits for the end.
 std::jthread repeat(Clock& clock, double period_s, std::function<void()> step) {
   return std::jthread([&clock, period_s, step = std::move(step)](const std::stop_token& stop) {
     for (; !stop.stop_requested(); clock.sleep_s(period_s)) step();
@@ -58,7 +58,8 @@ class LiveThreads {
       done_.set_value();
     });
   }
-  // An exception has left the user's part: a loop that is not waited for would end the program.
+  // Ends the loop if an exception has left the main thread's part: a thread that is not joined would end the
+  // program.
   ~LiveThreads() {
     if (!loop_.joinable()) return;
     parts_.stop();
@@ -66,7 +67,8 @@ class LiveThreads {
     loop_.join();
   }
 
-  // What the system gave to the loop. Ends the program where the loop does not end.
+  // Ends the threads. Returns the rights that the system granted to the loop, see become_real_time(). Ends
+  // the program if the loop does not end within kMaxStop.
   std::string finish() {
     parts_.stop();
     if (is_done_.wait_for(kMaxStop) != std::future_status::ready) give_up();
@@ -80,7 +82,7 @@ class LiveThreads {
     thread.request_stop();
     thread.join();
   }
-  // The vendor's call does not come back, and neither would a join.
+  // Ends the program: the vendor's call does not return, so a join would not return either.
   [[noreturn]] void give_up() {
     parts_.release();
     end(camera_), end(logger_), end(sync_);

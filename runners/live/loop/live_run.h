@@ -22,8 +22,8 @@ struct LiveOptions {
   std::string device = "sim:", depth = "sim:";
   double duration_s = 0;                                // 0: until stopped
   std::filesystem::path record;                         // empty: nothing is recorded
-  TextAttributes provenance;                            // of the recording
-  double stall_s = 0.01;                                // if no tick for longer, the device is released
+  TextAttributes provenance;                            // attributes of the recording
+  double stall_s = 0.01;                                // the device is released if no tick comes for longer
   const Kernels* kernels = nullptr;                     // required
   const std::atomic<bool>* stop = nullptr;              // SIGINT and SIGTERM
   std::atomic<bool>* report = nullptr;                  // SIGUSR1: calls on_report; reset
@@ -36,25 +36,25 @@ struct LiveOptions {
   // Report of the run so far, called from the thread that writes the recording, so that no other thread uses
   // HDF5.
   std::function<void(const LiveReport&)> on_report;
-  // For a viewer: every tick, from the thread that writes the recording, and every frame on its way to the
-  // renderer, from the camera's thread. They must not throw.
+  // Called for a viewer: on_tick with every tick, in the thread that writes the recording; on_frame with
+  // every frame on its way to the renderer, in the camera's thread. They must not throw.
   std::function<void(const LiveTick&)> on_tick;
   std::function<void(const Frame&)> on_frame;
   // Called with what does not work at every change of it, also when report_line is empty. The thread of
   // run_live() calls it.
   std::function<void(const LiveTrouble&)> on_trouble;
-  std::shared_ptr<HandPoses> poses;        // for the device browser:
-  std::shared_ptr<LiveControls> controls;  // of the same experiment; null: nothing changes
+  std::shared_ptr<HandPoses> poses;        // required by the device browser:
+  std::shared_ptr<LiveControls> controls;  // must belong to the same experiment; null: nothing changes
 };
 
 struct LiveResult {
   LiveLog log;
   LiveCounts counts;
   RunReport report;        // the frames that it read, and notes; empty if the log failed
-  std::string real_time;   // what the system granted, see become_real_time()
+  std::string real_time;   // rights that the system granted, see become_real_time()
   std::string device;      // its name
   double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness
-  std::string ended;       // why it ended
+  std::string ended;       // reason why it ended
   bool failed = false;     // device, sensor or renderer failed, or the gate was latched at the end
   // The frame or the file that cannot be used, an input error in one line: a frame that does not fit the view
   // of its sensor, that the renderer or the simulated hand cannot use, or an input that has changed. Empty:

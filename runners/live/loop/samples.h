@@ -7,8 +7,8 @@
 
 namespace remote_touch {
 
-// Keeps every sample up to kMax of them; of more every second, fourth, ... one, evenly over the run. How many
-// there were, the least and the greatest are those of all.
+// Keeps every sample up to kMax of them; if there are more, every second, fourth, ... one, evenly over the
+// run. The number, the least and the greatest are those of all samples.
 class Samples {
  public:
   static constexpr std::size_t kMax = 1 << 20;  // 8 MB; 17 minutes at 1 kHz until the first is left out

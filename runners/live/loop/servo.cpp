@@ -38,14 +38,15 @@ std::int64_t Servo::next_number(std::int64_t now_ns) {
   return last_number_ = std::max(last_number_ + 1, by_clock);
 }
 
-// Offline, a frame is there for the first tick at or after its time.
+// A frame belongs to the first tick at or after its time, as in a simulated run.
 void Servo::move_on_to(double time_s, LiveTick& row) {
   auto number = static_cast<std::int64_t>(std::ceil(time_s * rate_hz_));
   while (static_cast<double>(number) / rate_hz_ < time_s) ++number;  // the quotient is rounded
   row.number = last_number_ = std::max(row.number, number);
 }
 
-// Offline, too, before a frame of the same tick. What cannot be recorded waits for the next tick.
+// Changes are made before a frame of the same tick, as in a simulated run. Changes that cannot be recorded
+// wait for the next tick.
 void Servo::make_changes(LiveTick& row) {
   scripted_.make_until(static_cast<double>(row.number) / rate_hz_);
   row.changed.count = 0;
@@ -59,7 +60,7 @@ void Servo::make_changes(LiveTick& row) {
   links_.renderer.parameters_changed();
 }
 
-// The slot is the servo's until it takes the next, so the time of arrival can be written into it.
+// The slot belongs to the servo until it takes the next one, so the time of arrival can be written into it.
 void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
   if (!links_.frames.take()) return make_changes(row);
@@ -120,9 +121,9 @@ void Servo::one_tick() {
 
   DeviceReading reading;
   DeviceFault fault = links_.device.read(reading);
-  if (is_released(fault)) reading = last_reading_, fault = {};  // the next beat tells
+  if (is_released(fault)) reading = last_reading_, fault = {};  // the next beat reports it
   last_reading_ = reading;
-  if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer holds still and lets go
+  if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer stops and sets its force to zero
   row_.device = placement_.in_world(reading);
 
   const double read_s = links_.clock.now_s();

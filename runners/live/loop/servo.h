@@ -30,16 +30,16 @@ struct LiveTick {
   RenderOutput out;
   ParameterChanges changed;  // made before this tick
   int taken = -1;            // the frame that the renderer got before this tick; -1: none
-  std::uint64_t hash = 0;    // of the newest frame taken
-  Wrench written;            // to the device, in its axes; zero if the device refused it
+  std::uint64_t hash = 0;    // hash of the newest frame taken
+  Wrench written;            // wrench written to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
-  float step_s = 0;             // taking the frame and rendering
-  float since_last_tick_s = 0;  // from the start of the tick before to the start of this one
-  float latency_s = 0;          // of a frame that was taken: sensor's time stamp to the write it counts in
-  float waited_s = 0;           // of that: between ready and taken
+  float step_s = 0;             // time for taking the frame and rendering
+  float since_last_tick_s = 0;  // time from the start of the tick before to the start of this one
+  float latency_s = 0;          // if a frame was taken: sensor's time stamp to the write that it affects
+  float waited_s = 0;           // if a frame was taken: its time from ready to taken
 };
 
-// What the servo shares with other parts. All must outlive it.
+// The objects that the servo shares with other parts. All must outlive it.
 struct ServoLinks {
   HapticDevice& device;
   Renderer& renderer;
@@ -50,16 +50,16 @@ struct ServoLinks {
   // A second stop flag, set by the program's signals, and an end time: the loop checks both itself, because
   // the thread that waits for it may be blocked by the terminal that it writes to.
   const std::atomic<bool>* signal = nullptr;
-  std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // of the clock
-  // Changes of the experiment, and those that someone asks for while it runs; null: none.
+  std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // time of the clock at which the run ends
+  // Changes of the experiment, and changes that the user requests while it runs; null: none.
   const std::vector<RendererChange>* scripted = nullptr;
   Ring<ParameterChanges>* asked = nullptr;
 };
 
-// No allocation, no lock, no file, no time but that of the given clock, except in the device's calls. Ticks
-// are numbered by the clock: a missed one leaves a gap; with a device faster than the rate each tick still
-// gets its own number. Tick times are rounded up, and moved on if a frame was captured while the device was
-// read, so that no frame is taken before it was captured.
+// The servo allocates nothing, takes no lock, opens no file and reads no clock but the given one, except in
+// the device's calls. Ticks are numbered by the clock: a missed one leaves a gap; if the device is faster
+// than the rate, each tick still has its own number. Tick times are rounded up, and moved on if a frame was
+// captured while the device was read, so that no frame is taken before it was captured.
 class Servo final : public DeviceCycle {
  public:
   // stall_s: longest time without a tick before the heartbeat releases the device.
@@ -69,7 +69,7 @@ class Servo final : public DeviceCycle {
   bool tick() noexcept override;
   static constexpr const char* kNoMemory = "out of memory in the haptic loop";
 
-  // For other threads.
+  // Other threads may call the following functions.
   void rearm() noexcept { gate_.rearm(); }
   // Its check() must be called beside the loop.
   Heartbeat& heartbeat() { return heartbeat_; }
@@ -82,7 +82,7 @@ class Servo final : public DeviceCycle {
 
  private:
   void one_tick();
-  bool end_for(const DeviceFault& trouble) noexcept;  // false
+  bool end_for(const DeviceFault& trouble) noexcept;  // returns false
   bool is_over() const noexcept;
   std::int64_t next_number(std::int64_t now_ns);
   void move_on_to(double time_s, LiveTick& row);
@@ -93,7 +93,7 @@ class Servo final : public DeviceCycle {
   const ServoLinks links_;
   const DevicePlacement placement_;
   const double rate_hz_;
-  const Parameters live_;  // of the renderer
+  const Parameters live_;  // live parameters of the renderer
   RendererChanges scripted_;
   const std::int64_t start_ns_;
   SafetyGate gate_;

@@ -16,10 +16,11 @@ namespace {
 
 constexpr double kMaxUnits = std::numeric_limits<std::uint16_t>::max();
 constexpr double kUnits_m[] = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3};
-// Products of poses are rounded by less, for positions up to 1000 m from the origin.
+// Tolerance of equal poses: above the rounding of products of poses, for positions up to 1000 m from the
+// origin.
 constexpr double kSamePose = 1e-9;
-// The pinhole that is fitted to an organised cloud is off by less in the first frame of a recording and in
-// the later ones, see scenarios/recordings/frame_layout.h.
+// Limit of the error of the pinhole camera that is fitted to an organised cloud, in the first frame of a
+// recording and in later ones, see scenarios/recordings/frame_layout.h.
 constexpr double kMaxOff_px = 1;
 
 std::string number(double value) {
@@ -58,7 +59,7 @@ bool has_measured_point(const PointCloud& cloud) {
   return false;
 }
 
-// Rounded to floats: a replay reads the same.
+// Writes the points, rounded to floats, so that a replay reads the same values.
 void write_points(const PointCloud& cloud, SensorFrame& frame) {
   frame.points.clear();
   const auto add = [&](const Vec3& v) {
@@ -86,7 +87,8 @@ FrameEncoder::FrameEncoder(const Settings& settings, const PointCloud& first)
   view_.cloud = {first.has_normals(), first.columns(), first.size()};
 }
 
-// A cloud of as many points that has no image of its own has those of the view's pixels, see pixel_problem().
+// A cloud without an image of its own, but with one point for each pixel of the view, is accepted here; see
+// pixel_problem().
 std::string FrameEncoder::image_problem(const PointCloud& cloud) const {
   const bool has_size = !cloud.image || (cloud.image->camera.width == view_.camera.width &&
                                          cloud.image->camera.height == view_.camera.height);

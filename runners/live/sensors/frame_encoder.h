@@ -46,7 +46,7 @@ class FrameEncoder {
   void encode(const PointCloud& cloud, int index, SensorFrame& frame) const;
 
  private:
-  // Those that return a text return what is wrong with the frame; empty: nothing.
+  // Functions that return a text return the error in the frame; empty if there is none.
   void write_nothing(SensorFrame& frame) const;
   std::string problem_of(const PointCloud& cloud) const;
   std::string image_problem(const PointCloud& cloud) const;

@@ -1,4 +1,4 @@
-// Numbers of frames from what a camera tells: its own count, which may begin anew, or its stamps.
+// Numbers frames by the camera's own count, which may restart, or by its time stamps.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@ namespace remote_touch {
 
 class FrameNumbers {
  public:
-  // The number of a frame that comes so many after the one before. What is no such number, as when the camera
-  // was reset, counts as one.
+  // Returns the number of a frame that is `steps` after the one before. Steps that are not between 1 and
+  // kMaxGap, for instance after a reset of the camera, count as one.
   int next(double steps) {
     number_ += steps >= 1 && steps <= kMaxGap ? static_cast<int>(std::lround(steps)) : 1;
     return number_;

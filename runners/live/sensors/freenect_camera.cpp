@@ -21,8 +21,8 @@ namespace remote_touch {
 
 namespace {
 
-// Only entry points that fakenect has too may be called here. It lacks freenect_set_flag(), so the flags stay
-// as they are at first: no image is mirrored.
+// Only functions that fakenect has too may be called here. It lacks freenect_set_flag(), so the flags keep
+// their initial values: no image is mirrored.
 
 // Nominal focal lengths in pixels: registered depth is seen by the colour camera, other depth by the infrared
 // one.
@@ -44,8 +44,8 @@ Context start_library() {
   if (code < 0 || context == nullptr)
     throw InputError("freenect", "does not start (libusb says " + std::to_string(code) +
                                      "): expected a machine with USB that this user may open (udev rules)");
-  freenect_set_log_level(context, FREENECT_LOG_FATAL);  // what fails is told by return values
-  // The others need firmware, or belong to other programs.
+  freenect_set_log_level(context, FREENECT_LOG_FATAL);  // return values report the errors
+  // The other subdevices need firmware, or belong to other programs.
   freenect_select_subdevices(context, FREENECT_DEVICE_CAMERA);
   return Context(context);
 }
@@ -60,7 +60,7 @@ int number_of(const std::string& address) {
   return number;
 }
 
-// By enumeration: the library's own search by format ends the program under fakenect.
+// Enumerates the modes, because the library's own search by format ends the program under fakenect.
 std::optional<freenect_frame_mode> depth_mode(freenect_depth_format format) {
   for (int i = 0; i < freenect_get_depth_mode_count(); ++i) {
     const freenect_frame_mode mode = freenect_get_depth_mode(i);
@@ -80,14 +80,14 @@ std::optional<freenect_frame_mode> colour_mode() {
   return {};
 }
 
-// What the sensor measures is how far a pattern of light, from a projector 75 mm aside, is shifted from where
-// a plane at 1.2 m would show it, in quarters of a pixel that is 1.042 mm wide on that plane. Nominal as
-// well.
+// The sensor measures the shift of a light pattern from its position on a plane at 1.2 m. The projector is
+// 75 mm to the side; the unit is a quarter of a pixel, which is 1.042 mm wide on that plane. These values are
+// nominal as well.
 constexpr int kShifts = 2048;
 std::array<std::uint16_t, kShifts> depth_of_shifts() {
   constexpr double kPlane_mm = 1200, kBase_mm = 75, kPixel_mm = 1.042, kMaxDepth_mm = 10000;
   std::array<std::uint16_t, kShifts> depth_mm{};
-  for (int shift = 0; shift + 1 < kShifts; ++shift) {  // the last one tells that nothing was measured
+  for (int shift = 0; shift + 1 < kShifts; ++shift) {  // the last value means that nothing was measured
     const double shift_mm = ((shift - 800) / 4.0 - 0.375) * kPixel_mm;
     const double z_mm = kPlane_mm * kBase_mm / (kBase_mm - shift_mm);
     if (z_mm > 0 && z_mm < kMaxDepth_mm) depth_mm[shift] = static_cast<std::uint16_t>(z_mm);
@@ -123,10 +123,10 @@ class FreenectCamera final : public DepthSource {
   std::unique_ptr<freenect_device, Close> device_;
   freenect_frame_mode depth_mode_{}, colour_mode_{};
   SensorView view_;
-  std::array<std::uint16_t, kShifts> depth_of_shift_{};  // where the sensor gives shifts
+  std::array<std::uint16_t, kShifts> depth_of_shift_{};  // used if the sensor sends shifts
   bool gives_shifts_ = false;
 
-  // Of the thread that processes events.
+  // Members used only by the thread that processes events.
   SensorClock clock_;
   std::uint32_t ticks_ = 0;
   double stamp_s_ = 0, arrived_s_ = 0;
@@ -203,7 +203,7 @@ void FreenectCamera::start() {
   });
   if (freenect_start_depth(device_.get()) < 0) throw InputError(name_, "depth does not start");
   if (view_.has_colour && freenect_start_video(device_.get()) < 0) view_.has_colour = false;
-  // Signals are for the threads of the program.
+  // Signals are blocked in the new thread: the program's other threads handle them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -253,7 +253,7 @@ void FreenectCamera::depth_came(const void* pixels, std::uint32_t ticks) {
   changed_.notify_one();
 }
 
-// The stamps begin anew every 72 s. How often they did between two frames is told by the host's clock.
+// The time stamps wrap every 72 s. The number of wraps between two frames follows from the host's clock.
 double FreenectCamera::stamp_s(std::uint32_t ticks, double arrived_s) {
   const double passed_s = static_cast<double>(ticks - ticks_) / kTicksPerSecond;
   const double turn_s = kTicksPerTurn / kTicksPerSecond;

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 // address: the number of the camera, or nothing for the first. Depth is registered to colour if the library
 // supports that. Intrinsics are the nominal ones of a Kinect, because the library that plays its recordings
-// (fakenect) does not have those of the device. Of frames that come between two calls of next() only the
+// (fakenect) does not have those of the device. If several frames come between two calls of next(), only the
 // newest is kept.
 //
 // The library does not distinguish a lost camera from the end of a recording: both are failures.

@@ -31,7 +31,7 @@ constexpr K4aMode kK4aModes[] = {
     {"wfov", k4a::wfov_unbinned, k4a::fps_15, 1024, 1024, 15},
 };
 
-constexpr std::uint32_t kMaxCameras = 64;  // more are no number of cameras
+constexpr std::uint32_t kMaxCameras = 64;  // a larger number is an error of the library
 constexpr int kMaxQueue = 16;              // the library keeps fewer captures
 
 struct K4aAddress {
@@ -54,7 +54,7 @@ K4aAddress k4a_address(const std::string& address) {
   throw InputError(wanted.name, "no mode of the camera: expected one of " + known + " after ?");
 }
 
-// A number of a camera; none: it is a serial number.
+// Returns the number of a camera; none if the text is a serial number.
 std::optional<std::uint32_t> k4a_number(const std::string& camera) {
   if (camera.empty()) return 0;
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -97,7 +97,7 @@ class K4aCamera final : public DepthSource {
   SensorView view_;
   SensorClock clock_;
   FrameNumbers numbers_;
-  std::optional<double> stamp_s_;  // of the frame before
+  std::optional<double> stamp_s_;  // time stamp of the frame before
   std::vector<std::uint16_t> seen_;
   std::string failure_;
 };
@@ -110,7 +110,7 @@ K4aCamera::K4aCamera(const std::string& address, const Clock& host)
   start();
 }
 
-// What the library said, to be put behind what failed.
+// Returns the library's reason, to be appended to a message; empty if it gave none.
 std::string K4aCamera::reason() const {
   const std::string said = k4a_.take_error();
   return said.empty() ? "" : " (the library says: " + said + ")";
@@ -137,7 +137,7 @@ k4a::OpenDevice K4aCamera::opened(std::uint32_t number) const {
   return {device, {&k4a_}};
 }
 
-// Empty if it tells none.
+// Returns the serial number; empty if the device does not report one.
 std::string K4aCamera::serial_of(k4a::Device device) const {
   std::array<char, 64> serial{};
   std::size_t size = serial.size() - 1;
@@ -193,7 +193,7 @@ Lens K4aCamera::lens() const {
   return {pixel_of, ray_of};
 }
 
-// Last of all: what has started is stopped by the destructor.
+// Called last in the constructor, because only the destructor stops the camera.
 void K4aCamera::start() {
   k4a::Configuration configuration;
   configuration.depth_mode = address_.mode.depth;
@@ -217,7 +217,7 @@ SensorState K4aCamera::next(SensorFrame& frame, double timeout_s) {
   }
 }
 
-// The library hands over the oldest first.
+// Empties the library's queue, because the library returns the oldest capture first.
 k4a::HeldCapture K4aCamera::newest(double timeout_s, double& arrived_s) {
   k4a::HeldCapture capture(nullptr, {&k4a_});
   auto timeout_ms = static_cast<std::int32_t>(std::clamp(std::ceil(1e3 * timeout_s), 0.0, 60e3));
@@ -230,7 +230,7 @@ k4a::HeldCapture K4aCamera::newest(double timeout_s, double& arrived_s) {
       timeout_ms = 0;
       continue;
     }
-    // With a frame in hand: said when the next one is asked for.
+    // If there is a capture already, the next call reports the failure.
     if (result != k4a::wait_timeout && !capture)
       fail("was disconnected, or its depth engine has stopped" + reason());
     break;
@@ -238,12 +238,12 @@ k4a::HeldCapture K4aCamera::newest(double timeout_s, double& arrived_s) {
   return capture;
 }
 
-// False: no new frame, or a failure.
+// Copies the capture into the frame. Returns false if there is no new frame, or after a failure.
 bool K4aCamera::take(k4a::Capture capture, double arrived_s, SensorFrame& frame) {
   const k4a::HeldImage image(k4a_.capture_get_depth_image(capture), {&k4a_});
   if (!image) return false;
   const double stamp_s = 1e-6 * static_cast<double>(k4a_.image_get_device_timestamp_us(image.get()));
-  if (stamp_s_ && stamp_s == *stamp_s_) return false;  // the frame before, once more
+  if (stamp_s_ && stamp_s == *stamp_s_) return false;  // the same frame as before
   const PixelRows rows{k4a_.image_get_buffer(image.get()),
                        k4a_.image_get_size(image.get()),
                        k4a_.image_get_width_pixels(image.get()),

@@ -11,11 +11,12 @@ namespace remote_touch {
 
 // address: CAMERA[?MODE]. CAMERA is a number (0: the first, also if left out) or a serial number; MODE is
 // nfov (640 x 576 pixels, also if left out), nfov-binned (320 x 288), wfov-binned (512 x 512), all three at
-// 30 Hz, or wfov (1024 x 1024 at 15 Hz). Numbers have one or two digits; what is longer is a serial number.
+// 30 Hz, or wfov (1024 x 1024 at 15 Hz). Numbers have one or two digits; longer ones are serial numbers.
 //
-// Depth is freed of the lens's distortion (undistortion.h) with the calibration in the camera; the view is
-// that of a pinhole camera. No colour. Of frames that come between two calls of next() only the newest is
-// kept. The camera does not count its frames: their numbers follow from its stamps, so that gaps are visible.
+// The lens's distortion is removed from the depth (undistortion.h) with the calibration in the camera; the
+// view is that of a pinhole camera. There is no colour. If several frames come between two calls of next(),
+// only the newest is kept. The camera does not count its frames: their numbers follow from its time stamps,
+// so that gaps are visible.
 std::unique_ptr<DepthSource> open_k4a(const std::string& address, Clock& clock);
 
 Availability k4a_availability();

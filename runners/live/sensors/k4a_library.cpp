@@ -11,7 +11,7 @@ const SharedLibrary::Place kK4aLibrary{{"libk4a.so.1.4", "libk4a.so"},
                                        "REMOTE_TOUCH_LIBK4A",
                                        "the Azure Kinect Sensor SDK (libk4a1.4), or of Orbbec's K4A wrapper"};
 
-// As long as the program, since a thread of the library may write at any time.
+// The log is never freed, because a thread of the library may write to it at any time.
 struct Log {
   std::mutex mutex;
   std::string first_error;
@@ -50,8 +50,8 @@ K4aLibrary::K4aLibrary() : library(kK4aLibrary) {
   library.find("k4a_image_get_device_timestamp_usec", image_get_device_timestamp_us);
   library.find("k4a_image_release", image_release);
   library.find_optional("k4a_set_debug_message_handler", set_debug_message_handler);
-  // Without a handler the library prints its errors to standard output. Another part of the process may have
-  // set one before: then that one stays.
+  // The library prints its errors to standard output if it has no handler. If another part of the process has
+  // set a handler before, that one stays.
   if (set_debug_message_handler != nullptr) set_debug_message_handler(keep_first_error, nullptr, log_error);
 }
 

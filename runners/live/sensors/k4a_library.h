@@ -1,5 +1,6 @@
-// The functions of the k4a interface that its adapter calls: that of the Azure Kinect, which Orbbec's wrapper
-// for the Femto has as well. Declared here from its documentation; no header of the vendors is needed.
+// The functions of the k4a interface that its adapter calls. The interface is that of the Azure Kinect;
+// Orbbec's wrapper for the Femto has it as well. It is declared here from its documentation, so no header of
+// the vendors is needed.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +50,7 @@ struct Float3 {
   float x, y, z;
 };
 
-// Written and read by the library only: its own functions map points with it. So the adapter does not depend
+// Only the library writes and reads it: its own functions map points with it. So the adapter does not depend
 // on the layout (1032 bytes in version 1.4), nor on the lens model.
 struct alignas(16) Calibration {
   std::byte bytes[8192];
@@ -58,8 +59,8 @@ struct alignas(16) Calibration {
 struct K4aLibrary {
   K4aLibrary();  // throws InputError if it is not found
 
-  // What the library said of its first error since the last call; in one line, empty: nothing. Of all threads
-  // and devices, as the library has one log.
+  // Returns the library's message about its first error since the last call, in one line; empty if there was
+  // none. The message may come from any thread and device, because the library has one log.
   std::string take_error() const;
 
   SharedLibrary library;
@@ -85,12 +86,12 @@ struct K4aLibrary {
   int (*image_get_stride_bytes)(Image) = nullptr;
   std::uint64_t (*image_get_device_timestamp_us)(Image) = nullptr;
   void (*image_release)(Image) = nullptr;
-  // Not in every version.
+  // A function that some versions lack; null then.
   using LogCallback = void(void* context, LogLevel, const char* file, int line, const char* message);
   Result (*set_debug_message_handler)(LogCallback*, void* context, LogLevel min_level) = nullptr;
 };
 
-// Handles that are given back once. The library has to outlive them.
+// Handles that are released once. The library has to outlive them.
 struct Close {
   const K4aLibrary* k4a;
   void operator()(Device device) const { k4a->device_close(device); }

@@ -1,4 +1,4 @@
-// Threads that end only with the process. Some libraries crash when a thread that has called them has ended.
+// Threads that end only with the process. Some libraries crash if a thread that has called them has ended.
 #pragma once
 
 #include <condition_variable>
@@ -10,10 +10,10 @@
 
 namespace remote_touch {
 
-// Does one thing after the other, in a thread of its own.
+// Runs one task after another, in a thread of its own.
 class LastingThread {
  public:
-  // Returns when the work is done, and throws what it throws. One caller at a time.
+  // Returns when the work is done, and throws what the work throws. Only one thread may call it at a time.
   void run(const std::function<void()>& work);
 
  private:
@@ -26,8 +26,8 @@ class LastingThread {
   std::jthread thread_{[this](const std::stop_token& stop) { serve(stop); }};
 };
 
-// A thread for one user alone. When it is no longer used, the next user gets it, so there are only as many as
-// were ever in use at the same time. Throws std::system_error where no thread can be
+// Returns a thread for one user alone. When that user has released it, the next user gets it, so there are
+// only as many threads as were ever in use at the same time. Throws std::system_error if no thread can be
 // started.
 std::shared_ptr<LastingThread> lasting_thread();
 

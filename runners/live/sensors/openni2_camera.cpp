@@ -20,19 +20,19 @@ namespace {
 using openni2::driver_folder, openni2::is_file, openni2::error_text;
 using openni2::read_from, openni2::wait_for;
 
-// The player of recordings shortens pauses to 2 s.
+// A longer pause means that a recording is damaged: its player shortens pauses to 2 s.
 constexpr double kMaxPause_s = 5;
-// A slow machine may miss so much of the end of a recording.
+// A slow machine may miss this much of the end of a recording.
 constexpr double kMaxMissed_s = 0.5;
 
-// 0: no distance along the axis, but the shift that the sensor measures.
+// Returns 0 if the depth is not a distance along the axis, but the shift that the sensor measures.
 double metres_per_unit(openni::PixelFormat format) {
   if (format == openni::PIXEL_FORMAT_DEPTH_1_MM) return 0.001;
   if (format == openni::PIXEL_FORMAT_DEPTH_100_UM) return 0.0001;
   return 0;
 }
 
-// The accepted mode that is greatest by rank; none: nothing.
+// Returns the accepted mode of the greatest rank; none if no mode is accepted.
 template <class Accept, class Rank>
 std::optional<openni::VideoMode> best_mode(const openni::VideoStream& stream, Accept accept, Rank rank) {
   const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
@@ -63,7 +63,7 @@ std::optional<openni::VideoMode> best_colour_mode(const openni::VideoStream& str
       [&](const openni::VideoMode& mode) { return -std::abs(mode.getFps() - depth.getFps()); });
 }
 
-// Asks for an image that is not mirrored; true where it stays so, as that of a recording does.
+// Switches mirroring off. Returns true if the image is still mirrored, as that of a recording may be.
 bool stays_mirrored(openni::VideoStream& stream) {
   stream.setMirroringEnabled(false);
   return stream.getMirroringEnabled();
@@ -99,21 +99,21 @@ class Openni2Camera final : public DepthSource {
   SensorState end();
 
   const Clock& host_;
-  // Closed from the last to the first.
+  // The following members are closed from the last to the first.
   openni2::Library library_;
   std::string name_;
   openni::Device device_;
   std::optional<openni2::LossListener> loss_;
   openni::VideoStream depth_, colour_;
-  openni::VideoFrameRef colour_frame_;  // the newest
+  openni::VideoFrameRef colour_frame_;  // the newest colour frame
 
   openni::VideoMode mode_;
   bool depth_is_mirrored_ = false, colour_is_mirrored_ = false;
-  int frame_count_ = 0;  // of a recording; 0: a camera
+  int frame_count_ = 0;  // number of frames of a recording; 0: a camera
   SensorView view_;
   SensorClock clock_;
   int last_number_ = 0;
-  double last_sign_s_ = 0;  // of life
+  double last_sign_s_ = 0;  // time of the newest frame, or of the start
   bool has_ended_ = false;
   std::string failure_;
 };
@@ -123,15 +123,15 @@ Openni2Camera::Openni2Camera(const std::string& address, const Clock& host) : ho
   loss_.emplace(device_.getDeviceInfo().getUri());
   open_depth();
   view_.has_colour = open_colour();
-  // Registered depth is that which the colour camera would see.
+  // Registered depth has the view of the colour camera.
   describe(view_.has_colour ? colour_ : depth_);
   if (depth_.start() != openni::STATUS_OK)
     refuse("depth does not start (" + error_text() + "); another program may be using the camera");
   last_sign_s_ = host_.now_s();
 }
 
-// A player that is closed before its thread has begun goes on for 3 s, and is killed then. A frame tells that
-// it has.
+// Waits for a first frame of a recording, which shows that the player's thread has begun. A player that is
+// closed before that continues for 3 s and is then killed.
 Openni2Camera::~Openni2Camera() {
   if (frame_count_ > 0 && last_number_ == 0) wait_for(depth_, 500);
 }
@@ -147,7 +147,7 @@ void Openni2Camera::open_device(const std::string& address) {
              ".oni file");
     uri = cameras.front().getUri();
   } else if (!is_file(address)) {
-    // Drivers are not asked for others: one of them crashes.
+    // Only listed cameras are opened: with other addresses one of the drivers crashes.
     std::string known;
     for (const openni::DeviceInfo& camera : cameras) known += std::string(", ") + camera.getUri();
     if (known.find(", " + address) == std::string::npos)
@@ -176,7 +176,7 @@ void Openni2Camera::open_depth() {
   if (frame_count_ <= 0) refuse("is no whole recording of depth: expected one whose recorder was closed");
 }
 
-// Colour is of use where its pixels are those of depth.
+// Opens colour if depth can be registered to it. Returns false if colour cannot be used.
 bool Openni2Camera::open_colour() {
   const auto registered = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
   if (device_.isFile() || !device_.hasSensor(openni::SENSOR_COLOR) ||
@@ -217,7 +217,7 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
   while (true) {
     if (loss_->is_lost()) return fail("was disconnected");
     const double remaining_s = give_up_s - host_.now_s();
-    // In parts, since no lost camera ends the wait. 0 looks without waiting.
+    // Waits in parts of at most 50 ms, because the loss of a camera does not end a wait. 0 does not wait.
     const double part_ms = std::clamp(std::ceil(1e3 * remaining_s), 0.0, 50.0);
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
     if (status == openni::STATUS_OK) return take(frame);
@@ -231,7 +231,7 @@ SensorState Openni2Camera::take(SensorFrame& frame) {
   const openni::VideoFrameRef taken = read_from(depth_);
   if (!taken.isValid()) return fail("a frame cannot be read (" + error_text() + ")");
   const double arrived_s = last_sign_s_ = host_.now_s();
-  // At once, before the next one takes its place.
+  // The colour frame is read at once, before the next one replaces it.
   if (view_.has_colour && wait_for(colour_, openni::TIMEOUT_NONE) == openni::STATUS_OK)
     colour_frame_ = read_from(colour_);
   const int number = taken.getFrameIndex();
@@ -247,7 +247,8 @@ SensorState Openni2Camera::take(SensorFrame& frame) {
   return SensorState::frame;
 }
 
-// The newest, if it is not older or newer than depth by more than a period; false: of another size.
+// Copies the newest colour frame if its time differs from that of depth by no more than a period. Returns
+// false if its size is wrong.
 bool Openni2Camera::copy_colour(std::uint64_t depth_stamp, SensorFrame& frame) {
   frame.colour.clear();
   if (!colour_frame_.isValid()) return true;
@@ -267,8 +268,9 @@ SensorState Openni2Camera::fail_of_damage() {
               std::to_string(frame_count_) + ": expected a recording without damage");
 }
 
-// The player does so at the end: made to stop there, it sometimes crashes when it is closed. It does so, too,
-// when it looks for a frame in vain.
+// Handles a recording that starts again from its first frame. The player does so at the end; a player that is
+// set to stop there sometimes crashes when it is closed. It also does so if it cannot find a frame: that is
+// damage.
 SensorState Openni2Camera::begins_anew() {
   const int missed = frame_count_ - last_number_;
   if (missed <= kMaxMissed_s * view_.frame_rate_hz) return end();
@@ -278,13 +280,12 @@ SensorState Openni2Camera::begins_anew() {
 
 SensorState Openni2Camera::end() {
   has_ended_ = true;
-  depth_.stop();  // else the player goes on in the background
+  depth_.stop();  // else the player continues in the background
   return SensorState::ended;
 }
 
-// The library remembers every thread that ever called it. In each call it asks whether these threads still
-// exist, in a way that crashes once the memory of one that has ended is given back. So all calls come from
-// one that lasts.
+// The library remembers every thread that ever called it. In each call it checks whether these threads still
+// exist, and crashes if the memory of an ended thread was freed. So all calls come from a thread that lasts.
 class LastingOpenni2Camera final : public DepthSource {
  public:
   LastingOpenni2Camera(const std::string& address, const Clock& host) : thread_(lasting_thread()) {

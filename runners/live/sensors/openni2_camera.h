@@ -11,8 +11,8 @@ namespace remote_touch {
 
 // address: "any" or nothing for the first camera, the URI of a camera, or an .oni file. The camera delivers
 // its widest image of up to 640 x 480 pixels at 30 Hz, not mirrored; intrinsics follow from the driver's
-// field of view. Colour is used if the camera registers depth to it, from the frame nearest in time. Of
-// frames that come between two calls of next() only the newest is kept.
+// field of view. Colour is used if the camera registers depth to it, from the frame nearest in time. If
+// several frames come between two calls of next(), only the newest is kept.
 //
 // A recording plays at its own speed, once. Its colour is not used, because it does not contain whether its
 // depth was registered.

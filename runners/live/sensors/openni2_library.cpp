@@ -84,8 +84,8 @@ openni::Status wait_for(openni::VideoStream& stream, int timeout_ms) {
   return openni::OpenNI::waitForAnyStream(streams, 1, &which, timeout_ms);
 }
 
-// The newest frame, which has to be there; not valid: failed. VideoStream::readFrame() would take a pointer
-// that nobody has set for a frame when it fails.
+// Returns the newest frame, which must be available; an invalid one on failure. VideoStream::readFrame()
+// would use an uninitialised pointer when it fails.
 openni::VideoFrameRef read_from(const openni::VideoStream& stream) {
   openni::VideoFrameRef frame;
   OniFrame* raw = nullptr;
@@ -98,8 +98,7 @@ openni::VideoFrameRef read_from(const openni::VideoStream& stream) {
 }  // namespace remote_touch::openni2
 
 #ifdef __SANITIZE_THREAD__
-// The library takes its locks in ways that the sanitizer does not follow, from the moment on at which it is
-// loaded.
+// The thread sanitizer does not understand the library's locks, from the moment at which it is loaded.
 extern "C" const char* __tsan_default_suppressions() {
   return "mutex:libOpenNI2.so\nmutex:libOniFile.so\ndeadlock:libOpenNI2.so\ndeadlock:libOniFile.so\n";
 }

@@ -25,7 +25,7 @@ class Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  // Without open recordings, which the library lists as devices.
+  // Returns the cameras, without open recordings, which the library also lists as devices.
   std::vector<openni::DeviceInfo> cameras() const;
 };
 
@@ -43,11 +43,11 @@ class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> is_lost_ = false;
 };
 
-// STATUS_OK: a frame is available.
+// Returns STATUS_OK if a frame is available.
 openni::Status wait_for(openni::VideoStream& stream, int timeout_ms);
 
-// The newest frame; an invalid one on failure. pre: a frame is available. VideoStream::readFrame() would use
-// an uninitialised pointer when it fails.
+// Returns the newest frame; an invalid one on failure. pre: a frame is available. VideoStream::readFrame()
+// would use an uninitialised pointer when it fails.
 openni::VideoFrameRef read_from(const openni::VideoStream& stream);
 
 }  // namespace remote_touch::openni2

@@ -18,15 +18,16 @@ namespace {
 constexpr int kRealSenseWidth = 640, kRealSenseHeight = 480, kRealSenseRate_hz = 30;
 constexpr int kAnyIndex = -1;
 constexpr double kPoll_s = 1e-3;
-constexpr double kLookAfter_s = 0.1;  // without a frame: is the camera still there?
-constexpr int kMaxList = 64;          // cameras, sensors, streams, frames: more are no number of them
+constexpr double kLookAfter_s = 0.1;  // the connection is checked after this time without a frame
+constexpr int kMaxList = 64;          // most cameras, sensors, streams or frames that are read
 
-// The library at work.
+// The library with its context.
 struct RealSense {
   explicit RealSense(const std::string& name)
       : call(rs2, name), context(call.held("the library does not start", rs2.create_context, rs2.version)) {}
 
-  // "unknown" of a camera that does not tell it, as one in recovery.
+  // Returns the serial numbers; "unknown" for a camera that does not report it, for instance in recovery
+  // mode.
   std::vector<std::string> serials() const;
   std::string info(const rs2::Device* device, rs2::CameraInfo what) const;
 
@@ -63,7 +64,7 @@ struct StopPipeline {
   void operator()(rs2::Pipeline* pipeline) const {
     rs2::Error* error = nullptr;
     rs2->pipeline_stop(pipeline, &error);
-    if (error != nullptr) rs2->free_error(error);  // of a camera that is gone
+    if (error != nullptr) rs2->free_error(error);  // the camera may have been unplugged
   }
 };
 
@@ -94,7 +95,7 @@ class RealSenseCamera final : public DepthSource {
   const RealSense real_sense_;
   const rs2::RealSenseLibrary& rs2_ = real_sense_.rs2;
   const rs2::Calls& call_ = real_sense_.call;
-  // Given back from the last to the first.
+  // The following members are released from the last to the first.
   rs2::Held<rs2::Config> config_;
   rs2::Held<rs2::DeviceHub> hub_;
   rs2::Held<rs2::Pipeline> pipeline_;
@@ -106,8 +107,8 @@ class RealSenseCamera final : public DepthSource {
   std::optional<Undistortion> undistortion_;  // none: a pinhole camera
   SensorClock clock_;
   FrameNumbers numbers_;
-  std::optional<double> stamp_s_;   // of the frame before
-  unsigned long long counted_ = 0;  // likewise
+  std::optional<double> stamp_s_;   // time stamp of the frame before
+  unsigned long long counted_ = 0;  // the camera's number of the frame before
   double looked_s_ = 0;
   std::vector<std::uint16_t> seen_;
   std::string failure_;
@@ -212,7 +213,7 @@ SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
   return SensorState::failed;
 }
 
-// Once in a while, as long as no frame comes.
+// Checks every kLookAfter_s that the camera is still connected, as long as no frame comes.
 void RealSenseCamera::expect_camera() {
   if (host_.now_s() - looked_s_ < kLookAfter_s) return;
   looked_s_ = host_.now_s();
@@ -233,7 +234,7 @@ rs2::Held<rs2::Frame> RealSenseCamera::newest_depth(double& arrived_s) const {
   return newest ? depth_of(std::move(newest)) : std::move(newest);
 }
 
-// Frames of several streams come as one.
+// Returns the depth frame; the library may deliver frames of several streams as one composite frame.
 rs2::Held<rs2::Frame> RealSenseCamera::depth_of(rs2::Held<rs2::Frame> frames) const {
   const char* problem = "a frame cannot be read";
   if (call_(problem, rs2_.is_frame_extendable_to, frames.get(), rs2::is_composite_frame) == 0) {
@@ -262,7 +263,7 @@ PixelRows RealSenseCamera::rows_of(const rs2::Frame* depth) const {
   return rows;
 }
 
-// False: the frame before, once more.
+// Copies the depth into the frame. Returns false if it is the same frame as before.
 bool RealSenseCamera::take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame) {
   const char* problem = "a frame cannot be read";
   const double stamp_s = 1e-3 * call_(problem, rs2_.get_frame_timestamp, depth);

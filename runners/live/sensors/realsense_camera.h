@@ -10,11 +10,12 @@
 namespace remote_touch {
 
 // address: a serial number, or nothing for the first camera. Depth comes with 640 x 480 pixels at 30 Hz, in
-// the unit of the camera. Where its lens distorts, it is freed of that (undistortion.h); the view is that of
-// a pinhole camera. No colour. Of frames that come between two calls of next() only the newest is kept.
+// the unit of the camera. If the lens distorts, the distortion is removed (undistortion.h); the view is that
+// of a pinhole camera. There is no colour. If several frames come between two calls of next(), only the
+// newest is kept.
 //
-// The library is asked for frames every millisecond. It could wait for one, but then it tries for many
-// seconds to open a camera again that was unplugged, and nothing would end it.
+// The library is polled for frames every millisecond. It could wait for one, but then it tries for many
+// seconds to reopen a camera that was unplugged, and nothing would end that wait.
 std::unique_ptr<DepthSource> open_realsense(const std::string& address, Clock& clock);
 
 Availability realsense_availability();

@@ -6,12 +6,12 @@
 
 namespace remote_touch::rs2 {
 
-// Without distortion the camera is a pinhole camera as it is.
+// True if the image is distorted; false for a pinhole camera.
 bool has_distortion(const Intrinsics& intrinsics);
 
-// Asks the library, because what the coefficients of a model mean has changed between versions: of models
-// that some versions cannot invert, and of versions before 2.46, which have no such functions, a distorted
-// image is refused. Throws InputError with this name. The library must outlive the lens.
+// Returns a lens that calls the library's own functions, because the meaning of a model's coefficients has
+// changed between versions. Throws InputError, with this name, for a model that some versions cannot invert,
+// and for versions before 2.46, which lack these functions. The library must outlive the lens.
 Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics);
 
 }  // namespace remote_touch::rs2

@@ -6,8 +6,8 @@ namespace remote_touch::rs2 {
 
 namespace {
 
-// The name of its file has the minor version; one without comes with the packages for development only. Older
-// ones than these can be named by the variable.
+// The file name contains the minor version; only packages for development add a name without it. Older
+// versions can be named with the environment variable.
 constexpr int kOldestMinor = 50, kNewestMinor = 69;
 constexpr int kMajor = 2;
 

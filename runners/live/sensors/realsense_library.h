@@ -20,7 +20,7 @@ struct SensorList;
 struct Sensor;
 struct Pipeline;
 struct Config;
-struct Profile;  // of a running pipeline
+struct Profile;  // profile of a running pipeline
 struct StreamList;
 struct Stream;  // belongs to its list or its frame
 struct Frame;
@@ -44,11 +44,11 @@ struct RealSenseLibrary {
   // Throws InputError if it is not found or has another major version.
   RealSenseLibrary();
 
-  // As the library tells it: 25605 is 2.56.5. A context is asked for in this very version: it refuses an
-  // application that was compiled for a newer one.
+  // The version that the library reports: 25605 is 2.56.5. A context is created with this same version,
+  // because the library refuses an application that was compiled for a newer one.
   int version = 0;
   std::string version_text() const;
-  // What an error says; frees it.
+  // Returns the text of an error, and frees the error.
   std::string text_of(Error* error) const;
 
   SharedLibrary library;
@@ -96,7 +96,7 @@ struct RealSenseLibrary {
                                   Error**) = nullptr;
   void (*get_video_stream_intrinsics)(const Stream*, Intrinsics*, Error**) = nullptr;
 
-  int (*pipeline_poll_for_frames)(Pipeline*, Frame**, Error**) = nullptr;  // 0: none is there
+  int (*pipeline_poll_for_frames)(Pipeline*, Frame**, Error**) = nullptr;  // 0: none is available
   int (*is_frame_extendable_to)(const Frame*, Extension, Error**) = nullptr;
   int (*embedded_frames_count)(Frame*, Error**) = nullptr;
   Frame* (*extract_frame)(Frame*, int index, Error**) = nullptr;  // the caller releases it
@@ -108,14 +108,14 @@ struct RealSenseLibrary {
   int (*get_frame_stride_in_bytes)(const Frame*, Error**) = nullptr;
   double (*get_frame_timestamp)(const Frame*, Error**) = nullptr;  // ms
   unsigned long long (*get_frame_number)(const Frame*, Error**) = nullptr;
-  // Those that older versions lack.
+  // Functions that older versions lack; null then.
   int (*get_frame_data_size)(const Frame*, Error**) = nullptr;
   void (*project_point_to_pixel)(float pixel[2], const Intrinsics*, const float point[3]) = nullptr;
   void (*deproject_pixel_to_point)(float point[3], const Intrinsics*, const float pixel[2],
                                    float depth) = nullptr;
 };
 
-// Handles that are given back once. The library has to outlive them.
+// Handles that are released once. The library has to outlive them.
 struct Delete {
   const RealSenseLibrary* rs2;
   void operator()(Context* context) const { rs2->delete_context(context); }
@@ -133,13 +133,14 @@ struct Delete {
 template <class Thing>
 using Held = std::unique_ptr<Thing, Delete>;
 
-// Calls functions of the library for a camera of this name. What fails is thrown as InputError, with the
+// Calls functions of the library for a camera of this name. If one fails, throws InputError with the
 // library's reason.
 class Calls {
  public:
   Calls(const RealSenseLibrary& rs2, std::string name) : rs2_(rs2), name_(std::move(name)) {}
 
-  // What function returns for these arguments and an error. what: fails, as "depth does not start".
+  // Returns the result of the function for these arguments and an error. what: text of the failure, such as
+  // "depth does not start".
   template <class Result, class... Parameters, class... Arguments>
   Result operator()(const char* what, Result (*function)(Parameters...), Arguments... arguments) const {
     Error* error = nullptr;
@@ -152,7 +153,7 @@ class Calls {
       return result;
     }
   }
-  // The same for a function that returns something to be given back.
+  // The same for a function that returns a handle to be released.
   template <class Thing, class... Parameters, class... Arguments>
   Held<Thing> held(const char* what, Thing* (*function)(Parameters...), Arguments... arguments) const {
     Held<Thing> thing((*this)(what, function, arguments...), {&rs2_});

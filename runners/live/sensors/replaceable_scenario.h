@@ -1,4 +1,4 @@
-// A scenario that another can take the place of while a simulated camera looks at it: its noise was changed.
+// A scenario that can be replaced while a simulated camera shows it, because its noise was changed.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// What is looked at now: shared by the camera's thread and the one that replaces it.
+// The scenario that is shown now, shared by the camera's thread and the thread that replaces it.
 class ShownScenario {
  public:
   explicit ShownScenario(std::shared_ptr<const Scenario> first) : now_(std::move(first)) {}
@@ -18,7 +18,8 @@ class ShownScenario {
     const std::lock_guard lock(mutex_);
     return now_;
   }
-  // pre: the same frame rate. One without noise may have a single frame, where the others go on.
+  // pre: the frame rate is the same. The number of frames may differ: a scenario without noise may have a
+  // single frame.
   void replace(std::shared_ptr<const Scenario> next) {
     const std::lock_guard lock(mutex_);
     now_ = std::move(next);
@@ -29,7 +30,8 @@ class ShownScenario {
   std::shared_ptr<const Scenario> now_;
 };
 
-// A frame beyond the last is the last: it may have been asked for before the scenario was replaced.
+// A frame number beyond the last means the last frame: the camera may have chosen the number before the
+// scenario was replaced.
 class ReplaceableScenario final : public Scenario {
  public:
   explicit ReplaceableScenario(std::shared_ptr<const ShownScenario> shown) : shown_(std::move(shown)) {}

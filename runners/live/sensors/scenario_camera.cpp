@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// An empty frame says nothing about the frames after it.
+// Returns the first frame with points, because an empty frame does not show the layout of the later ones. If
+// none of the first 100 has points, returns the first frame.
 PointCloud first_with_points(const Scenario& scenario) {
   constexpr int kFrames = 100;
   const PointCloud first = scenario.cloud(0);
@@ -31,11 +32,11 @@ SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   const double rate_hz = scenario_->frame_rate_hz();
   const double now_s = moment_s - start_s_;
   const int last = scenario_->frame_count() - 1;
-  // Beyond the last frame the scene stays as it is.
+  // The last frame is repeated after the end of the scene.
   const auto due_s = [&](int i) {
     return scenario_->captured_s(std::min(i, last)) + std::max(0, i - last) / rate_hz;
   };
-  while (due_s(next_ + 1) <= now_s) ++next_;  // of several that are due the newest
+  while (due_s(next_ + 1) <= now_s) ++next_;  // if several are due, the newest
   const double captured_s = due_s(next_);
   const double wait_s = captured_s - now_s;
   if (wait_s > 0) clock_.sleep_s(std::min(wait_s, timeout_s));

@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// Gives the scenario's frame at the time since the first next(), at the scenario's frame rate; frames for
+// Delivers the scenario's frame at the time since the first next(), at the scenario's frame rate; frames for
 // which there was no time are skipped. Depths are rounded, as a sensor does, see FrameEncoder. A scene at
 // rest is repeated.
 class ScenarioCamera final : public DepthSource {
@@ -25,7 +25,7 @@ class ScenarioCamera final : public DepthSource {
   std::unique_ptr<const Scenario> scenario_;
   FrameEncoder encoder_;
   Clock& clock_;
-  double start_s_ = -1;  // of the clock; -1: not started
+  double start_s_ = -1;  // time of the clock at the start; -1: not started
   int next_ = 0;
 };
 

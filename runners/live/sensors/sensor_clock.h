@@ -1,4 +1,4 @@
-// From the clock of a sensor to that of the host.
+// Conversion of times from the clock of a sensor to that of the host.
 #pragma once
 
 namespace remote_touch {
@@ -9,15 +9,15 @@ namespace remote_touch {
 // exposure and transfer cannot be measured on the host.
 class SensorClock {
  public:
-  // Time at which the frame with this stamp was captured, on the clock of the arrival: later than the frame
-  // before, and not later than the arrival. pre: called in the order of arrival.
+  // Returns the time at which the frame with this stamp was captured, on the clock of the arrival: later than
+  // the frame before, and not later than the arrival. pre: called in the order of arrival.
   double captured_s(double stamp_s, double arrived_s);
 
  private:
   bool has_begun_ = false;
   double offset_s_ = 0;
-  double stamp_s_ = 0;     // of the frame before
-  double captured_s_ = 0;  // likewise
+  double stamp_s_ = 0;     // time stamp of the frame before
+  double captured_s_ = 0;  // time of capture of the frame before
 };
 
 }  // namespace remote_touch

@@ -27,7 +27,8 @@ double session_unit_m(const std::string& path) {
   return SessionReader(find_recording(path)).view().metres_per_unit;
 }
 
-// Rules are checked with the scenario's own frames: a sensor with colours sends them in every frame.
+// Returns a check of the rules, for the scenario's own frames: a sensor with colours sends them in every
+// frame.
 std::function<void(const PointCloud&)> rules_of(const Experiment& experiment) {
   const auto fixtures = std::make_shared<const FixtureAssignment>(experiment.build_fixtures());
   return [fixtures](const PointCloud& cloud) { fixtures->require(cloud); };
@@ -52,7 +53,7 @@ std::unique_ptr<DepthSource> open_simulated(const std::string& address, SensorCo
                                           settings_of(context.experiment));
 }
 
-// Played at the times of the recording, over and over, there and back.
+// Plays the recording at its own times, repeatedly, forwards and backwards.
 std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorContext context) {
   RecordedScene::Settings settings;
   settings.path = address;

@@ -12,12 +12,12 @@
 
 namespace remote_touch {
 
-// What a sensor may need. All must outlive it.
+// The objects that a sensor may need. All must outlive it, except scenario, which the sensor takes over.
 struct SensorContext {
   const Experiment& experiment;
   const Kernels& kernels;
   Clock& clock;
-  std::unique_ptr<const Scenario> scenario = nullptr;  // for sim: in place of the experiment's own
+  std::unique_ptr<const Scenario> scenario = nullptr;  // replaces the experiment's own scenario for sim:
 };
 
 struct SensorEntry {

@@ -11,13 +11,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Less than a library that counts in floats can tell, and less than a point's distance from its neighbour can
-// show: 1 um at 0.5 m for 500 pixels of focal length.
+// Positions closer than this are the same. It is below the resolution of a library that computes in floats,
+// and too small to matter for a point: 1 um at 0.5 m with a focal length of 500 pixels.
 constexpr double kSamePlace_px = 1e-3;
-// How well a library's search for the ray of a pixel has to end.
+// Largest error of a library's search for the ray of a pixel.
 constexpr double kMaxContradiction_px = 0.05;
-// Neighbours on one surface differ by less, which is a surface seen at 75 degrees with a focal length of 320
-// pixels or more.
+// Largest relative difference of neighbours on one surface: that of a surface seen at 75 degrees with a focal
+// length of 320 pixels or more.
 constexpr float kMaxStep = 0.02f;
 
 constexpr int kMaxSide_px = 8192;
@@ -87,7 +87,7 @@ std::optional<Vector2d> Undistortion::seen_at(int u, int v, const Lens& lens) co
   return lens.pixel_of_ray({(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy});
 }
 
-// Beyond the centres of the outermost pixels nothing is known.
+// Returns pixel -1 outside the centres of the outermost pixels, because no depth is known there.
 Undistortion::Place Undistortion::place_of(const std::optional<Vector2d>& seen) const {
   const Vector2d last(camera_.width - 1, camera_.height - 1);
   if (!seen ||
@@ -111,7 +111,7 @@ std::uint16_t Undistortion::depth_at(const std::vector<std::uint16_t>& seen, con
     return (place.down < 0.5f ? upper : lower)[place.right < 0.5f ? 0 : 1];
   const float above = static_cast<float>(a) + place.right * static_cast<float>(b - a);
   const float below = static_cast<float>(c) + place.right * static_cast<float>(d - c);
-  const float raised = above + place.down * (below - above) + 0.5f;  // std::lround takes half as long again
+  const float raised = above + place.down * (below - above) + 0.5f;  // std::lround takes 1.5 times as long
   return static_cast<std::uint16_t>(raised);
 }
 

@@ -25,7 +25,7 @@ std::string outcome(const char* what, int error) {
          (error == 0 ? " granted" : std::string(" refused (") + std::strerror(error) + ")");
 }
 
-// The last one that the process may use: interrupts mostly go to the first.
+// Selects the last processor that the process may use, because most interrupts go to the first.
 int pin_to_last_processor() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);

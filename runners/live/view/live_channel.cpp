@@ -14,7 +14,7 @@ LiveChannel::LiveChannel(double haptic_rate_hz, const DevicePlacement& placement
       poses_(std::move(poses)),
       controls_(std::move(controls)) {}
 
-// A page without some ticks is better than a run that ends.
+// Drops the waiting ticks if there is no memory: a page that lacks some ticks is better than a run that ends.
 void LiveChannel::take(const LiveTick& tick) noexcept {
   if (!is_open_.load(std::memory_order_relaxed)) return;
   const std::lock_guard lock(mutex_);
@@ -48,7 +48,7 @@ void LiveChannel::open(PageRole role, const std::string& trouble) {
   is_open_ = true;
 }
 
-// Nobody is there to release a button.
+// Releases the buttons, because the user can no longer do so.
 void LiveChannel::close() {
   is_open_ = false;
   if (hand_.buttons == 0) return;
@@ -124,7 +124,7 @@ bool LiveChannel::next(Message& message) {
   {
     const std::lock_guard lock(mutex_);
     if (rows_.length() == 0) return false;
-    // Turn about: where the page is slower than the camera there is always a new frame.
+    // Ticks and frames alternate: if the page is slower than the camera, there is always a new frame.
     was_frame_ = sent_columns_ && frame_is_new_ && !was_frame_;
     if (was_frame_) points = points_, index = index_, frame_is_new_ = false;
   }

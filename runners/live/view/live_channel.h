@@ -24,14 +24,14 @@ namespace remote_touch {
 class LiveChannel {
  public:
   static constexpr std::size_t kMaxRows = 5000;      // ticks that may wait; with more, all are dropped
-  static constexpr std::size_t kMaxPoints = 300000;  // of a frame
+  static constexpr std::size_t kMaxPoints = 300000;  // most points of a frame
   static constexpr std::uint32_t kMaxInFlight = 2;   // messages that the page has not acknowledged
 
-  // placement: of the device in the world.
+  // placement: that of the device in the world.
   LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
               std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls);
 
-  // From the threads of the run.
+  // The threads of the run call these.
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
 
@@ -75,17 +75,17 @@ class LiveChannel {
   const std::shared_ptr<LiveControls> controls_;
   std::atomic<bool> is_open_ = false;
   std::mutex mutex_;
-  LiveRows rows_;                                  // since the last message
-  std::shared_ptr<const NeighbourSearch> points_;  // of the newest frame
+  LiveRows rows_;                                  // ticks since the last message
+  std::shared_ptr<const NeighbourSearch> points_;  // points of the newest frame
   std::int32_t index_ = 0;
   bool frame_is_new_ = false;
-  std::vector<std::string> texts_;  // to be sent
-  std::string last_;                // to be sent when is_ended_
+  std::vector<std::string> texts_;  // texts that wait to be sent
+  std::string last_;                // last text; waits to be sent when is_ended_
   bool is_ended_ = false;
-  // Of the server's thread.
+  // Members used only by the server's thread.
   PageRole role_ = PageRole::hand;
-  bool sent_columns_ = false, was_frame_ = false;  // the last message
-  HandPose hand_;                                  // the newest
+  bool sent_columns_ = false, was_frame_ = false;  // was_frame_: the last message was a frame
+  HandPose hand_;                                  // the newest pose
   std::uint32_t sent_ = 0, acknowledged_ = 0;
   std::uint64_t refused_ = 0;
 };

@@ -20,7 +20,7 @@ void LivePages::take(const Frame& frame) noexcept {
   for (Page& page : pages_) page.channel->take(frame);
 }
 
-// A page that opens meanwhile may get it twice.
+// A page that connects meanwhile may get the message twice.
 void LivePages::tell(const LiveTrouble& trouble) {
   const std::lock_guard lock(mutex_);
   trouble_ = trouble_message(trouble);
@@ -63,8 +63,8 @@ bool LivePages::is_full(std::string_view name) const {
 
 LiveChannel* LivePages::open(std::string_view name) {
   if (is_full(name)) return nullptr;
-  // The older connection of the same page: its page does not hear it any more, even if the network has not
-  // reported that yet.
+  // The older connection of the same page is replaced: the page no longer uses it, even if the network has
+  // not reported that yet.
   for (Page& page : pages_)
     if (page.channel->is_open() && page.name == name) {
       page.channel->close();

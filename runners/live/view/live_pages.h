@@ -41,7 +41,8 @@ class LivePages {
   static constexpr std::size_t kMaxName = 32;
   LiveChannel* open(std::string_view page);
   void close(LiveChannel& channel);
-  // Whether kMax other pages are connected. A page that connects again does not count.
+  // True if kMax other pages are connected, or if no channel is free. A page that connects again does not
+  // count.
   bool is_full(std::string_view page) const;
   // See LiveChannel::receive(). If the message has changed parameters, the other pages get the new values.
   bool receive(LiveChannel& channel, std::string_view bytes);
@@ -58,7 +59,7 @@ class LivePages {
   const std::shared_ptr<LiveControls> controls_;
   std::array<Page, 2 * kMax> pages_;  // the older connection of each page may still be there
   std::uint64_t came_ = 0;
-  mutable std::mutex mutex_;  // of the following
+  mutable std::mutex mutex_;  // guards the following members
   std::string trouble_;       // the newest message; empty: none
   std::string ended_;
 };

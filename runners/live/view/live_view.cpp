@@ -19,12 +19,12 @@ double length_m(const Json& renderer, const char* name) {
   return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
 }
 
-// Where the hand is before anybody moves it, and the camera of the first frame, if there is one.
+// Adds the start position of the hand, and the pose of the camera in the first frame, if there is one.
 void add_start(Json& run, const Experiment& experiment, const LiveViewSource& source,
                const Kernels& kernels) {
   const auto scenario = experiment.build_scenario(kernels);
   run["start_m"] = json_of(experiment.build_trajectory(*scenario)->at(0).position_W);
-  if (source.depth != "sim:") return;  // a camera of its own
+  if (source.depth != "sim:") return;  // the sensor has its own camera
   PointCloud buffer;
   const PointCloud& first = scenario->points(0)->every_point(kernels, buffer);
   if (first.image) run["sensor"] = sensor_json(first.image->X_WC);

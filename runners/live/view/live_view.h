@@ -11,16 +11,16 @@
 
 namespace remote_touch {
 
-// What the page says of the run.
+// The texts about the run that the page shows.
 struct LiveViewSource {
   std::string command;
-  std::string device, depth;  // as for --device and --depth
+  std::string device, depth;  // arguments of --device and --depth
 };
 
 class LiveView {
  public:
-  // port: see serve_view(). Throws InputError when the experiment's
-  // tool cannot be made or the port cannot be had, and in a program without the viewer.
+  // port: see serve_view(). Throws InputError if the experiment's tool cannot be made or the port is not
+  // available, and in a program without the viewer.
   LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels, int port);
 
   std::string address() const { return server_->address(); }

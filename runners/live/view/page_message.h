@@ -1,4 +1,5 @@
-// What a page sends while it shows a live run. Whoever runs a program on this machine may have sent it.
+// The messages of a page that shows a live run. They are not trusted: any program on this machine may have
+// sent them.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,15 @@ struct PageAcknowledgement {
 using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges>;
 
 inline constexpr std::size_t kMaxPageMessage = 8 + 16 * ParameterChanges::kMax;  // bytes
-inline constexpr double kMaxHandDistance_m = 10;  // of a hand from the origin, along each axis
+inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
 
-// Little endian. A hand: 1, three bytes 0, buttons (u32), position in metres and quaternion w x y z (f64); 64
-// bytes. An acknowledgement: 2, three bytes 0, number (u32); 8 bytes. Changes of parameters: 3, three bytes
-// 0, their count (u32); then of each its parameter (i32), 0 (u32) and value (f64). None for anything else,
-// and for a pose that is not finite, too far away, or whose quaternion is not about a unit one.
+// Decodes a message; all numbers are little endian.
+// - A hand: 1, three bytes 0, buttons (u32), position in metres and quaternion w x y z (f64); 64 bytes.
+// - An acknowledgement: 2, three bytes 0, number (u32); 8 bytes.
+// - Changes of parameters: 3, three bytes 0, their count (u32); then for each change its parameter (i32),
+//   0 (u32) and value (f64).
+// Returns none for anything else, and for a pose that is not finite or too far away, or whose quaternion is
+// not approximately a unit quaternion.
 std::optional<PageMessage> page_message(std::string_view bytes);
 
 }  // namespace remote_touch

@@ -18,7 +18,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// A text of a device or a sensor may not be UTF-8.
+// Replaces invalid bytes, because a text of a device or a sensor may not be UTF-8.
 std::string message_text(const nlohmann::ordered_json& message) {
   return message.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

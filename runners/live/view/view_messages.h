@@ -1,4 +1,4 @@
-// What a live run sends to its page. Numbers are little endian, and begin at multiples of eight bytes.
+// The messages of a live run to its page. Numbers are little endian, and begin at multiples of eight bytes.
 #pragma once
 
 #include <cstdint>
@@ -42,10 +42,10 @@ std::string alive_message();
 std::string state_message(const std::string& ended, bool is_full);
 inline constexpr int kViewProtocol = 2;
 
-// 1 (u32), number of the message (u32), rows (u32), 0 (u32); then of each column all rows (f64).
+// 1 (u32), number of the message (u32), rows (u32), 0 (u32); then all rows of each column (f64).
 std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number);
 
-// 2 (u32), number of the message (u32), index of the frame (i32), points (u32), what follows the positions
+// 2 (u32), number of the message (u32), index of the frame (i32), points (u32), data after the positions
 // (u32: 1 colours, 2 radii of forbidden regions, 3 both), measured points (u32), step in metres and the
 // corner in metres (f64 x 4): a position is corner + step * number. Then positions (u16 x 3 each), colours
 // (u8 x 3 each) and radii in metres (f32). A cloud with more than max_points shows every n-th.

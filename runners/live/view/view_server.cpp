@@ -58,11 +58,11 @@ using asio::ip::tcp;
 using Request = http::request<http::empty_body>;
 using Socket = websocket::stream<beast::tcp_stream>;
 
-constexpr auto kPatience = std::chrono::seconds(5);       // for a request
-constexpr auto kPicture = std::chrono::milliseconds(16);  // between looks for something to send
-constexpr auto kIdle = std::chrono::seconds(20);          // without an answer of the browser
-constexpr auto kAlive = std::chrono::seconds(1);          // between messages, at most
-constexpr auto kFarewell = std::chrono::seconds(1);  // until all pages have closed, when the run has ended
+constexpr auto kPatience = std::chrono::seconds(5);       // longest wait for a request
+constexpr auto kPicture = std::chrono::milliseconds(16);  // period of the checks for messages to send
+constexpr auto kIdle = std::chrono::seconds(20);          // longest time without an answer of the browser
+constexpr auto kAlive = std::chrono::seconds(1);          // longest time between messages
+constexpr auto kFarewell = std::chrono::seconds(1);       // longest wait for pages to close after the run
 constexpr int kMaxConnections = 16;
 constexpr std::uint32_t kMaxHeader = 8192;
 
@@ -73,7 +73,7 @@ std::string random_secret() {
   return text;
 }
 
-// Takes as long wherever they differ.
+// Compares in a time that does not depend on where the texts differ.
 bool same(beast::string_view a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -81,7 +81,7 @@ bool same(beast::string_view a, const std::string& b) {
   return difference == 0;
 }
 
-// A browser that this program starts would keep the port.
+// Closes the handle in child processes: a browser that this program starts would keep the port.
 template <class Handle>
 void keep_from_children(Handle& handle) {
   fcntl(handle.native_handle(), F_SETFD, FD_CLOEXEC);
@@ -99,7 +99,7 @@ class BeastServer final : public ViewServer {
   ~BeastServer() override {
     try {
       end("it failed; the terminal shows the reason");
-    } catch (const std::exception&) {  // no memory: the pages find out by themselves
+    } catch (const std::exception&) {  // no memory: the pages notice the end by themselves
     }
     context_.stop();
     thread_.join();
@@ -140,7 +140,7 @@ class BeastServer final : public ViewServer {
     }
   }
 
-  // What ends with an exception, a page that is closed for example, ends one connection.
+  // Serves one connection. An exception, for example because a page is closed, ends only this connection.
   asio::awaitable<void> serve(tcp::socket socket) {
     ++connections_;
     try {
@@ -234,7 +234,7 @@ class BeastServer final : public ViewServer {
         asio::co_spawn(context_, send_all(socket, *channel, is_sending), asio::detached);
         co_await receive_all(*socket, *channel);
         channel->end({});
-        // The channel may be another page's as soon as it is closed.
+        // Waits for send_all(), because the channel may belong to another page as soon as it is closed.
         asio::steady_timer timer(context_);
         while (is_sending) {  // NOLINT(bugprone-infinite-loop): send_all sets it
           timer.expires_after(kPicture);
@@ -261,7 +261,7 @@ class BeastServer final : public ViewServer {
     beast::get_lowest_layer(socket).close();
   }
 
-  // Ends with the connection, and ends the connection when it cannot go on or the channel is over.
+  // Ends with the connection, and closes the connection if a write fails or the channel is over.
   asio::awaitable<void> send_all(std::shared_ptr<Socket> socket, LiveChannel& channel, bool& is_sending) {
     try {
       co_await send_until_over(*socket, channel);

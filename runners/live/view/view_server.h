@@ -25,7 +25,7 @@ class ViewServer {
   virtual void end(const std::string& why) = 0;
 };
 
-// page: HTML. port: 0 is any that is free. Throws InputError when the port cannot be had.
+// page: HTML. port: 0 means any free port. Throws InputError if the port is not available.
 std::unique_ptr<ViewServer> serve_view(std::string page, LivePages& pages, int port);
 
 }  // namespace remote_touch

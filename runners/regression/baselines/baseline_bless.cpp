@@ -78,7 +78,8 @@ void require_runnable(const std::filesystem::path& folder, const Baseline& basel
     Experiment::load(subject_of(folder, baseline), baseline.overrides);
 }
 
-// What is to be run: as stored, or as now asked for.
+// Returns what to run: the stored experiment or sweep, or the one that is requested now. Throws InputError if
+// there is neither.
 Baseline definition(const Blessing& blessing, const Manifest& manifest) {
   const Baseline* stored = manifest.find(blessing.name);
   const bool is_new = !blessing.run.empty() || !blessing.sweep.empty();
@@ -184,7 +185,7 @@ std::string with_precision(double number) {
   return text;
 }
 
-// Which columns or measures are not what they were: "force: 12 of 867 rows, up to 0.4 N; normal: ...".
+// Returns the changed columns or measures as text: "force: 12 of 867 rows, up to 0.4 N; normal: ...".
 std::string moved(const std::vector<Column>& before, const std::vector<Column>& now) {
   std::string text;
   const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };

@@ -13,8 +13,8 @@ struct Blessing {
   std::filesystem::path folder;
   std::string name;
   std::string reason;
-  std::string run, sweep;              // what a new baseline runs; empty: as in the manifest
-  std::vector<std::string> overrides;  // with run or sweep
+  std::string run, sweep;              // experiment or sweep of a new baseline; empty: as in the manifest
+  std::vector<std::string> overrides;  // --set, only with run or sweep
   std::vector<std::string> also;       // builds of the same source by other compilers
   bool one_compiler = false;           // allows `also` to be empty: the spread is then of this compiler alone
   const std::atomic<bool>* stop = nullptr;

@@ -19,11 +19,11 @@ struct Revision {
 struct Baseline {
   std::string name;
   std::string command;  // "run" or "sweep"
-  std::string subject;  // what it runs: a name of the list, or a JSON file in the same folder
+  std::string subject;  // experiment or sweep: a name of the list, or a JSON file in the same folder
   std::vector<std::string> overrides = {};  // --set
-  std::string sha256 = {};                  // of the file
-  Revision revision = {};                   // of the stored numbers
-  std::vector<Revision> history = {};       // of all before them, oldest first
+  std::string sha256 = {};                  // hash of NAME.h5
+  Revision revision = {};                   // revision of the stored numbers
+  std::vector<Revision> history = {};       // all revisions before it, oldest first
   std::vector<std::string> builds = {};  // compilers, levels and threads over which the spread was measured
   // The spread, by column or measure; those not named are exact.
   Tolerances tolerances = {};
@@ -40,7 +40,7 @@ struct Manifest {
 // FOLDER/manifest.json. Throws InputError when it cannot be read or is not as expected.
 Manifest read_manifest(const std::filesystem::path& folder);
 std::filesystem::path manifest_file(const std::filesystem::path& folder);
-std::string text_of(const Manifest& manifest);  // as read_manifest() reads it
+std::string text_of(const Manifest& manifest);  // the JSON that read_manifest() reads
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline);
 // The baseline's subject as the commands take it: its name, or the path of its JSON file.

@@ -90,7 +90,7 @@ int end_of(pid_t child, const std::atomic<bool>* stop) {
   return status;
 }
 
-// In parentheses; empty where it said nothing.
+// Returns the last line that the program wrote to standard error, in parentheses; empty if it wrote none.
 std::string last_line(const std::filesystem::path& errors) {
   std::ifstream in(errors);
   std::string last;

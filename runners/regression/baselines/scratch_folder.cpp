@@ -27,8 +27,8 @@ std::filesystem::path place_of_scratch() {
   return place;
 }
 
-// For each name in an open folder. Without memory, which readdir() and std::filesystem::directory_iterator
-// need.
+// Calls use(name) for each name in an open folder. Allocates no memory, unlike readdir() and
+// std::filesystem::directory_iterator.
 template <class Use>
 void for_each_name(int folder, const Use& use) {
   const int list = ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -52,7 +52,7 @@ int open_folder(int parent, const char* name) {
   return ::openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-// What programs left that could not remove it: folders that nobody holds.
+// Removes the folders of programs that could not remove them: folders that no program holds locked.
 void remove_abandoned(const std::filesystem::path& place) {
   const int parent = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (parent < 0) return;
@@ -81,7 +81,7 @@ bool has_links(int folder) {
 ScratchFolder::ScratchFolder() {
   const std::filesystem::path place = place_of_scratch();
   remove_abandoned(place);
-  // Until it is locked, another program may take it for an abandoned one and remove it.
+  // Another program may classify the folder as abandoned and remove it until it is locked.
   do {
     if (descriptor_ >= 0) ::close(descriptor_);
     path_ = place / kScratchName;

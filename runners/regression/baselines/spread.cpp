@@ -72,13 +72,13 @@ std::vector<std::string> levels_of_this_machine() {
   return levels;
 }
 
-// Names and fingerprints have none, as compare_columns sees it.
+// False for names and fingerprints, which have no tolerance in compare_columns().
 bool has_tolerance(const Column& column) {
   return std::holds_alternative<std::vector<double>>(column.values) ||
          (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
 }
 
-// Where the deviation is at most what is allowed; NaN is not.
+// Copies the old values to `now` in the rows whose deviation is at most `allowed`; NaN is not.
 template <class Values>
 void keep_rows(const Values& old, const std::vector<double>& deviation, double allowed, std::size_t width,
                Values& now) {

@@ -70,7 +70,7 @@ void print_divergence(const Divergence& found, std::FILE* out) {
     const std::string was = row_text(ours, here), is = row_text(theirs, here);
     const std::string name = ours.name + (ours.units == "1" ? "" : " / " + ours.units);
     const std::string before = row_text(ours, 0);
-    const bool is_shown = here > 0 && (before != was || was != is);  // what rests is told once
+    const bool is_shown = here > 0 && (before != was || was != is);  // a value at rest is printed once
     if (is_shown) std::fprintf(out, "  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
     const char* label = is_shown ? "" : name.c_str();
     if (was == is) {
@@ -148,7 +148,8 @@ void print_measures(const std::vector<ValueComparison>& measures, const std::str
                left_out.c_str());
 }
 
-// What is told of a region: all of an event's, and of other measures the whole and what changed.
+// True if a measure is printed for a region. An event is printed for all regions. Other measures are printed
+// for the whole map, and for regions in which they changed.
 bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t measure) {
   return region == 0 || sweep.measures[measure].event || is_change(sweep.at(region, measure).judgement);
 }
@@ -158,7 +159,7 @@ std::string p_text(const RegionComparison& region) {
   return text("p %.3g, adjusted %.3g", std::min(region.sign_p, region.symmetry_p), region.adjusted_p);
 }
 
-// Shares with their intervals, the flips both ways, and what the paired test says.
+// Prints shares with their intervals, the flips both ways, and the result of the paired test.
 void print_regions(const SweepComparison& sweep, std::FILE* out) {
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     if (sweep.measures[m].outside == 0) continue;

@@ -19,7 +19,8 @@ struct Measured {
   std::vector<std::optional<double>> values = {};  // none where a measure does not apply
 };
 
-// By the configuration that a trace stores; 0 if this program cannot read it or does not have its renderer.
+// Returns held_depth_m() of the configuration that a trace stores. 0 if the trace stores none, or if this
+// program cannot read it or does not have its renderer.
 double stored_held_depth_m(const TextAttributes& trace) {
   const std::string configuration = attribute(trace, "config");
   if (configuration.empty()) return 0;

@@ -11,11 +11,11 @@
 
 namespace remote_touch {
 
-// Those of the catalog in use that both traces have, in its order; a stored trace has none of settled
-// contact, which need more than its columns. None at all where one of the two lacks a column, or they differ
-// in length. Where the outcomes of the runs differ, see is_outcome(), other measures have only changed. The
-// attributes of each trace hold its configuration, which says by how much its proxy may lie behind the
-// surface. Holds one trace at a time.
+// Compares the measures of the catalog in use that both traces have, in its order. A stored trace has no
+// measures of settled contact, which need more than its columns. Returns none if one of the traces lacks a
+// column, or if they differ in length. If the outcomes of the runs differ, see is_outcome(), other measures
+// are only judged as changed. The attributes of each trace hold its configuration, which determines how far
+// its proxy may lie behind the surface. Holds one trace at a time.
 std::optional<std::vector<ValueComparison>> compare_measures(const ColumnSource& baseline,
                                                              const TextAttributes& baseline_attributes,
                                                              const ColumnSource& candidate,
@@ -28,7 +28,7 @@ std::optional<std::vector<ValueComparison>> compare_measures(const ColumnSource&
 std::string tick_difference(const ColumnSource& baseline, const ColumnSource& candidate);
 
 // "one run popped through: the other measures are not judged". Empty if the runs have the same outcome, see
-// is_outcome(). measures: of compare_measures().
+// is_outcome(). measures: the result of compare_measures().
 std::string outcome_difference(const std::vector<ValueComparison>& measures);
 
 }  // namespace remote_touch

@@ -50,7 +50,7 @@ std::string count_text(const std::vector<std::string>& names, std::size_t of, co
 
 // "; worse: force_noise; better: max_sink, max_float"; empty where every measure is equal or within a margin.
 std::string judgements_text(const ResultComparison& result) {
-  constexpr std::size_t kNamed = 4;  // of each
+  constexpr std::size_t kNamed = 4;  // names that are listed for each judgement
   std::string text;
   for (const Judgement requested :
        {Judgement::worse, Judgement::better, Judgement::changed, Judgement::undecided}) {

@@ -19,7 +19,7 @@ enum class Outcome { same = 0, regressed = 1, not_comparable = 2, changed = 4 };
 const char* name_of(Outcome outcome);  // "same", "regressed", ...
 
 struct ComparisonRules {
-  Tolerances tolerances = {};  // of columns, or of a sweep's measures
+  Tolerances tolerances = {};  // tolerances of columns, or of a sweep's measures
   bool paired = false;         // judge sweeps by the paired tests (sweep_comparison.h), not run by run
   PairedRule rule = {};
 };
@@ -29,12 +29,12 @@ struct ResultComparison {
   std::string kind;                             // trace, sweep, figure, hashes
   std::vector<std::string> configuration = {};  // differences of the experiments
   std::vector<std::string> provenance = {};     // differences of the builds: reported, not judged
-  std::optional<TraceComparison> columns = {};  // of traces and figures
-  std::vector<ValueComparison> measures = {};   // of traces that differ, see compare_measures()
+  std::optional<TraceComparison> columns = {};  // set for traces and figures
+  std::vector<ValueComparison> measures = {};   // set for traces that differ, see compare_measures()
   std::string no_measures = {};                 // why there are none where the traces differ
   std::string not_judged = {};                  // why only some of them are judged; see outcome_difference()
   std::optional<SweepComparison> sweep = {};
-  bool paired = false;  // how the sweep was judged
+  bool paired = false;  // the sweep was judged by the paired tests
   std::optional<HashComparison> hashes = {};
   Outcome outcome = Outcome::not_comparable;
   std::string verdict = {};  // one line

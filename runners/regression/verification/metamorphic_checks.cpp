@@ -56,7 +56,7 @@ class Subject {
     const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
     return remote_touch::play(run.scene, *renderer);
   }
-  // Whether the scene determines what a renderer of tools answers.
+  // True if the scene determines the output of a renderer of tools; always true for other renderers.
   bool is_for(const MetamorphicScene& scene) const {
     if (!is_tool()) return true;
     switch (entry_.contact_model) {
@@ -117,8 +117,9 @@ CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double 
   return {kTouch.name, kTouch.meaning, scene.name, "the other checks say little without touch", count, {}};
 }
 
-// Where differences as small as rounding grow, a tolerance for rounding tells nothing: the remark says so,
-// and the check has failed all the same.
+// Returns a remark if a HIP that is 1e-13 m further on violates the tolerance as early as the failed check.
+// Differences as small as rounding then grow, so a tolerance for rounding decides nothing. The check has
+// failed all the same. Empty otherwise.
 std::string remark_on(const CheckResult& failed, const Subject& subject, const MetamorphicScene& scene,
                       const Outputs& outputs, const OutputTolerance& tolerance) {
   constexpr double kSmall_m = 1e-13;  // below every tolerance

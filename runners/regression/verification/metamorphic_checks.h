@@ -19,9 +19,9 @@ struct CheckResult {
   std::string check;
   std::string meaning;  // one line
   std::string scene;
-  std::string reason;  // for the tolerances, one line
+  std::string reason;  // reason for the tolerances, one line
   Comparison comparison;
-  std::string remark;  // for a failure that the scene may cause and not the renderer; else empty
+  std::string remark;  // set for a failure that the scene may cause and not the renderer; else empty
 
   bool passed() const { return comparison.ticks > 0 && comparison.first_violation < 0; }
 };
@@ -44,7 +44,7 @@ struct CheckName {
   const char* name;
   const char* meaning;
 };
-// In the order of the results.
+// Returns the checks in the order of the results.
 std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three);
 
 }  // namespace remote_touch

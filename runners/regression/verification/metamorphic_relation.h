@@ -13,12 +13,12 @@ struct MetamorphicRelation {
   const char* name;
   const char* meaning;  // one line
   OutputTolerance tolerance;
-  const char* reason;            // for the tolerance, one line
+  const char* reason;            // reason for the tolerance, one line
   bool (*vary)(Variation& run);  // false: does not apply to this scene
 };
 
 std::span<const MetamorphicRelation> metamorphic_relations();
-// Those of a renderer of a tool, with tolerances of their own.
+// Relations for a renderer of a tool, with tolerances of their own.
 std::span<const MetamorphicRelation> tool_relations();
 
 }  // namespace remote_touch

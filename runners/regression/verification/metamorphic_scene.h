@@ -25,15 +25,15 @@ struct MetamorphicScene {
   std::string what;  // one line
   double haptic_rate_hz = 0;
   double start_s = 0;            // time of the first tick
-  std::vector<CloudView> views;  // in the order in which they arrive
-  std::vector<Vec3> hip_W;       // of each tick
-  // Orientation of the device, of each tick: takes the axes of its handle to the world.
+  std::vector<CloudView> views;  // views in the order of their arrival
+  std::vector<Vec3> hip_W;       // HIP in each tick
+  // Orientation of the device in each tick: transforms directions from its handle to the world frame.
   std::vector<Eigen::Quaterniond> device_WH;
   bool cloud_rests = false;  // every view shows the same points
   bool hip_rests = false;    // the HIP is at rest before the second view arrives, and stays there
   bool has_crease = false;   // walls meet, which a fitted sheet rounds off
-  // How points are searched: an organised cloud by its image, others by a grid with cells of this size; 0:
-  // brute force.
+  // Cell size of the grid in which points are searched; 0: brute force. An organised cloud is searched by its
+  // image instead.
   double cell_m = 0.004;
 
   double time_s(std::size_t tick) const { return start_s + static_cast<double>(tick) / haptic_rate_hz; }

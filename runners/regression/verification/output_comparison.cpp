@@ -16,11 +16,12 @@ double difference(double a, double b) {
 }
 
 double difference(const Vec3& a, const Vec3& b) {
-  // Squares of the smallest numbers would vanish.
+  // The squares of the smallest numbers would underflow.
   return std::hypot(difference(a.x(), b.x()), difference(a.y(), b.y()), difference(a.z(), b.z()));
 }
 
-// Of a tool, radians for small angles. Infinite if an orientation is not finite, or only one has a tool.
+// Returns the rotation between the two tools, in radians for small angles; 0 without a tool. Infinite if an
+// orientation is not finite, or if only one output has a tool.
 double rotation_between(const RenderOutput& a, const RenderOutput& b) {
   if (!a.tool && !b.tool) return 0;
   if (!a.tool || !b.tool) return std::numeric_limits<double>::infinity();

@@ -7,16 +7,16 @@
 
 namespace remote_touch {
 
-// How far two runs may differ; 0 everywhere: equal bits, except for the sign of a zero.
+// Allowed differences between two runs. 0 everywhere: equal bits, except for the sign of a zero.
 struct OutputTolerance {
   double position_m = 0;
-  double force_fraction = 0;  // of the largest force in the run
+  double force_fraction = 0;  // fraction of the largest force in the run
   double velocity_m_per_s = 0;
   double normal = 0;
   bool rounded = false;        // true: steps are not compared, and normals only where a point is touched
-  double rotation_rad = 0;     // of a tool
-  double torque_fraction = 0;  // of the largest torque in the run
-  // true: of a tool only pose, force, torque and penetration are compared.
+  double rotation_rad = 0;     // rotation of a tool
+  double torque_fraction = 0;  // fraction of the largest torque in the run
+  // true: for a tool, only pose, force, torque and penetration are compared.
   bool pose_only = false;
 };
 
@@ -34,7 +34,7 @@ struct Deviation {
 struct Comparison {
   std::vector<Deviation> deviations;
   int first_violation = -1;  // the tick; -1: none
-  int ticks = 0;             // that were compared
+  int ticks = 0;             // number of ticks that were compared
 };
 
 // pre: as many outputs as expected. until_velocity: ends as soon as either run has estimated a surface

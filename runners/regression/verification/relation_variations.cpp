@@ -13,7 +13,7 @@ namespace remote_touch::vary {
 
 namespace {
 
-// Whether a search by grid takes from the renderer what it has to know.
+// True if the renderer needs the images of the clouds, which a search by grid removes.
 bool needs_its_images(const Variation& run) {
   return run.view_matters && std::any_of(run.scene.views.begin(), run.scene.views.end(),
                                          [](const CloudView& view) { return view.cloud.image.has_value(); });
@@ -25,7 +25,7 @@ bool mirror_axis(Variation& run, int axis) {
   return true;
 }
 
-// Larger at equal stiffness: forces grow with lengths, so N/m and Ns/m stay.
+// Change of size at equal stiffness: forces grow with lengths, so N/m and Ns/m stay.
 constexpr UnitChange sized(double factor) {
   return {factor, 1, factor};
 }

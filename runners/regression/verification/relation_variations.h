@@ -15,8 +15,8 @@ bool use_other_grid(Variation& run);
 bool shuffle(Variation& run);
 bool add_missing(Variation& run);
 bool add_far(Variation& run);
-bool add_radius_column(Variation& run);           // of zeros
-bool add_empty_stiffness_column(Variation& run);  // of NaN: a point has the renderer's stiffness
+bool add_radius_column(Variation& run);           // column of zeros
+bool add_empty_stiffness_column(Variation& run);  // column of NaN: a point has the renderer's stiffness
 bool add_stiffness_column(Variation& run);
 
 // Space, time and force.
@@ -24,10 +24,10 @@ bool mirror_x(Variation& run);
 bool mirror_y(Variation& run);
 bool mirror_z(Variation& run);
 bool move(Variation& run);
-bool enlarge(Variation& run);  // twice
-bool shrink(Variation& run);   // to a quarter
+bool enlarge(Variation& run);  // factor 2
+bool shrink(Variation& run);   // factor 1/4
 bool halve(Variation& run);
-bool enlarge_unevenly(Variation& run);  // threefold
+bool enlarge_unevenly(Variation& run);  // factor 3
 bool speed_up(Variation& run);
 bool change_renderer_only(Variation& run);
 bool soften_renderer(Variation& run);

@@ -1,4 +1,4 @@
-// What the scenes of the metamorphic tests are made of.
+// Parts from which the scenes of the metamorphic tests are made.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace remote_touch {
 
 inline constexpr int kSceneTicks = 320;
-inline constexpr double kJitter_m = 0.0002;  // of points on a lattice
+inline constexpr double kJitter_m = 0.0002;  // noise of points on a lattice
 
 // A surface in its own frame L, y up; u and v in metres.
 using SceneSurface = std::function<Vec3(double u, double v)>;
@@ -30,9 +30,10 @@ Vec3 flat_surface(double u, double v);
 Vec3 bumpy_surface(double u, double v);
 Vec3 groove_surface(double u, double v);
 
-// Without noise. with_normals: y upwards.
+// Returns the points of a surface without noise. with_normals: normals of the surface, y upwards.
 PointCloud sheet_of(const Grid& grid, const SceneSurface& surface, bool with_normals);
-// 105 mm x 75 mm, points 1.5 mm apart. with_normals: of the surface without noise, y upwards.
+// Returns a sheet of 105 mm x 75 mm, points 1.5 mm apart. with_normals: normals of the surface without noise,
+// y upwards.
 PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view, const Kernels& kernels,
                  bool with_normals = false);
 
@@ -45,7 +46,8 @@ MetamorphicScene resting_scene(const char* name, const char* what, const std::ve
 // The HIP rises with the surface.
 void raise_hip(MetamorphicScene& scene, const std::function<double(double time_s)>& height);
 
-// From the surface's frame to the world. Square roots and products only: the same bits on every machine.
+// Rotations from the surface's frame to the world. They need square roots and products only, so all machines
+// compute the same bits.
 inline const Eigen::Quaterniond kSlightTilt(1, 0.11, 0.23, -0.07), kSteepTilt(1, -0.35, 0.6, 0.28);
 void place(MetamorphicScene& scene, const Eigen::Quaterniond& tilt, const Vec3& shift);
 

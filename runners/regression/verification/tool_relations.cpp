@@ -24,9 +24,9 @@ constexpr OutputTolerance poses_within(double position_m, double rotation_rad, d
 // force of 0.3 N, of 4 to 6 N in these scenes. The rotation is what the groove needs: up to 0.09 rad were
 // measured there, which move the ends of the bar by 4 mm.
 constexpr OutputTolerance kSolved = poses_within(5e-4, 0.1, 0.1, 0.2);
-// Where the points stay in their places and tiles.
+// Tolerance for variations in which the points keep their positions and tiles.
 constexpr OutputTolerance kSamePlaces = poses_within(1e-4, 0.02, 0.02, 0.05);
-// A bar twice as large, and half as large, which the same 0.5 mm turn by twice as much.
+// Tolerances for a bar twice as large, and half as large, which the same 0.5 mm rotate by twice as much.
 constexpr OutputTolerance kSolvedTwice = poses_within(1e-3, 0.1, 0.1, 0.2, 0.1);
 constexpr OutputTolerance kSolvedHalf = poses_within(5e-4, 0.2, 0.2, 0.4);
 

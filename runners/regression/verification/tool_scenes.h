@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// As verification_scenes(), with normals and a device that turns, for the tool kVerifiedTool. The points have
-// regions in those of the scenes that renderers of regions need.
+// Returns scenes like verification_scenes(), with normals and a device that turns, for the tool
+// kVerifiedTool. The points have regions in those scenes that renderers of regions need.
 std::vector<MetamorphicScene> tool_scenes(const Kernels& kernels);
 
 // A bar, 80 x 20 x 10 mm: its own mirror image along every axis. Written as assignments. The voxels are

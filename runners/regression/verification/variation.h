@@ -14,18 +14,18 @@ namespace remote_touch {
 // Starts as the scene and the outputs of its reference run; every function below changes both.
 struct Variation {
   MetamorphicScene scene;
-  std::vector<RenderOutput> expected;  // of each tick
+  std::vector<RenderOutput> expected;  // output of each tick
   const Kernels* kernels = nullptr;
-  UnitChange units = {};        // of the renderer's parameters
+  UnitChange units = {};        // change of the renderer's parameters
   bool until_velocity = false;  // compare only until either run has estimated a surface velocity
   double reach_m = 0;           // the renderer's largest length
   // The renderer fits a sheet (ContactModel::sheet): the world's axes matter, for its cells, and the number
   // of frames, for its estimate of noise.
   bool fits_a_sheet = false;
-  bool view_matters = false;                     // so does the layout of an image, for its camera
+  bool view_matters = false;                     // the layout of an image matters too, for its camera
   bool order_matters = false;                    // the renderer depends on the points' rows and columns
   bool can_be_mirrored = true;                   // false: a tool that is not known to be its own mirror image
-  std::optional<double> stiffness_N_per_m = {};  // of the renderer, if it has a parameter of that name
+  std::optional<double> stiffness_N_per_m = {};  // parameter of the renderer, if it has one of that name
   std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run
 };
 
@@ -39,7 +39,7 @@ void move_rigidly(Variation& variation, const RigidTransform& motion);
 // the cloud is then searched by a grid.
 void mirror(Variation& variation, int axis);
 
-// Another search; of the layout of an organised cloud only the number of columns is kept. cell_m = 0: brute
+// Replaces the search. An organised cloud keeps only the number of columns of its layout. cell_m = 0: brute
 // force.
 void search_by_grid(Variation& variation, double cell_m);
 
@@ -50,8 +50,9 @@ void reorder(Variation& variation, const std::function<std::vector<int>(int size
 // Adds points to every cloud, with the columns that it has: r_f = 0, and the cloud's first stiffness.
 void add_points(Variation& variation, const std::vector<Vec3>& points_W);
 
-// After each view from number first on, inserts a view, so many ticks later, that make() derives from it and
-// the view before it (itself for the first). Returns the places of the inserted views in the stream.
+// Inserts a view after each view from number `first` on, that many ticks later. make() derives it from that
+// view and the view before it (itself for the first). Returns the positions of the inserted views in the
+// stream.
 std::vector<std::size_t> follow_views(
     Variation& variation, std::size_t first, int ticks,
     const std::function<CloudView(const CloudView& view, const CloudView& previous)>& make);

@@ -113,12 +113,12 @@ MetamorphicScene rising_regions(const Kernels& kernels) {
   return scene;
 }
 
-// Along the optical axis: a table that falls away to the left.
+// Depth along the optical axis of a table that falls away to the left.
 double table_depth_m(double u, double v) {
   return 0.45 - 0.0004 * u + 0.0007 * v;
 }
 
-// With a block on the table, and pixels that saw nothing.
+// Depth image of the table with a block on it, and with pixels that measured nothing (NaN).
 DepthImage depth_image(int view, const CameraIntrinsics& camera, const Kernels& kernels) {
   constexpr double kBlock_m = 0.012, kNoise_m = 0.0003;
   PointCloud noise;

@@ -11,18 +11,18 @@
 
 namespace remote_touch {
 
-// What the record of a chunk says of it.
+// Position and properties of a chunk, from its record.
 struct ChunkPlace {
-  std::uint64_t record_at = 0;                   // where that record begins in the file
-  std::uint64_t stored_at = 0, stored_size = 0;  // of the bytes in the file
-  std::uint64_t size = 0;                        // of the records
+  std::uint64_t record_at = 0;                   // position of that record in the file
+  std::uint64_t stored_at = 0, stored_size = 0;  // position and size of the bytes in the file
+  std::uint64_t size = 0;                        // size of the records, decoded
   std::string compression;                       // empty, none, lz4, zstd or bz2
-  std::uint32_t crc = 0;                         // of the records; 0: not told
+  std::uint32_t crc = 0;                         // CRC of the records, decoded; 0: not stated
 };
 
 class BagChunk {
  public:
-  static constexpr std::uint64_t kMaxBytes = 256u << 20;  // of a compressed chunk, decoded
+  static constexpr std::uint64_t kMaxBytes = 256u << 20;  // limit for the decoded size of a compressed chunk
 
   // `file` must outlive it. Throws InputError about the file when it does not have the bytes, or the
   // compression is not known.
@@ -30,8 +30,8 @@ class BagChunk {
 
   std::uint64_t record_at() const { return place_.record_at; }
   std::uint64_t size() const { return place_.size; }  // bytes of its records
-  // Some of them. No more is decoded than is needed; what was decoded is kept. Valid until the next call.
-  // Throws InputError when they are beyond the end or damaged.
+  // Returns size bytes of the records, from byte `at` on, valid until the next call. Decodes no more than is
+  // needed and keeps it. Throws InputError if the bytes are beyond the end or damaged.
   std::string_view view(std::uint64_t at, std::uint64_t size);
   // Decodes the rest. Throws InputError unless all records have the CRC that the file states, if any.
   void check();
@@ -44,10 +44,10 @@ class BagChunk {
   const ChunkPlace place_;
   std::uint32_t crc_so_far_ = 0;
   std::unique_ptr<Decompressor> decompressor_;  // null: the records are stored as they are
-  std::string decoded_;                         // or, where nothing is compressed, what was viewed last
+  std::string decoded_;                         // or, if nothing is compressed, what was viewed last
   std::string input_;                           // a piece of the compressed bytes
   std::string_view input_left_;
-  std::uint64_t input_at_ = 0;  // how many of them were read
+  std::uint64_t input_at_ = 0;  // number of compressed bytes read so far
   bool checked_ = false;
 };
 

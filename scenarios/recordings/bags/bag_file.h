@@ -12,14 +12,14 @@
 
 namespace remote_touch {
 
-// Nothing that a depth camera sends is longer.
+// Maximum length of a message; a depth camera sends no longer message.
 inline constexpr std::uint64_t kMaxMessageBytes = 256u << 20;
 
 struct BagTopic {
   std::string name;
-  std::string type;            // as ROS 1 writes it, without "/msg": sensor_msgs/PointCloud2
+  std::string type;            // type as ROS 1 writes it, without "/msg": sensor_msgs/PointCloud2
   std::string encoding;        // cdr, ros1, or another, which is not read
-  std::uint64_t messages = 0;  // 0 also where the file does not tell, of a topic that is not wanted
+  std::uint64_t messages = 0;  // 0 also if the file does not state it, for an unwanted topic
 };
 
 // ROS 2 has a folder more in the names of its types: sensor_msgs/msg/Image.
@@ -27,7 +27,7 @@ std::string ros1_type(const std::string& type);
 
 struct MessagePlace {
   std::int64_t logged_ns = 0;      // when the recorder got the message
-  std::uint64_t part = 0, at = 0;  // as the kind of file has it
+  std::uint64_t part = 0, at = 0;  // position of the message, as the kind of file defines it
 };
 
 // May be read by several threads at once.
@@ -36,18 +36,19 @@ class BagFile {
   virtual ~BagFile() = default;
 
   const std::vector<BagTopic>& topics() const { return topics_; }
-  // Of a wanted topic, in the order of logged_ns; those of the same time as in the file.
+  // Messages of a wanted topic, in the order of logged_ns; those of the same time are in the order of the
+  // file.
   const std::vector<MessagePlace>& places(std::size_t topic) const { return places_[topic]; }
-  // Empty, or what is wrong with the file and was done about it: "was cut short: ...".
+  // Empty, or what is wrong with the file and what was done about it: "was cut short: ...".
   const std::string& remark() const { return remark_; }
 
-  // The bytes of a message, and of its first max_bytes only, which may take less time. Throws InputError
-  // about the file when they cannot be read.
+  // message() returns the bytes of a message; start() returns only its first max_bytes, which may take less
+  // time. Both throw InputError about the file if the bytes cannot be read.
   std::string message(const MessagePlace& place) const { return start(place, kMaxMessageBytes); }
   virtual std::string start(const MessagePlace& place, std::uint64_t max_bytes) const = 0;
 
  protected:
-  static constexpr std::size_t kMaxPlaces = 1u << 21;  // of a topic: 19 hours at 30 Hz, 50 MB
+  static constexpr std::size_t kMaxPlaces = 1u << 21;  // limit for each topic: 19 hours at 30 Hz, 50 MB
   static constexpr std::size_t kMaxTopics = 65536;
 
   // Throws InputError beyond kMaxTopics or for a name that is longer than 1024 bytes.
@@ -60,7 +61,7 @@ class BagFile {
   std::string remark_;
 };
 
-// Which topics will be read: only their messages are listed.
+// True for topics that will be read: only the messages of these topics are listed.
 using WantedTopic = std::function<bool(const BagTopic&)>;
 
 // .mcap, .db3 or .bag by the file's ending; also a folder of ROS 2: metadata.yaml and one or more files,
@@ -68,7 +69,7 @@ using WantedTopic = std::function<bool(const BagTopic&)>;
 // without the library for it. A file of .mcap that was cut short is read up to there, see remark().
 std::unique_ptr<BagFile> open_bag(const std::filesystem::path& path, const WantedTopic& wanted);
 
-// Whether open_bag() is for this path, by its ending, or the content of the folder.
+// True if open_bag() reads such a path, by its ending or by the content of the folder.
 bool is_bag(const std::filesystem::path& path);
 // The files that open_bag() reads, and metadata.yaml. Pre: is_bag(path).
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);

@@ -29,7 +29,7 @@ std::string text_in(sqlite3_stmt* row, int column) {
               : std::string();
 }
 
-// The path as SQLite wants it where it is to be told that nobody changes the file.
+// Returns the path as a URI that tells SQLite that nobody changes the file.
 std::string immutable_uri(const std::filesystem::path& file) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string()) {
@@ -142,7 +142,7 @@ void Db3File::list_topics(const WantedTopic& wanted) {
   if (step != SQLITE_DONE) refuse();
 }
 
-// Without the data, which lie in pages of their own.
+// Lists the messages without reading their data, which lie in pages of their own.
 void Db3File::list_messages() {
   std::map<std::int64_t, std::size_t> topic_of;
   for (std::size_t t = 0; t < ids_.size(); ++t) topic_of.emplace(ids_[t], t);

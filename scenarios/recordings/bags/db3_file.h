@@ -28,9 +28,9 @@ class Db3File final : public BagFile {
 
   std::string name_;
   sqlite3* database_ = nullptr;
-  std::vector<std::int64_t> ids_;  // of the topics
+  std::vector<std::int64_t> ids_;  // id of each topic in the database
   std::vector<bool> is_wanted_;
-  mutable std::mutex mutex_;  // of the database
+  mutable std::mutex mutex_;  // guards the database
 };
 
 }  // namespace remote_touch

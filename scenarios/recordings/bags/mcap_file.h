@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-// Finds messages by the index at the file's end; where there is none that is whole, reads the file from end
-// to end, which takes as long as decompressing it. The CRC of a chunk is checked when a message of it is read
-// as a whole, that of the index when it is used.
+// Finds messages by the index at the file's end. If there is no complete index, it reads the whole file,
+// which takes as long as decompressing it. The CRC of a chunk is checked when a message of it is read as a
+// whole, that of the index when it is used.
 class McapFile final : public BagFile {
  public:
   McapFile(const std::filesystem::path& file, const WantedTopic& wanted);
@@ -28,11 +28,11 @@ class McapFile final : public BagFile {
     std::uint64_t begin = 0, end = 0;
   };
   std::optional<Summary> find_summary();
-  // By the index: false where it is missing, damaged or not of all messages.
+  // Lists the messages from the index. Returns false if the index is missing, damaged or incomplete.
   bool index_by_summary();
   bool index_chunk(const McapRecord& chunk_index);
   bool agrees_with(const std::string& statistics);
-  // By all records.
+  // Lists the messages by reading all records.
   void scan();
   void scan_chunk(const McapRecord& chunk);
   void forget();
@@ -48,8 +48,8 @@ class McapFile final : public BagFile {
   const WantedTopic wanted_;
   std::map<std::uint16_t, std::string> schemas_;   // their names
   std::map<std::uint16_t, std::size_t> channels_;  // their topics
-  std::map<std::size_t, bool> is_wanted_;          // of a topic
-  mutable std::mutex mutex_;                       // of what follows
+  std::map<std::size_t, bool> is_wanted_;          // key: topic
+  mutable std::mutex mutex_;                       // guards the members below
   mutable std::unique_ptr<BagChunk> chunk_;        // the one that was read last
   mutable std::set<std::uint64_t> checked_;        // chunks, by their places
 };

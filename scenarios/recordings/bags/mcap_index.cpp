@@ -1,4 +1,4 @@
-// How an MCAP file's messages are found: by the summary at its end, or by all of its records.
+// Finds the messages of an MCAP file: by the summary at its end, or by reading all of its records.
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace remote_touch {
 namespace {
 
 constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two places and a CRC
-constexpr std::uint64_t kNames = 4096;                                  // of a schema or a channel
-constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // of one record of an index
+constexpr std::uint64_t kNames = 4096;                                  // bytes read of a schema or channel
+constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // limit for one record of an index
 
 constexpr const char* kDamagedIndex = "has a damaged index: it was read from end to end";
 
@@ -33,8 +33,8 @@ std::string McapFile::whole_body(const McapRecord& record) const {
   return file_.bytes(record.body_at, record.body_size);
 }
 
-// Where the summary is, by the footer; none where the file has no footer, or no summary. A damaged one is
-// told of.
+// Position of the summary, as the footer states it. Returns none if the file has no footer or no summary, or
+// if the summary has another CRC than stated; remark_ then says so.
 std::optional<McapFile::Summary> McapFile::find_summary() {
   const std::uint64_t ends = kFooterBytes + kMcapMagic.size();
   if (!file_.has(0, kMcapMagic.size() + ends)) return std::nullopt;
@@ -81,13 +81,14 @@ bool McapFile::index_by_summary() {
       return record.opcode != McapRecord::chunk_index || index_chunk(record);
     });
     return all_indexed && (statistics.empty() ? any_chunk : agrees_with(statistics));
-  } catch (const InputError&) {  // what is wrong with it is no matter where a scan succeeds
+  } catch (const InputError&) {  // the cause does not matter if a scan succeeds
     remark_ = kDamagedIndex;
     return false;
   }
 }
 
-// The messages of wanted topics in one chunk. False: it has no index, or one of channels that nobody listed.
+// Lists the messages of wanted topics in one chunk. Returns false if the chunk has no index, or an index of a
+// channel that is not listed.
 bool McapFile::index_chunk(const McapRecord& chunk_index) {
   const std::string body = whole_body(chunk_index);
   MessageCursor cursor(body, WireFormat::ros1, file_.name());
@@ -118,8 +119,8 @@ bool McapFile::index_chunk(const McapRecord& chunk_index) {
   return true;
 }
 
-// Whether the chunks' indexes have all messages: some may be outside of chunks. Of topics that are not wanted
-// the numbers are taken from here.
+// True if the chunks' indexes contain all messages: some messages may be outside of chunks. Also sets the
+// number of messages of each topic, which for unwanted topics is known only from here.
 bool McapFile::agrees_with(const std::string& statistics) {
   MessageCursor cursor(statistics, WireFormat::ros1, file_.name());
   cursor.view(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // other numbers, and the times of the messages

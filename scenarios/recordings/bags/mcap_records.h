@@ -27,7 +27,7 @@ struct McapRecord {
   static constexpr std::uint64_t kMessageHeader = 22;  // channel, number and two times, before the message
 
   unsigned char opcode = 0;
-  std::uint64_t body_at = 0, body_size = 0;  // in the file, or in the records of a chunk
+  std::uint64_t body_at = 0, body_size = 0;  // position and size in the file, or in the records of a chunk
   std::uint64_t end() const { return body_at + body_size; }
 };
 
@@ -38,7 +38,7 @@ McapRecord mcap_record(std::string_view start, std::uint64_t at);
 // The same of a file. Throws InputError when the file ends before the record does.
 McapRecord mcap_record_at(const ByteFile& file, std::uint64_t at);
 
-// What the record of a chunk says that begins there. Throws InputError when there is none.
+// Reads the chunk record that begins there. Throws InputError if there is none.
 ChunkPlace mcap_chunk_at(const ByteFile& file, std::uint64_t at);
 
 struct McapMessageHeader {

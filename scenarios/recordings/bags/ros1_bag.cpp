@@ -104,7 +104,7 @@ Ros1Record Ros1Bag::record_in(BagChunk& chunk, std::uint64_t at) const {
                    file_.name());
 }
 
-// The records of the file itself: what is in chunks is not looked at.
+// Reads the records of the file itself, not those inside chunks.
 bool Ros1Bag::walk() {
   constexpr std::size_t kMaxListed = 1u << 24;
   std::uint64_t chunk_at = 0;

@@ -18,7 +18,7 @@ struct Ros1Record {
   enum Opcode { message = 2, bag_header = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
 
   std::map<std::string, std::string> values;
-  std::uint64_t data_at = 0, data_size = 0;  // in the file, or in the records of a chunk
+  std::uint64_t data_at = 0, data_size = 0;  // position and size in the file, or in the records of a chunk
   std::uint64_t end() const { return data_at + data_size; }
   // Throw InputError about the subject when there is no such value.
   std::uint32_t number(const std::string& name, const std::string& subject) const;
@@ -43,14 +43,14 @@ class Ros1Bag final : public BagFile {
 
   const ByteFile file_;
   const WantedTopic wanted_;
-  std::map<std::uint32_t, std::size_t> topic_of_;  // by connection
+  std::map<std::uint32_t, std::size_t> topic_of_;  // key: connection
   std::vector<bool> is_wanted_;
   struct Listed {
     std::uint64_t chunk_at, index_at;  // index_at 0: the chunk itself
   };
   std::vector<Listed> listed_;
   bool is_closed_ = false;
-  mutable std::mutex mutex_;  // of the chunk that was read last
+  mutable std::mutex mutex_;  // guards the chunk that was read last
   mutable std::unique_ptr<BagChunk> chunk_;
 };
 

@@ -32,7 +32,7 @@ void check_place(const PointField& field, std::uint64_t size, const PointCloudMe
                                 ": expected at most point_step = " + std::to_string(message.point_step));
 }
 
-// Some write 0 for a single value.
+// Some programs write 0 for a single value.
 void check_count(const PointField& field, const std::string& subject) {
   if (field.count <= 1) return;
   throw InputError(
@@ -51,7 +51,8 @@ const PointField& coordinate(const PointCloudMessage& message, const std::string
   return *field;
 }
 
-// Could the data hold what the message claims? The products of 32-bit numbers fit in 64 bits.
+// Throws InputError if the data cannot hold what the message claims. The products of 32-bit numbers fit in 64
+// bits.
 void check_size(const PointCloudMessage& message, const std::string& subject) {
   const std::uint64_t width = message.width, height = message.height;
   if (width * height > kMaxPoints)
@@ -130,7 +131,7 @@ void mark_missing(PointCloud& cloud) {
 PointCloud cloud_from_message(const PointCloudMessage& message, const std::string& subject) {
   check_size(message, subject);
   PointCloud cloud;
-  if (message.width == 0) return cloud;  // of any number of rows
+  if (message.width == 0) return cloud;  // an empty cloud may have any number of rows
   read_coordinate(message, "x", subject, cloud.x);
   read_coordinate(message, "y", subject, cloud.y);
   read_coordinate(message, "z", subject, cloud.z);

@@ -43,7 +43,8 @@ struct PlumbBob {
     return J.determinant() > 0 && J.trace() > 0;
   }
 
-  // The ray that is bent to there, by Newton's method from a guess within a pixel or so; false: none.
+  // Computes the ray that the lens bends to `to`, by Newton's method from a guess that is within about a
+  // pixel. Returns false if there is none.
   bool unbend(const Eigen::Vector2d& to, Eigen::Vector2d& ray) const {
     constexpr double kExact = 1e-13;
     for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,4 @@
-// Where the pixels of a depth image look, from a CameraInfo: a depth image becomes a cloud.
+// Viewing rays of the pixels of a depth image, from a CameraInfo: with them a depth image becomes a cloud.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,8 @@ class ImageRays {
   void make_table(const CameraInfoMessage& info);
 
   CameraIntrinsics camera_;
-  // For each pixel of the pinhole image: the measured pixel (or -1), and the ray of that one, with z = 1.
+  // Entry for each pixel of the pinhole image: the measured pixel (or -1), and the ray of the measured pixel
+  // with z = 1. Empty if the lens does not bend the rays.
   std::vector<int> source_;
   std::vector<double> ray_x_, ray_y_;
   double slack_ = 0;

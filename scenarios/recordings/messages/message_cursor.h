@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// How the values of a message follow each other: as ROS 2 has it (CDR: a header of 4 bytes that tells the
-// order of bytes, then values aligned to their size) or as ROS 1 has it (little-endian, no gaps).
+// Encoding of a message's values. ROS 2 uses CDR: a header of 4 bytes that states the byte order, then values
+// aligned to their size. ROS 1 uses little-endian values without gaps.
 enum class WireFormat { cdr, ros1 };
 
 class MessageCursor {
@@ -33,7 +33,7 @@ class MessageCursor {
   // The length of a sequence whose elements have at least min_bytes each: never more than could follow.
   std::uint32_t count(std::size_t min_bytes);
   std::string_view bytes();                 // a sequence of bytes: its length in 32 bits first
-  std::string_view view(std::size_t size);  // as they are
+  std::string_view view(std::size_t size);  // size bytes as they are
   std::size_t left() const { return bytes_.size() - at_; }
 
  private:

@@ -1,4 +1,4 @@
-// The messages of ROS that tell of a depth camera, as they are stored: nothing but their lengths is checked.
+// Messages of ROS that come from a depth camera, as they are stored. Only lengths and rotations are checked.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 namespace remote_touch {
 
 struct MessageHeader {
-  std::int64_t stamp_ns = 0;  // when the sensor measured; 0: not told
+  std::int64_t stamp_ns = 0;  // time at which the sensor measured; 0: not stated
   std::string frame_id;       // the name of the coordinate frame
 };
 
 // sensor_msgs/PointCloud2.
 struct PointField {
   std::string name;
-  std::uint32_t offset = 0;   // in the bytes of a point
+  std::uint32_t offset = 0;   // offset of the value within the bytes of a point
   std::uint8_t datatype = 0;  // 1 int8, 2 uint8, 3 int16, 4 uint16, 5 int32, 6 uint32, 7 float32, 8 float64
   std::uint32_t count = 0;
 };
@@ -54,14 +54,14 @@ struct CompressedImageMessage {
 // 0: the whole sensor.
 struct RegionMessage {
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
-  bool do_rectify = false;  // the rectified image shows another region, which is not told
+  bool do_rectify = false;  // the rectified image shows another region, which is not stated
   bool operator==(const RegionMessage&) const = default;
 };
 
 // sensor_msgs/CameraInfo.
 struct CameraInfoMessage {
   MessageHeader header;
-  std::uint32_t height = 0, width = 0;  // of the sensor, without binning
+  std::uint32_t height = 0, width = 0;  // size of the sensor, without binning
   std::string distortion_model;
   std::vector<double> distortion;
   std::array<double, 9> K{};                   // intrinsics of the whole sensor, row by row
@@ -79,7 +79,7 @@ struct StampedTransform {
 // Each throws InputError, about the cursor's subject, when the bytes end too early or a transform is no
 // rotation. Views point into the bytes. Bytes behind the last value are ignored.
 MessageHeader read_header(MessageCursor& from);
-std::int64_t read_stamp_ns(MessageCursor& from);  // of a header; kStampBytes of the message are enough
+std::int64_t read_stamp_ns(MessageCursor& from);  // stamp of a header; kStampBytes of the message are enough
 inline constexpr std::size_t kStampBytes = 12;
 PointCloudMessage read_point_cloud(MessageCursor from);
 ImageMessage read_image(MessageCursor from);

@@ -27,7 +27,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PCD data are little-endian");
 
-constexpr std::uint32_t kRgb = 0xFFFFFF;  // of a colour word 0xAARRGGBB
+constexpr std::uint32_t kRgb = 0xFFFFFF;  // mask for the colour in a word 0xAARRGGBB
 // Maximum number of raw bytes for one byte of an LZF block: the longest back reference makes 264 out of 3.
 constexpr std::size_t kLzfMaxExpansion = 88;
 
@@ -46,7 +46,8 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-// Before anything is allocated: could the bytes behind the header hold the points that it claims?
+// Throws InputError if the bytes behind the header cannot hold the points that it claims. Called before
+// anything is allocated.
 void check_claimed_size(const std::string& file, const PcdHeader& header, std::size_t data_bytes) {
   std::size_t max = data_bytes / header.point_bytes;
   if (header.encoding == "ascii") {
@@ -60,7 +61,8 @@ void check_claimed_size(const std::string& file, const PcdHeader& header, std::s
                              std::to_string(max));
 }
 
-// Also nan and inf, which from_chars reads in every spelling of printf.
+// Reads a number; also nan and inf, which from_chars reads in every spelling of printf. Throws InputError
+// about where for any other word.
 double real_number(const std::string& where, std::string_view word) {
   double value = 0;
   const char* end = word.data() + word.size();
@@ -184,14 +186,14 @@ void mark_missing_points(PointCloud& cloud) {
   }
 }
 
-// The other way round from left to right.
+// Reverses each row.
 template <class Value>
 void mirror_rows(std::vector<Value>& values, int width) {
   for (auto row = values.begin(); row != values.end(); row += width) std::reverse(row, row + width);
 }
 
-// Makes the cloud that of a camera at X_FC, if a pinhole explains it from there; otherwise false, and the
-// cloud is as it was.
+// Transforms the cloud to a camera at X_FC, if a pinhole explains it from there. Otherwise returns false, and
+// the cloud is as it was.
 bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   PcdCloud seen = file;
   PointCloud& cloud = seen.cloud;
@@ -218,10 +220,11 @@ bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   return false;
 }
 
-// The camera looks along the z axis of the file or against it, with its rows along x: as programs disagree
-// about these signs, such a rotation says nothing about an image that is seen from the origin along z.
+// True if the camera is at the origin and looks along the z axis of the file or against it, with its rows
+// along x. Programs disagree about these signs, so that such a rotation says nothing about an image that is
+// seen from the origin along z.
 bool keeps_axes(const RigidTransform& X_FV) {
-  constexpr double kRounding = 1e-4;  // of quaternions that are written with few digits
+  constexpr double kRounding = 1e-4;  // tolerance for quaternions that are written with few digits
   return X_FV.translation().isZero(0) && X_FV.linear().cwiseAbs().isIdentity(kRounding);
 }
 

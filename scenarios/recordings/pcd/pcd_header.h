@@ -26,13 +26,14 @@ struct PcdField {
   std::string_view name;
   char type = 'F';  // F: floating point, I: signed, U: unsigned
   std::size_t size = 0, count = 0;
-  std::size_t first_byte = 0, first_value = 0;  // of a point: where this field starts
+  std::size_t first_byte = 0, first_value = 0;  // start of this field within a point
 
   // The layout as the header spells it, for messages.
   std::string text() const;
 };
 
-// What is needed to decode DATA. All lengths are checked: points = width * height, and none is 0.
+// Content of the header that is needed to decode DATA. All lengths are checked: points = width * height, and
+// none is 0.
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t width = 0, height = 0, points = 0;

@@ -9,16 +9,16 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMaxResidual_px = 0.5;  // beyond it a point would belong to a neighbour pixel
-constexpr double kRounding_px = 1e-6;    // for a reader that evaluates the projection in another order
+constexpr double kRounding_px = 1e-6;    // margin for a reader that evaluates the projection in another order
 
 // An image axis: pixel = focal * ratio + centre, where ratio is x/z or y/z.
 struct AxisFit {
   double focal = 0, centre = 0;
-  double residual = 0;  // of the worst point, pixels
+  double residual = 0;  // residual of the worst point, pixels
 };
 
-// The least-squares line over the valid points, pixel from ratio: this way round, what it minimises is
-// pixels. The sums are taken about the means, so that they keep their digits.
+// Fits pixel as a line over ratio, by least squares over the valid points: in this direction the fit
+// minimises pixels. The sums are taken about the means, so that they keep their digits.
 std::optional<AxisFit> fit_axis(const std::vector<double>& ratios, std::size_t columns, bool across) {
   const auto for_valid = [&](auto visit) {
     for (std::size_t first = 0, v = 0; first < ratios.size(); first += columns, ++v) {
@@ -46,7 +46,7 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& ratios, std::size_t c
   return fit;
 }
 
-// Of points in front of the camera; NaN where there is none.
+// Computes across / z of each point; NaN for a missing point. Pre: points are in front of the camera.
 std::vector<double> ratios(const std::vector<double>& across, const std::vector<double>& z) {
   std::vector<double> result(z.size());
   for (std::size_t i = 0; i < z.size(); ++i) result[i] = across[i] / z[i];

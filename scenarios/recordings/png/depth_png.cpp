@@ -18,7 +18,7 @@
 namespace remote_touch {
 namespace {
 
-// What a damaged file has for a name.
+// Makes the name of a chunk printable: a damaged file may have any bytes there.
 std::string printable(std::string name) {
   for (char& c : name)
     if (!std::isalpha(static_cast<unsigned char>(c))) c = '?';
@@ -108,7 +108,8 @@ void PngFile::start() {
   }
 }
 
-// libpng takes memory for what a chunk claims before it reads it.
+// Throws InputError if a chunk claims more bytes than the file has: libpng would allocate them before it
+// reads.
 void PngFile::check_chunks() {
   constexpr std::uintmax_t kSignature = 8, kAroundData = 12;  // length, type and CRC
   std::array<unsigned char, 8> start{};                       // length and type

@@ -39,7 +39,7 @@ TEST(Fingerprint, RunningHashIsWhatTheHeaderSays) {
   const std::uint64_t row1 = mixed(mixed(mixed(0, 0x4000000000000000u), 8), 9);
   const std::uint64_t first = mixed(0, row0);
   EXPECT_EQ(running_hash(columns), (std::vector<std::uint64_t>{first, mixed(first, row1)}));
-  EXPECT_EQ(mixed(0, 1), 0x9e3779b9e17d05acu);  // as any other program computes it
+  EXPECT_EQ(mixed(0, 1), 0x9e3779b9e17d05acu);  // the value that any other program computes
 }
 
 TEST(Fingerprint, EqualNumbersHaveEqualHashes) {

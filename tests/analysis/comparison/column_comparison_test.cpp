@@ -29,7 +29,7 @@ TEST(Within, IsAbsolutePlusRelativeToTheBaseline) {
   EXPECT_TRUE(within(both, 2, 3));
   EXPECT_FALSE(within(both, 2, 3.0001));
   EXPECT_TRUE(within(both, -2, -3));
-  EXPECT_FALSE(within(both, 2, 0.9));  // of 0.9 it would be less still
+  EXPECT_FALSE(within(both, 2, 0.9));  // relative to the candidate 0.9, the limit would be smaller
   EXPECT_TRUE(within({0, 1}, 4, 0));
   EXPECT_FALSE(within({0, 1}, 0, 4));
 }
@@ -61,7 +61,7 @@ TEST(CompareColumns, CountsAndMeasuresWhatIsOutside) {
   EXPECT_TRUE(compare_columns(numbers({1, 2}), numbers({1, 2}), {}).is_same());
 }
 
-// What h5diff lets pass.
+// h5diff accepts such differences.
 TEST(CompareColumns, TinyDifferencesAreDifferences) {
   const auto c = compare_columns(numbers({1e-20}), numbers({2e-20}), {});
   EXPECT_FALSE(c.is_same());
@@ -107,7 +107,7 @@ TEST(CompareColumns, NoNumberIsNeverAPassAgainstANumber) {
     EXPECT_EQ(c.max, 0);
     const auto alone = compare_columns(numbers({none}), numbers({0}), {});
     EXPECT_EQ(alone.max, 0);
-    EXPECT_EQ(alone.rms, 0);  // of no finite deviation
+    EXPECT_EQ(alone.rms, 0);  // no deviation is finite
     EXPECT_FALSE(compare_columns(numbers({0, 1}), numbers({none, 1}), {1e9, 1e9}).is_same());
     EXPECT_TRUE(compare_columns(numbers({none, 1}), numbers({none, 1}), {}).is_same());
   }
@@ -127,11 +127,11 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({1, 2, 3}, 1, "mm")), "units m against mm");
   EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "another kind of values");
   EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
-  // What both have is compared all the same.
+  // The rows that both have are compared all the same.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
 }
 
-// A table of a figure may be empty: of events that did not happen.
+// A table of a figure may be empty, for example if it lists events that did not happen.
 TEST(CompareColumns, TwoWithoutRowsAreTheSame) {
   EXPECT_TRUE(compare_columns(numbers({}), numbers({}), {}).is_same());
   EXPECT_FALSE(compare_columns(numbers({}, 3), numbers({}), {}).is_same());

@@ -67,7 +67,7 @@ TEST(DeviationFigure, HasAtMostEightPanelsInTheTracesOrder) {
   std::vector<Column> b = a;
   for (std::size_t column = 2; column < b.size(); ++column) value(b, column, 3) = 1;
   const Figure figure = figure_of(a, b);
-  ASSERT_EQ(figure.panels.size(), 8u);  // of nine that differ; "a" does not
+  ASSERT_EQ(figure.panels.size(), 8u);  // nine columns differ; "a" does not
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(figure.panels[i].title, names[i + 1]);
     EXPECT_EQ(figure.panels[i].y_label, "log10 of the deviation / m");

@@ -1,4 +1,4 @@
-// Where two traces part: in what situation, and what is told of it.
+// The situation in which two traces part, and the explanation of it.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -80,7 +80,7 @@ TEST(Causes, EveryInput) {
   for (const auto& [name, change] : inputs) {
     const Divergence found = divergence(after([&, change = change](Columns& c) {
       change(c);
-      proxy_x(c, tick) += 1;  // what follows from it
+      proxy_x(c, tick) += 1;  // a consequence of the change
     }));
     EXPECT_EQ(found.cause, Cause::input) << name;
     EXPECT_EQ(found.explanation, std::string(name) + " differs; the renderer was given something else");
@@ -97,7 +97,7 @@ TEST(Causes, EveryInput) {
   EXPECT_HAS(divergence(compare(turning, turned)).explanation, "hip_orientation differs");
 }
 
-// Which frame is in use is the renderer's own doing when both were given the same.
+// The frame in use is the renderer's own choice if both renderers were given the same frames.
 TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
   for (const std::size_t tick : {quiet_tick(), tick_where(true, false)}) {
     const Change change = [&](Columns& c) {
@@ -110,7 +110,8 @@ TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
   }
 }
 
-// At the same place another distance to the true surface: the truth is another. At another place it follows.
+// The same position has another distance to the true surface: the truth differs. At another position the
+// distance differs as a consequence.
 TEST(Causes, TheTruthAloneIsAnInput) {
   const std::size_t tick = quiet_tick();
   const Change truth = [&](Columns& c) { numbers(c, "signed_distance")[tick] += 1e-3; };
@@ -158,7 +159,7 @@ TEST(Causes, HaveAnOrder) {
   EXPECT_EQ(cause(), Cause::drift);
 }
 
-// What comes after the runs parted is a consequence, or at least cannot have been the cause.
+// Differences after the tick at which the runs part are consequences, or at least cannot be the cause.
 TEST(Causes, AreThoseOfTheTickAtWhichTheRunsPart) {
   const std::size_t tick = quiet_tick();
   const Divergence found = divergence(after([&](Columns& c) {
@@ -229,7 +230,7 @@ TEST(Rows, AreOfColumnsThatBothHave) {
       const Divergence found = divergence(compare(first, second));
       EXPECT_EQ(found.tick, tick);
       EXPECT_EQ(found.cause, Cause::drift);
-      EXPECT_EQ(found.baseline.size(), lift().size() - 3);  // without tick_hash too
+      EXPECT_EQ(found.baseline.size(), lift().size() - 3);  // tick_hash is left out too
       ASSERT_EQ(found.candidate.size(), found.baseline.size());
       for (std::size_t i = 0; i < found.baseline.size(); ++i) {
         EXPECT_EQ(found.baseline[i].name, found.candidate[i].name);

@@ -38,7 +38,7 @@ inline SweepResult sweep(std::vector<Column> axes, int replicates) {
 inline SweepResult row(std::size_t cells) {
   return sweep({numbers("x", cells, 1)}, 1);
 }
-// As large as the map of Fig 4.13: 5396 runs in nine parts of about 600.
+// A sweep as large as the map of Fig 4.13: 5396 runs in nine parts of about 600.
 inline SweepResult map() {
   return sweep({numbers("sigma", 76, 0.0002), numbers("acceleration", 71, 0.1)}, 1);
 }

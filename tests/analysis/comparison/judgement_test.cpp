@@ -68,7 +68,7 @@ TEST(JudgedRunByRun, OneRunBesideManyWithAnotherOutcomeDecidesNothing) {
   }
 }
 
-// 60 runs hold that did not, and 4 are lost: better. As many each way: undecided.
+// 60 runs hold that did not before, and 4 are lost: better. Equal numbers each way: undecided.
 TEST(JudgedRunByRun, WhereRunsWentBothWaysTheTestsSayWhichPrevails) {
   SweepResult a = map(), b = a;
   for (std::size_t i = 0; i < 64; ++i) flip(a, b, i * 83, i % 16 == 0);

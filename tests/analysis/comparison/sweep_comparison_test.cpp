@@ -107,7 +107,8 @@ TEST(CompareSweeps, AnEventThatIsNeitherIsNoPass) {
   EXPECT_EQ(c.paired, PairedVerdict::changed);
 }
 
-// As likely up as down, but far beyond what the runs lie apart: not shown to be within the margin.
+// The changes are up as often as down, but far larger than the differences between runs: not shown to be
+// within the margin.
 TEST(CompareSweeps, LargeChangesBothWaysAreNoPass) {
   SweepResult a = map(), b = a;
   for (std::size_t run = 0; run < depth(b).size(); ++run) depth(b)[run] += run % 2 == 0 ? 1e6 : -1e6;
@@ -117,7 +118,7 @@ TEST(CompareSweeps, LargeChangesBothWaysAreNoPass) {
   EXPECT_EQ(compare(a, few).paired, PairedVerdict::undecided);
 }
 
-// Which runs a refinement adds follows from what came out: only the first round has to be there.
+// The runs that a refinement adds depend on the results: only the first round has to be there.
 TEST(CompareSweeps, RefinedSweepsAreJudgedByTheirFirstRound) {
   SweepResult a = map(), b = a;
   a.round.assign(a.run_count(), 0), a.round[3] = a.round[4] = 1;
@@ -286,7 +287,7 @@ TEST(RegionComparison, MeasuresOtherNumbers) {
   EXPECT_EQ(r.mean.pairs, 4);
   EXPECT_EQ(r.mean.mean, 0.75);  // also what is within the tolerance
   EXPECT_EQ(r.mean.low, mean_difference({1, 2, -0.5, 0.5}).low);
-  EXPECT_NEAR(r.baseline_spread, std::sqrt(5.0) / 2, 1e-15);  // of 1, 2, 3, 4: sqrt((9 + 1 + 1 + 9) / 4 / 4)
+  EXPECT_NEAR(r.baseline_spread, std::sqrt(5.0) / 2, 1e-15);  // values 1 to 4: sqrt((9 + 1 + 1 + 9) / 4 / 4)
   EXPECT_EQ(r.sign_p, 0.5);
   EXPECT_EQ(r.symmetry_p, symmetry_test({1, 2}));
 }

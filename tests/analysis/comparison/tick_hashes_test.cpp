@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kTicks = 5000;  // stored in two chunks
 
-// With the running hash made anew.
+// Returns the columns with their running hash computed anew.
 std::vector<Column> rehashed(std::vector<Column> columns) {
   columns.pop_back();
   columns.push_back({"tick_hash", "1", "", running_hash(columns), 1, {}});
@@ -184,7 +184,7 @@ TEST(CompareHashes, TheSameAreTheSame) {
       EXPECT_FALSE(same.different);
     }
   EXPECT_EQ(compare_hashes(all, all).compared, static_cast<std::size_t>(kTicks));
-  // Of every 3rd and every 5th the 15th are in both, and the last.
+  // Both lists have every 15th tick, and the last.
   EXPECT_EQ(compare_hashes(every_nth(all, 3), every_nth(all, 5)).compared, 335u);
 }
 
@@ -242,7 +242,7 @@ TEST(CompareHashes, NothingCommonIsNotTheSame) {
   }
 }
 
-// What a comparison of all columns calls the same has the same hashes: 0 is -0, and a NaN is a NaN.
+// Rows that a comparison of all columns calls the same have the same hashes: 0 is -0, and a NaN is a NaN.
 TEST(CompareHashes, EqualRowsHaveEqualHashes) {
   std::vector<Column> columns = walk(10);
   auto& numbers = std::get<std::vector<double>>(columns[2].values);

@@ -103,8 +103,8 @@ TEST(CompareTraces, TheRunningHashIsNotJudged) {
 
 // --- tolerances ---
 
-// Within the tolerance the runs part, later they leave it: both ticks are told, and the situation is that of
-// the first.
+// The runs part within the tolerance, and leave it later. Both ticks are reported, and the situation is that
+// at the first difference.
 TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
   const std::size_t quiet = quiet_tick(), later = tick_where(true, false, quiet + 100);
   const Change change = [&](Columns& c) {
@@ -125,11 +125,11 @@ TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
     EXPECT_EQ(column.is_same(), !proxy) << column.name;
     EXPECT_EQ(column.first_difference.has_value(), force || proxy) << column.name;
   }
-  // Exact, the same two are apart from the first on.
+  // The same two runs part at the first difference if there is no tolerance.
   const Divergence exact = divergence(after(change));
   EXPECT_EQ(exact.tick, quiet);
   EXPECT_EQ(exact.quantity, "force");
-  // Wide enough, they are not; what differs is told all the same.
+  // A tolerance that is wide enough keeps them together; the difference is reported all the same.
   const TraceComparison wide = after(change, {{"*", {0.1, 0}}});
   EXPECT_TRUE(wide.is_same());
   EXPECT_FALSE(wide.divergence);
@@ -197,7 +197,7 @@ TEST(CompareTraces, OneRunIsLonger) {
   for (const auto& [baseline, candidate] : {std::pair(lift(), half), std::pair(half, lift())}) {
     const TraceComparison comparison = compare(baseline, candidate, {{"*", {1, 1}}});
     EXPECT_FALSE(comparison.is_same());
-    EXPECT_FALSE(comparison.divergence);  // as far as both go
+    EXPECT_FALSE(comparison.divergence);  // the ticks that both have are equal
     for (const ColumnComparison& column : comparison.columns) {
       EXPECT_EQ(column.rows, 400u) << column.name;
       EXPECT_EQ(column.outside, 0u) << column.name;
@@ -224,7 +224,7 @@ TEST(CompareTraces, NoRowsAreNotTheSame) {
 
 // --- files ---
 
-// From files, read in pieces, comes what comes from memory; 5000 ticks are stored in chunks.
+// Files, read in pieces, give the same comparison as columns in memory; 5000 ticks are stored in chunks.
 TEST(CompareTraces, FilesAreAsGoodAsMemory) {
   const TestFolder folder("trace_comparison_test");
   const Columns baseline = simulate(Experiment::load("fig4.14", {"duration_s=5"})).columns();

@@ -63,7 +63,7 @@ TEST(FigureFile, TablesSurvive) {
   }
 }
 
-// What read_hdf5 does not read, h5dump does; here it is enough that every word of a panel is in the file.
+// read_hdf5 does not read panels, h5dump does. Here it is enough that every word of a panel is in the file.
 TEST(FigureFile, PanelsAreStored) {
   const TestFolder folder("figure_file_test");
   write_figure(folder / "fig.h5", small_figure(), {});
@@ -91,7 +91,7 @@ TEST(FigureFile, ScenesAreStored) {
   for (const char* word : {"scene", "eye", "target", "part2", "solid", "points", "segments", "corners",
                            "faces", "places", "pose_row", "dust", "lines", "a thing", "proportion"})
     EXPECT_HAS(bytes, word);
-  EXPECT_HAS(bytes, raw(1.0) + raw(2.0) + raw(3.0));  // where it is seen from
+  EXPECT_HAS(bytes, raw(1.0) + raw(2.0) + raw(3.0));  // position of the eye
   for (const double value : {0.25, 0.625, 0.375, 0.0625}) EXPECT_HAS(bytes, raw(value));
 }
 

@@ -26,7 +26,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
 }
 
 TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
-  constexpr int kStiffer = 528;  // on the way out
+  constexpr int kStiffer = 528;  // first tick with 1.5 times the stiffness, on the way out
   std::vector<Tick> ticks;
   double before = 0, after = 0;  // sums of squared steps
   for (int i = 0; i <= 1000; ++i) {
@@ -34,15 +34,14 @@ TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
     if (i > 0) (i <= kStiffer ? before : after) += std::pow(depth + ticks.back().hip_position_m, 2);
     ticks.push_back({600 * depth, -depth, i / 33});
   }
-  // But for what sampling feeds in: each force is held while the hand moves on, k / 2 (sum of steps^2) in
-  // all.
+  // Sampling injects energy: each force is held while the hand moves on, k / 2 (sum of steps^2) in all.
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * (before + after), 1e-14);
   for (int i = kStiffer; i <= 1000; ++i) ticks[static_cast<std::size_t>(i)].force_N *= 1.5;
   const double more = 150 * std::pow(ticks[kStiffer].hip_position_m, 2);  // half the stiffness that came
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), more + 300 * before + 450 * after, 1e-14);
 }
 
-// A spring that is pressed and let go gives back what it took; one that grows in between gives more.
+// A spring that is pressed and released gives back what it took. One that gets stiffer in between gives more.
 TEST(PassivityMeasures, EnergyIsForceTimesDisplacementOfTheHand) {
   EXPECT_NEAR(energy_injected_J(trace_of({{2, 0}, {2, -0.01}, {2, 0}})), 0, 1e-17);
   EXPECT_NEAR(energy_injected_J(trace_of({{2, 0}, {5, -0.01}, {100, 0}})), 0.01 * (5 - 2), 1e-17);
@@ -66,7 +65,7 @@ TEST(PassivityMeasures, WorkHasTorqueInIt) {
   EXPECT_NEAR(energy_injected_J(trace), 2 * 0.01 + 0.5 * 0.2 * 0.5, 1e-15);
 }
 
-// What the device exerts does work, not what the renderer commands: here a motor is missing.
+// Work is done by the force that the device exerts, not by the renderer's command: here a motor is missing.
 TEST(PassivityMeasures, WorkIsThatOfTheMotors) {
   Trace trace;
   for (int i = 0; i < 2; ++i) {

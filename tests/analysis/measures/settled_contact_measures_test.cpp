@@ -30,7 +30,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
   return trace;
 }
 
-// What comes after five ticks below the surface, in which anything may happen.
+// A trace of these ticks after five ticks below the surface, in which anything may happen.
 Trace settled(const std::vector<Tick>& ticks) {
   std::vector<Tick> all(5, Tick{-1, -0.01, false});
   all.insert(all.end(), ticks.begin(), ticks.end());

@@ -107,7 +107,7 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
   for (const Measure& each : built_in_measures()) {
     const bool of_tool = each.runs == MeasuredRuns::tool, of_proxy = each.runs == MeasuredRuns::proxy,
                of_guidance = each.runs == MeasuredRuns::guidance,
-               of_contact = needs_true_contact(each);  // which these traces do not have
+               of_contact = needs_true_contact(each);  // these traces have no true contact
     EXPECT_EQ(applies(each, point), !of_tool && !of_guidance && !of_contact) << each.name;
     EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance && !of_contact) << each.name;
     if (of_tool || of_guidance) {

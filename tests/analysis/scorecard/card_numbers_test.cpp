@@ -57,7 +57,7 @@ TEST(CardNumbers, WithinTheIntervalsTheyAgree) {
   now.counts[2].successes = {2, 10, 0.2, 0, 1};
   now.means[0].value.mean = 2.0015;  // a single run: up to a thousandth
   now.means[1].value.mean = 2.6;
-  now.means[2].value = {2, 7, 6, 8};  // nothing was stored
+  now.means[2].value = {2, 7, 6, 8};  // no stored mean
   EXPECT_TRUE(differences(numbers(), now).empty());
 }
 

@@ -9,8 +9,8 @@
 
 namespace remote_touch::made_cards {
 
-// 20 runs without noise, which are one, and 20 with noise: of these so many succeed. `steps` is 1 plus a
-// scatter that all methods have in common.
+// 20 runs without noise, which are all one run, and 20 with noise, of which with_noise succeed. The measure
+// "steps" is 1 plus `steps`, plus a scatter that all methods have in common.
 inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
   SweepResult result;
   result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}, 1, {}}};
@@ -27,7 +27,7 @@ inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
   return result;
 }
 
-// Of the methods kOwnMethod, proxy and penalty; the sweeps of each scene in this order.
+// Scorecard of the methods kOwnMethod, proxy and penalty; the sweeps of each scene are in this order.
 inline Scorecard card_of(const std::vector<std::vector<SweepResult>>& scenes,
                          const std::vector<std::pair<std::string, Better>>& measures = {
                              {"steps", Better::smaller}}) {

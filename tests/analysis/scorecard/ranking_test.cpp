@@ -105,7 +105,7 @@ TEST(Standings, TooFewCommonPairsAreNoVerdict) {
   std::fill_n(lucky[0].begin(), 11, 0);
   EXPECT_EQ(ranking({one, lucky, other}, Better::smaller, false).ranked, 2u);
   const PairedValues won(1, std::vector<double>(11, 1)), lost(1, std::vector<double>(11, 0));
-  EXPECT_FALSE(ranking({won, lost}, Better::larger, true).has_best);  // of events, too
+  EXPECT_FALSE(ranking({won, lost}, Better::larger, true).has_best);  // events need as many pairs
   // A pair alone in its level is not certain because it is alone.
   PairedValues nought(14, {0}), scattered(14, {0});
   for (std::size_t i = 0; i < 14; ++i) scattered[i][0] = i % 2 == 0 ? 1.0 + 0.5 * static_cast<double>(i) : -3;
@@ -114,7 +114,7 @@ TEST(Standings, TooFewCommonPairsAreNoVerdict) {
   EXPECT_LT(alone.mean[1].low, alone.mean[1].high);
 }
 
-// Of 200 comparisons of equal methods ten would be found; with all of them looked at, hardly ever one.
+// Ten of 200 comparisons of equal methods would be found; corrected together, hardly ever one.
 TEST(Standings, AreCorrectedForAllThatIsLookedAt) {
   std::vector<Ranking> rankings;
   int found = 0;

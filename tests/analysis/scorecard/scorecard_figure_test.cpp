@@ -48,7 +48,7 @@ TEST(ScorecardFigure, StandingsHaveSuccessAndEveryJudgedMeasure) {
     EXPECT_EQ(Counts(mark.begin() + first, mark.begin() + first + 3), (Counts{1, 0, -1}));
     EXPECT_EQ(Counts(top.begin() + first, top.begin() + first + 3), (Counts{1, 0, 0}));
   }
-  // Who succeeds as often as all others is neither best nor worst, and first with them.
+  // A method that succeeds as often as all others is neither best nor worst. It is in the top group.
   EXPECT_EQ(Counts(mark.begin() + 6, mark.begin() + 9), (Counts{0, 0, 0}));
   EXPECT_EQ(Counts(top.begin() + 6, top.begin() + 9), (Counts{1, 1, 1}));
 }

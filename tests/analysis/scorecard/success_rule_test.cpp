@@ -46,7 +46,7 @@ TEST(SuccessRule, ARunThatFailedIsNoSuccess) {
 TEST(SuccessRule, TheTypicalFailureIsTheOneInTheMiddle) {
   const SweepResult sweep = sweep_of({0, 0, 0, 0, 0, -4, -2, 0, -3, kNan}, std::vector<double>(10, 2.5));
   EXPECT_EQ(typical_failure(sweep, kBounds, 0), -1);
-  EXPECT_EQ(typical_failure(sweep, kBounds, 1), 8);  // of -4, -3, -2 and no number the second
+  EXPECT_EQ(typical_failure(sweep, kBounds, 1), 8);  // the second of -4, -3, -2 and NaN
 }
 
 TEST(SuccessRule, ErrorsAreFailuresBehindAllOthers) {
@@ -54,7 +54,7 @@ TEST(SuccessRule, ErrorsAreFailuresBehindAllOthers) {
   sweep.state[2] = RunState::failed;
   EXPECT_EQ(typical_failure(sweep, kBounds, 0), 2);
   sweep.state[7] = RunState::failed;
-  EXPECT_EQ(typical_failure(sweep, kBounds, 1), 6);  // of -4, -2 and an error the second
+  EXPECT_EQ(typical_failure(sweep, kBounds, 1), 6);  // the second of -4, -2 and an error
 }
 
 }  // namespace

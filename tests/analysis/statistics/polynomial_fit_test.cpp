@@ -9,7 +9,7 @@ namespace remote_touch::polynomial_fit_test {
 namespace {
 
 TEST(PolynomialFit, FindsTheCoefficientsOfAnExactPolynomial) {
-  // Of the size of (4.24): coefficients from 16 to 3e10 at x below 0.01.
+  // The coefficients are of the size of (4.24): from 16 to 3e10 at x below 0.01.
   const std::vector<int> powers = {5, 4, 3, 2, 1};
   const std::vector<double> coefficients = {2.9e10, -6.4e8, 4.8e6, -1.2e4, 16};
   std::vector<double> x, y;
@@ -36,7 +36,7 @@ TEST(PolynomialFit, ConfidenceOfAMeanIsItsStandardError) {
   EXPECT_NEAR(fit.half_width(3), 1.959963984540054 * std::sqrt(squares / 5 / 6), 1e-12);
 }
 
-// Of many repetitions with scatter that grows with x, the band holds the truth in 95 %.
+// The band holds the truth in 95 % of many repetitions, with scatter that grows with x.
 TEST(PolynomialFit, BandHoldsTheTruthAsOftenAsItSays) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;

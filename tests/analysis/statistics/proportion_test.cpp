@@ -13,8 +13,8 @@ double binomial(int events, int runs, double p) {
                   events * std::log(p) + (runs - events) * std::log1p(-p));
 }
 
-// Those of R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3, and of any table of the
-// method.
+// The intervals are those of R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3, and of any
+// table of the method.
 TEST(WilsonInterval, IsThatOfPublishedTables) {
   const struct {
     int events, runs;

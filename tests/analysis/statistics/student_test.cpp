@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Of 1 degree of freedom the distribution is Cauchy's, of 2 it is t / sqrt(2 + t^2); printed tables.
+// The distribution of 1 degree of freedom is Cauchy's, and that of 2 is t / sqrt(2 + t^2). Quantiles are
+// those of printed tables.
 TEST(Student, TheDistributionIsThatOfTheTables) {
   for (const double t : {0.0, 0.3, 1.0, 7.0, 500.0}) {
     EXPECT_NEAR(student_two_sided(t, 1), 1 - 2 / M_PI * std::atan(t), 1e-14) << t;
@@ -57,7 +58,7 @@ TEST(Student, ANumberAloneInItsGroupIsNotCertain) {
 }
 
 TEST(MeanTest, OfSymmetricNumbersIsStudents) {
-  // Without skewness nothing is corrected: t = 3 / sqrt(2.5 / 5).
+  // Zero skewness needs no correction: t = 3 / sqrt(2.5 / 5).
   EXPECT_NEAR(mean_test({1, 2, 3, 4, 5}), std::max(0.0625, student_two_sided(3 / std::sqrt(0.5), 4)), 1e-12);
   EXPECT_NEAR(mean_test({-1, 0, 1, 2, 3}), student_two_sided(1 / std::sqrt(0.5), 4), 1e-12);
   EXPECT_EQ(mean_test({-2, -1, 0, 1, 2}), 1);
@@ -66,7 +67,7 @@ TEST(MeanTest, OfSymmetricNumbersIsStudents) {
 }
 
 TEST(MeanTest, NoPairsShowMoreThanAllOfTheirSignsCould) {
-  EXPECT_EQ(mean_test({2, 2, 2, 2}), 0.125);  // without scatter t would be infinite
+  EXPECT_EQ(mean_test({2, 2, 2, 2}), 0.125);  // t would be infinite, as there is no scatter
   EXPECT_EQ(mean_test({2, 2, 2, 2.0000001}), 0.125);
   EXPECT_EQ(mean_test(std::vector<double>(12, -1)), std::exp2(-11));
 }
@@ -94,7 +95,7 @@ double drawn(Shape shape, std::uint32_t draw, std::uint32_t i) {
   }
 }
 
-// How often a difference is found where there is none.
+// Fraction of the draws in which a difference is found although there is none.
 template <class Finds>
 double false_rate(Shape shape, int pairs, int draws, Finds&& finds) {
   double found = 0;

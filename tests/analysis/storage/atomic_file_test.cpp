@@ -174,8 +174,8 @@ TEST(MoveIntoPlace, WhatCannotBeMovedIsRemoved) {
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"taken"});
 }
 
-// As the system may answer, but seldom does: a call that is interrupted is repeated, and what takes no byte
-// is full.
+// The system gives such answers seldom: an interrupted call is repeated, and a call that writes no byte means
+// a full disk.
 TEST(WriteWholeFile, CallsThatWriteNothing) {
   const TestFolder folder("atomic_file_test");
   {

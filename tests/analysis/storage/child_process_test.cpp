@@ -26,7 +26,7 @@ TEST(ChildProcess, AnswersWithItsBytes) {
   EXPECT_EQ(in_child(kLimits, [] { return std::string(); }), "");
   const std::string bytes("a\0b\n", 4);
   EXPECT_EQ(in_child(kLimits, [&] { return bytes; }), bytes);
-  const std::string more(10'000'000, 'x');  // than a pipe takes at once
+  const std::string more(10'000'000, 'x');  // more bytes than a pipe takes at once
   EXPECT_EQ(in_child(kLimits, [&] { return more; }), more);
 }
 

@@ -45,9 +45,9 @@ TEST(FileDigest, NoChangedByteIsReadAsATrace) {
   EXPECT_GT(tried, 1100u);
 }
 
-// The library does so when a program opens the file for writing, and closes it again.
+// The HDF5 library changes addresses like this if a program opens the file for writing, and closes it again.
 std::string with_addresses_from_the_start(std::string bytes) {
-  for (const std::size_t place : {24u, 40u}) {  // of the base and of the end
+  for (const std::size_t place : {24u, 40u}) {  // addresses of the base and of the end
     std::uint64_t address = 0;
     std::memcpy(&address, &bytes[kDigestBlockSize + place], sizeof address);
     address += kDigestBlockSize;

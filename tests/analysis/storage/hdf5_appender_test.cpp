@@ -121,7 +121,7 @@ TEST(Hdf5Appender, TellsWhereItCannotWrite) {
   const TestFolder folder("hdf5_appender");
   EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
   EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");
-  // As on a full disk: the file is made, and its first bytes find no room.
+  // The limit of 0 bytes acts like a full disk: the file is created, and its first bytes find no room.
   rlimit old{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
   const rlimit none{0, old.rlim_max};

@@ -1,4 +1,4 @@
-// What a child process answers about an HDF5 file comes back as it was, or is refused.
+// The answer of a child process about an HDF5 file comes back unchanged, or is refused.
 #include "analysis/storage/hdf5_child_source.h"
 
 #include <gtest/gtest.h>

@@ -144,7 +144,7 @@ TEST(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data claims more values than the file can hold");
 }
 
-// What compresses well is read: deflate's best is 1032 to 1.
+// Data that compress well are read: deflate's best ratio is 1032 to 1.
 TEST(ForeignDatasets, ZerosThatAreCompressedAreRead) {
   const TestFolder folder("hdf5_foreign_test");
   const std::vector<double> zeros(1'000'000);

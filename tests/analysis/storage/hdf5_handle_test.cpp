@@ -1,4 +1,4 @@
-// What a call that the HDF5 library refused becomes: an exception that says why.
+// A call that the HDF5 library refused becomes an exception that says why.
 #include "analysis/storage/hdf5_handle.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string failure(Call call) {
   return "none";
 }
 
-// As if the library had refused a call with this error and sentence.
+// Returns the message after the library has refused a call with this error and sentence.
 std::string failure_after(hid_t major, hid_t minor, const std::string& sentence) {
   use_hdf5();
   H5Eclear2(H5E_DEFAULT);
@@ -103,7 +103,7 @@ TEST(OpenHdf5, NamesADatasetThatIsMissing) {
     EXPECT_EQ(failure([&] { source->offset("/absent"); }), "/absent is missing");
     EXPECT_EQ(failure([&] { source->column("/absent/too"); }), "/absent/too is missing");
   }
-  // What is not found for want of memory may be there.
+  // A dataset that is not found for lack of memory may exist.
   const auto source = open_hdf5(folder / "x.h5");
   EXPECT_EQ(failure([&] { errno = ENOMEM, source->column("/absent"); }), "no memory");
 }

@@ -48,7 +48,7 @@ TEST_F(ReplacementRuleTest, AFileThatAppearedAndTheResultAreKept) {
   EXPECT_HAS(kept, "late.h5.kept-");
   EXPECT_HAS(problem, (folder_ / kept).string());
   EXPECT_EQ(bytes_of(folder_ / kept), "ours, new");
-  remove_leftovers(target);  // as the next command does
+  remove_leftovers(target);  // the next command does this
   EXPECT_TRUE(fs::exists(folder_ / kept));
 }
 

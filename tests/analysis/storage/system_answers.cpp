@@ -34,7 +34,7 @@ FailedRename::~FailedRename() {
 
 }  // namespace remote_touch
 
-// In the place of the C library's, for all of this program.
+// The two functions below replace those of the C library, for all of this program.
 extern "C" ssize_t write(int file, const void* data, std::size_t size) {
   using remote_touch::next_answers;
   if (next_answers == nullptr || next_answers->empty()) return ::syscall(SYS_write, file, data, size);

@@ -1,4 +1,4 @@
-// What write() and rename() answer in this program, where a test says so.
+// Answers of write() and rename() in this program that a test sets.
 #pragma once
 
 #include <initializer_list>
@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// While it lives, the first calls of write() get these answers and write nothing. One at a time, and in a
-// test of one thread.
+// The first calls of write() return these answers and write nothing, until this object is destroyed. Only one
+// object at a time, and only in a test with one thread.
 class AnswersOfWrite {
  public:
   struct Answer {
@@ -22,7 +22,7 @@ class AnswersOfWrite {
   std::vector<Answer> answers_;
 };
 
-// While it lives, one call of rename() fails, with this errno, after so many that are made.
+// One call of rename() fails with this errno, after calls_before calls that are made. Ends with the object.
 class FailedRename {
  public:
   FailedRename(int calls_before, int error);

@@ -1,5 +1,5 @@
-// Where adaptive refinement asks for more runs: rule by rule, on results made by hand. Of few runs an
-// interval is certain from 0 of 4, or 4 of 4, on (see the table in proportion_test).
+// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. An interval of few
+// runs is certain from 0 of 4, or 4 of 4, on (see the table in proportion_test).
 #include "analysis/sweeps/refinement.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace remote_touch::refinement_test {
 namespace {
 
-// Nothing sampled yet: a grid of so many cells along each axis, with room for so many replicates.
+// A grid without sampled runs: its number of cells along each axis, with room for this number of replicates.
 SweepResult empty_grid(const std::vector<int>& lengths, int replicates) {
   SweepResult result;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
@@ -76,7 +76,7 @@ TEST(NextRound, AsksHalfWayAndAgainWhereACellIsUncertain) {
   EXPECT_EQ(next_round(result, rule({4})), expected);
 }
 
-// Of 200 runs 80 are certainly less than half, and 120 certainly more: their intervals are +-0.07 wide.
+// 80 of 200 runs are certainly less than half, and 120 certainly more: their intervals are +-0.07 wide.
 TEST(NextRound, CellsDisagreeAboutOneHalf) {
   const auto half_way = [](int events, int others) {
     SweepResult result = empty_grid({3}, 200);
@@ -178,7 +178,7 @@ bool above_line(std::size_t cell, bool mirrored) {
   const int x = static_cast<int>(cell) / kSide, y = static_cast<int>(cell) % kSide;
   return 3 * (mirrored ? kSide - 1 - x : x) + 4 * y > 57;
 }
-// Rounds of four runs a cell until nothing is asked for; says what was asked for in each.
+// Runs rounds of four runs a cell until no run is requested. Returns the requested runs of each round.
 std::vector<Runs> refine(SweepResult& result, const RefinementRule& r, bool mirrored, bool turned) {
   std::vector<Runs> rounds;
   for (const std::size_t cell : {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1})

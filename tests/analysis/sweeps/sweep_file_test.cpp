@@ -75,7 +75,7 @@ const TextAttributes kAttributes = {{"command", "remote-touch sweep x"}, {"confi
 
 TEST(SweepFile, WhatIsWrittenComesBack) {
   const TestFolder folder("sweep_file_test");
-  for (const int replicates : {1, 2, 1000})  // with 1000 the arrays are chunked and compressed
+  for (const int replicates : {1, 2, 1000})  // 1000: the arrays are chunked and compressed
     for (const bool refined : {false, true}) {
       const SweepResult result = awkward(replicates, refined);
       const std::string sum = write_sweep(folder / "x.h5", result, kAttributes);
@@ -219,7 +219,7 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
   EXPECT_EQ(read_sweep(folder.write("swapped.h5", swapped)).result.state[2], RunState::pending);
 }
 
-// What nobody asked for stays so, whatever its bytes became.
+// A run that no round asked for stays so, whatever its bytes became.
 TEST(SweepInProgress, DamageAsksForNoRuns) {
   const TestFolder folder("sweep_file_test");
   SweepResult result = awkward();
@@ -320,7 +320,7 @@ TEST(SweepFile, DamageIsRefused) {
   EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/2");
 }
 
-// As a program would leave it that seals what it changed.
+// A program changes a value and seals the file again.
 TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";

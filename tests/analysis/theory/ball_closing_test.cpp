@@ -48,7 +48,8 @@ TEST(BallClosing, BallRestsInAV) {
   for (const double angle : {0.1, 0.4, 0.8, 1.1}) {
     const double slope = std::tan(angle), width = kRadius * std::sin(angle);
     const std::vector<double> got = closed(sampled([&](double x) { return slope * std::abs(x); }));
-    // Between two samples the ball sinks by the sag of spacing / 2 at the flank's curvature of the contact.
+    // The ball sinks between two samples by spacing^2 / 8 times the second derivative of its profile at the
+    // contact with the flank.
     const double sag = kSpacing * kSpacing / 8 / (kRadius * std::pow(std::cos(angle), 3));
     EXPECT_NEAR(got[kHalf], kRadius * (1 / std::cos(angle) - 1), sag + kRounding) << angle;
     for (std::size_t i = 100; i <= 500; ++i) {
@@ -117,7 +118,7 @@ TEST(BallClosing, NeverBelowTheProfileAndNoHigherThanItsTop) {
   EXPECT_GT(lifted, 400);
 }
 
-// What the ball can feel, it feels unchanged: exact for samples, up to rounding.
+// A second closing changes nothing that the ball can feel: exact for samples, up to rounding.
 TEST(BallClosing, Idempotent) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const std::vector<double> once = closed(rough_profile(seed)), twice = closed(once);

@@ -14,7 +14,7 @@ TEST(Bound, CriticalAccelerationIsThatOfTheText) {
   EXPECT_NEAR(critical_acceleration(kLift), 4.491, 1e-12);  // r_1 f_c^2
 }
 
-// At the bound, both sides of (4.25) are equal.
+// Both sides of (4.25) are equal at the bound.
 TEST(Bound, SolvesTheInequality) {
   for (const double h : {0.0, 0.002, 0.01})
     for (const double e : {0.0, 0.05, 0.5}) {

@@ -47,7 +47,7 @@ TEST(SequenceLog, TellsWhenAStepBeganAndEnded) {
   EXPECT_EQ(log[0].angle_rad, 30 * 0.003);
 }
 
-// In one tick the first step comes to its deadline, the second is done at once and the third begins.
+// The first step reaches its deadline, the second is done at once and the third begins, all in one tick.
 TEST(SequenceLog, OfSeveralInATickOnlyTheOneThatRanIsMissed) {
   const auto log = sequence_log(trace_of({{0, true, 0}, {2, true, 1}, {2, true, 1}}));
   ASSERT_EQ(log.size(), 3u);

@@ -13,7 +13,7 @@
 namespace remote_touch {
 namespace {
 
-// Where every number of a tick is another one.
+// A trace of one tick with distinct numbers, so that swapped columns are found.
 Trace one_tick(bool tool, bool guidance, bool hand) {
   RenderOutput out;
   out.proxy_W = {1, 2, 3}, out.state = ContactState::entrenched, out.contact_count = 4;

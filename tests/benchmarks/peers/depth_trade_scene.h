@@ -11,8 +11,8 @@ namespace remote_touch::benchmarks {
 
 // A limb is where one surface hides another, a crease where two planes meet.
 enum class PixelKind : std::uint8_t { plane, crease, limb, rim };
-inline constexpr int kNearPixels = 6;  // how far the last pixel of a crease or a limb is from it
-inline constexpr int kRimPixels = 16;  // at the border of the image: not judged
+inline constexpr int kNearPixels = 6;  // distance of the last pixel that still counts as crease or limb
+inline constexpr int kRimPixels = 16;  // width of the border of the image, whose pixels are not judged
 
 struct TradeScene {
   scenes::DepthScene seen;

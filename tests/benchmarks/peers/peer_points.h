@@ -1,4 +1,4 @@
-// What the benchmarks of normals beside others' share.
+// Helpers that the benchmarks of normals share, which compare ours with those of other programs.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace remote_touch::benchmarks {
 
-// Of a normal with any sign.
+// Angle between a normal and the true one; the sign of the normal does not matter.
 inline double angle_deg(const Vec3& n, const Vec3& truth) {
   return std::atan2(n.cross(truth).norm(), std::abs(n.dot(truth))) * 180 / 3.14159265358979323846;
 }

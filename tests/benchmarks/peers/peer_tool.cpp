@@ -52,7 +52,8 @@ struct GImpactBody {
   btCollisionObject object;
 
   void add(const Place& a, const Place& b, const Place& c) { mesh.addTriangle(place(a), place(b), place(c)); }
-  // Without a margin: it would find triangles that are merely near, and take much longer.
+  // The margin is 0. With a margin, the tree would also find triangles that are merely near, and take much
+  // longer.
   void make_tree() {
     shape = std::make_unique<btGImpactMeshShape>(&mesh);
     shape->setMargin(0);
@@ -61,13 +62,13 @@ struct GImpactBody {
   }
 };
 
-// By contactPairTest(), which hands over every contact: a manifold keeps four of them.
+// Uses contactPairTest(), which reports every contact; a manifold would keep only four of them.
 class GImpact : btCollisionWorld::ContactResultCallback {
  public:
   GImpact(const MeshAndPoints& from, const std::vector<std::vector<Place>>& bodies) {
     const int type = GIMPACT_SHAPE_PROXYTYPE;
     dispatcher_.registerCollisionCreateFunc(type, type, &algorithm_);
-    dispatcher_.registerClosestPointsCreateFunc(type, type, &algorithm_);  // for contactPairTest()
+    dispatcher_.registerClosestPointsCreateFunc(type, type, &algorithm_);  // contactPairTest() needs it
     for (const auto& [a, b, c] : from.triangles)
       tool_.add(from.vertices[a], from.vertices[b], from.vertices[c]);
     for (const auto& body : bodies) points_.add(body[0], body[1], body[2]);
@@ -102,7 +103,7 @@ class GImpact : btCollisionWorld::ContactResultCallback {
   std::vector<std::size_t> touched_;
 };
 
-// Of the boxes around single triangles.
+// Largest diagonal of the boxes around single triangles.
 double max_diagonal(const MeshAndPoints& from) {
   double max_length = 0;
   for (const auto& [a, b, c] : from.triangles) {
@@ -129,7 +130,8 @@ ToolPeer gimpact(const std::string& name, const MeshAndPoints& from, double side
 
 // --- FCL: the points as the occupied cells of an octree ---
 
-// As a voxel of ours; it takes longer with larger ones, which meet more triangles.
+// Edge length of a cell, equal to that of our voxels. FCL takes longer with larger cells, which meet more
+// triangles.
 constexpr double kCell_m = 5e-4;
 
 using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
@@ -194,7 +196,7 @@ class Octree {
   std::shared_ptr<Mesh> mesh_;
   std::unique_ptr<fcl::OcTreed> octree_;
   fcl::CollisionResultd result_;
-  std::unordered_map<std::intptr_t, std::vector<std::size_t>> points_in_;  // by what FCL calls a cell
+  std::unordered_map<std::intptr_t, std::vector<std::size_t>> points_in_;  // keyed by FCL's cell index
 };
 
 // Pairs of cell and triangle alone, without the places of contact: ours are alone too.

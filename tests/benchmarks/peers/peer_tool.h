@@ -12,13 +12,13 @@ namespace remote_touch::peers {
 using Place = std::array<double, 3>;  // metres
 
 struct MeshAndPoints {
-  std::vector<Place> vertices;  // in the tool frame
+  std::vector<Place> vertices;  // tool frame
   std::vector<std::array<int, 3>> triangles;
   std::vector<Place> points_W, normals_W;
 };
 
 struct Pose {
-  Place p_W;                   // of the tool frame
+  Place p_W;                   // origin of the tool frame
   std::array<double, 9> R_WT;  // row by row
 };
 
@@ -26,7 +26,7 @@ struct Pose {
 struct ToolPeer {
   std::string name;
   std::vector<std::vector<Place>> bodies_W;  // corners of the convex body of every point
-  // How far from the surface a point may be whose body is found.
+  // Largest distance from the surface, outside and inside, of a point whose body is found.
   double max_outside_m, max_inside_m;
   bool all;  // false: the search ends at the first contact
   // The work that is timed; returns the number of contacts. A body has one with each triangle that it meets.

@@ -60,7 +60,7 @@ ToolPose lowered(ToolPose pose, double by_m) {
 
 // --- what is right ---
 
-// Of the mesh itself, without voxels and without the distance field.
+// The reference: distances to the mesh itself, without voxels and without the distance field.
 class Surface {
  public:
   explicit Surface(const ToolScene& scene) : scene_(scene), tree_(scene.tool->mesh) {}
@@ -80,7 +80,7 @@ class Surface {
   }
   const ToolScene& scene() const { return scene_; }
 
-  // From just above the points to 4 mm into them, every one over other points.
+  // Poses from just above the points to 4 mm into them, each over other points.
   std::vector<ToolPose> poses() const {
     std::vector<ToolPose> all;
     for (int i = 0; i < 12; ++i) {

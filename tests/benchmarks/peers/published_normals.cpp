@@ -76,7 +76,8 @@ inline Normal three_filters(const Rows& rows, int u) {
     const float i = static_cast<float>(kNeighbours[k][0]), j = static_cast<float>(kNeighbours[k][1]);
     const float z = rows.at(u, kNeighbours[k][0], kNeighbours[k][1]), dz = z - z0;
     const float dx = ray_x * dz + i * rows.step * z, dy = rows.ray_y * dz + j * rows.step * z;
-    // Where the depths are the same the neighbour tells nothing, and the plane faces the camera.
+    // A neighbour at the same depth gives no estimate of n_z. If all are at the same depth, the plane faces
+    // the camera.
     const bool tells = std::abs(dz) > 1e-7f;
     nz[k] = tells ? -(nx * dx + ny * dy) / dz : -1e3f;
     sum += tells ? nz[k] : 0, count += tells ? 1.0f : 0.0f;
@@ -121,7 +122,7 @@ void all_rows(const DepthOfCamera& camera, const std::vector<float>& z_m, std::v
   }
 }
 
-// Of row v, from the second column to the last but one.
+// Fills row v, from its second column to the last but one.
 void bend_row(const std::vector<float>& z_m, std::ptrdiff_t width, std::ptrdiff_t v, float* bend_m) {
   const float* const z = z_m.data() + v * width;
 #pragma omp simd
@@ -129,7 +130,8 @@ void bend_row(const std::vector<float>& z_m, std::ptrdiff_t width, std::ptrdiff_
     bend_m[u] = std::abs(z[u - 1] + z[u + 1] + z[u - width] + z[u + width] - 4 * z[u]);
 }
 
-// How many pixels away the least bent of a pixel and its neighbours is.
+// Writes for each pixel the offset, in the image's index, to the least bent among the pixel and its 4
+// neighbours.
 void best_of_row(const float* above, const float* here, const float* below, int width, int* away) {
 #pragma omp simd
   for (int u = 3; u < width - 3; ++u) {

@@ -44,8 +44,8 @@ class NormalTranslator {
   void refine(const DepthOfCamera& camera, const std::vector<float>& z_m, std::vector<float>& normals);
 
   std::vector<float> unrefined_;  // normals
-  std::vector<float> bend_m_;     // of three rows: how far a depth is from the mean around it, times 4
-  std::vector<int> away_;         // of one row: the pixel whose normal is taken
+  std::vector<float> bend_m_;  // three rows: distance of a depth from the mean of its 4 neighbours, times 4
+  std::vector<int> away_;      // one row: offset to the pixel whose normal is taken
 };
 
 }  // namespace remote_touch::peers

@@ -88,7 +88,7 @@ void VoxmapPointshell::add_force(std::size_t point, const Eigen::Matrix3d& R_WT,
                                  const Voxel& voxel, const Vec3& origin_W, Touch& all) const {
   ++all.points;
   const Vec3 n_W = R_WT * Vec3(nx_[point], ny_[point], nz_[point]);
-  const double depth_m = n_W.dot(centre_W(voxel) - at_W);  // of the plane through the voxel's centre
+  const double depth_m = n_W.dot(centre_W(voxel) - at_W);  // depth below the plane through the voxel's centre
   if (!(depth_m > 0)) return;
   all.force_W += depth_m * n_W;
   all.torque_W += (at_W - origin_W).cross(depth_m * n_W);

@@ -31,7 +31,7 @@ class VoxmapPointshell {
   Touch plain_touch(const ToolPose& pose) const;
 
   std::size_t shell_size() const { return count_; }
-  // Of the shell points in the map, the largest distance to the mesh from which they were taken.
+  // Largest distance of a shell point to the tool's surface, by the tool's distance field.
   double shell_error_m() const { return shell_error_m_; }
 
  private:
@@ -52,7 +52,7 @@ class VoxmapPointshell {
   std::vector<Voxel> surface_;
   std::size_t count_ = 0;
   double shell_error_m_ = 0;
-  std::vector<double> x_, y_, z_, nx_, ny_, nz_;  // of the shell, tool frame
+  std::vector<double> x_, y_, z_, nx_, ny_, nz_;  // shell points and normals, tool frame
   std::vector<std::int32_t> cell_;                // scratch
 };
 

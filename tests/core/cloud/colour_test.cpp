@@ -10,7 +10,7 @@
 namespace remote_touch::colour_test {
 namespace {
 
-// Of the values in [0, 1]; a hue that is undefined is 0.
+// Checks hue, saturation and lightness, the last two in [0, 1]. An undefined hue is expected as 0.
 void expect_colour(std::uint32_t rgb, double hue_deg, double saturation, double lightness) {
   const HueSaturationLightness colour = hue_saturation_lightness(rgb);
   EXPECT_NEAR(colour.hue_deg, hue_deg, 1e-12) << std::hex << rgb;
@@ -45,16 +45,16 @@ TEST(Colour, MixedColoursAreKnown) {
   expect_colour(0xFF0080, 360 - 60 * 128 / 255.0, 1, 0.5);
   expect_colour(0xFFCCCC, 0, 1, 459 / 510.0);      // pale, but as pure as that lightness allows
   expect_colour(0x330000, 0, 1, 51 / 510.0);       // dark, the same
-  expect_colour(0x996666, 0, 51 / 255.0, 0.5);     // between red and grey
+  expect_colour(0x996666, 0, 51 / 255.0, 0.5);     // a mix of red and grey
   expect_colour(0x663399, 270, 0.5, 204 / 510.0);  // rebeccapurple of CSS: hsl(270, 50 %, 40 %)
 }
 
-// What lies above the three bytes is not part of the colour.
+// Bits above the three bytes are not part of the colour.
 TEST(Colour, OnlyTheLowerThreeBytesCount) {
   expect_colour(0xAB00FF00, 120, 1, 0.5);
 }
 
-// The inverse as CSS Color 4 gives it, which has no cases by the largest channel.
+// The inverse conversion of CSS Color 4, which has no cases by the largest channel.
 double channel(const HueSaturationLightness& colour, double n) {
   const double k = std::fmod(n + colour.hue_deg / 30, 12);
   const double a = colour.saturation * std::min(colour.lightness, 1 - colour.lightness);

@@ -20,12 +20,12 @@ using namespace depth_cases;
 
 struct Deviation {
   double max_deg = 0, rms_deg = 0;
-  double max_fraction = 0;  // of a point's distance from the camera, that it is off by
+  double max_fraction = 0;  // largest error of a point, as a fraction of its distance from the camera
   std::size_t normals = 0, undecided = 0;
 };
 
-// Where two eigenvalues are nearly the same, or the points nearly on a line, single precision cannot decide,
-// nor can anyone tell the side of a plane that is seen edge-on, as that of one column of pixels is.
+// Limits for a decidable normal. Single precision cannot decide it if two eigenvalues are nearly the same or
+// the points lie nearly on a line. The side of a plane seen edge-on, as of one pixel column, is open.
 constexpr double kClearGap = 2e-3, kClearWidth = 1e-3, kClearSide = 1e-4, kClearLine = 1e-6;
 
 bool undecided(const ReferenceDepth& reference, std::size_t i, const Vec3& p_C) {

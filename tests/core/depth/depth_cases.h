@@ -1,4 +1,4 @@
-// What the tests of the depth pipeline share.
+// Shared helpers for the tests of the depth pipeline.
 #pragma once
 
 #include <cmath>

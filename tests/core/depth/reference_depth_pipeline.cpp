@@ -58,8 +58,8 @@ double wendland(double q) {
 struct Plane {
   Vec3 normal{kNoValue, kNoValue, kNoValue};
   double gap = 0, middle = 0;
-  // Of the fit of the inverse depth: 1 / z = abc . (i, j, 1), and the weighted mean of (z abc . (i, j, 1) -
-  // 1)^2.
+  // Fit of the inverse depth, 1 / z = abc . (i, j, 1).
+  // error: weighted mean of (z abc . (i, j, 1) - 1)^2.
   Vec3 abc{kNoValue, kNoValue, kNoValue};
   double error = kNoValue;
 };
@@ -116,8 +116,8 @@ Plane plane_of_inverse_depth(const DepthPipelineSettings& settings, const Points
   return found;
 }
 
-// Which normals of `planes` a pixel may take: that of the least error, and others where errors differ by less
-// than the rounding of single precision.
+// Normals of `planes` that a pixel may take: the one with the least error, and others whose errors differ
+// from it by less than the rounding of single precision.
 struct Taken {
   Vec3 normal;
   double gap;

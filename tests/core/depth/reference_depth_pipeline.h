@@ -9,11 +9,11 @@ namespace remote_touch {
 
 struct ReferenceDepth {
   PointCloud cloud;
-  // Of the covariance of each point: its middle eigenvalue less the smallest, and the middle one, as shares
-  // of the sum. Where the first is small no one can tell the normal, where the second is there is no plane.
+  // Eigenvalues of the covariance of each point as fractions of their sum. gap: middle minus smallest; if it
+  // is small, the normal is undetermined. middle: the middle one; if it is small, the points define no plane.
   std::vector<double> gap, middle;
-  // With sharp edges: the normals that single precision may choose, since their planes err as little. Else
-  // that of the cloud.
+  // The normals that single precision may choose. With sharp edges: those whose planes have equally small
+  // errors; otherwise only that of the cloud.
   std::vector<std::vector<Vec3>> as_good;
 };
 

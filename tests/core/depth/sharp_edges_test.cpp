@@ -85,7 +85,7 @@ TEST(SharpEdges, APlaneAndABallInNoiseStayAsTheyAre) {
   }
 }
 
-// Of 15 mm, which a window of 20 mm averages.
+// A step of 15 mm, which a window of 20 mm averages.
 TEST(SharpEdges, NormalsGoOnToALimb) {
   const scenes::DepthScene truth = scenes::step(scenes::kinect(160, 120), 0.8, 0.015);
   const PointCloud rounded = processed(truth, blunt()), sharp = processed(truth, kFastDepthPipeline);
@@ -93,7 +93,7 @@ TEST(SharpEdges, NormalsGoOnToALimb) {
   EXPECT_LT(rms_deg(sharp, truth, 12, 3, 5), 0.05);
 }
 
-// A plane beside it gives none to a pixel without one of its own.
+// A pixel without a plane of its own takes no normal from a plane beside it.
 TEST(SharpEdges, AHoleAndALineOfPointsStayWithoutANormal) {
   scenes::DepthScene scene = roof();
   for (int v = 0; v < 120; ++v)

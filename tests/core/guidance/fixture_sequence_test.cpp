@@ -28,10 +28,10 @@ SequenceStep not_before(SequenceStep s, double time_s) {
 const SequenceStep kAtOnce = step(StepStart::previous, StepEnd::immediately);
 const SequenceStep kReach = step(StepStart::previous, StepEnd::reached);
 
-// What is put in, and what is to come of it.
+// Input of one tick, and the state expected after it.
 struct Tick {
   double time_s;
-  std::uint32_t buttons;  // a bit each
+  std::uint32_t buttons;  // one bit per button
   bool reached;
   int current;
   bool running;
@@ -109,7 +109,7 @@ TEST(FixtureSequence, APressBeforeItsStepIsUpDoesNotCount) {
                                                                  {0.002, 1, true, 1, false, 0},  // only held
                                                                  {0.003, 0, false, 1, false, 0},
                                                                  {0.004, 1, false, 2, false, 0, {1}}});
-  // In the very tick that ends the step before it does.
+  // A press in the very tick that ends the step before counts.
   play({kReach, step(StepStart::button, StepEnd::immediately)},
        {{0, 0, false, 0, true, 0, {0}}, {0.001, 1, true, 2, false, 0, {1}}});
 }

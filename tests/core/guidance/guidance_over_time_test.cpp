@@ -67,7 +67,7 @@ TEST_P(GuidanceOverTime, TheForceRisesAndFallsEvenly) {
   expect_no_guidance(r.step(held, 0.301));
 }
 
-// A lost target lets go as gently.
+// The force of a lost target fades as gently.
 TEST_P(GuidanceOverTime, TheForceFallsWhenTheTargetIsLost) {
   GuidanceSettings fading = plain();
   fading.fade_s = 0.05, fading.hold_s = 0.1;

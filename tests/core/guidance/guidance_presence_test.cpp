@@ -1,4 +1,4 @@
-// How long a target that is lost is remembered. All times are exact in binary.
+// Time for which a lost target is remembered. All times are exact in binary.
 #include "core/guidance/guidance_presence.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(GuidancePresence, WhatNeverHadEnoughPointsIsNotHeld) {
   EXPECT_EQ(presence.target(0), nullptr);
 }
 
-// The frame is on its way while ticks go on: it may be stamped later than the tick that it arrives in.
+// Ticks continue while the frame is on its way, so its time may be later than that of the tick it arrives in.
 TEST(GuidancePresence, WithoutAHoldTheFrameEndsItWheneverItArrived) {
   GuidancePresence presence(kMinPoints, 0, 0);
   presence.on_frame(seen(kMinPoints), 0);

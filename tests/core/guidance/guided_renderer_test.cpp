@@ -105,7 +105,7 @@ TEST_P(EveryRenderer, AStaleFrameLeavesTheTarget) {
 
 TEST(GuidedRenderer, AFixtureBeginsAsTheOppositeOfItsFirstAction) {
   const auto switches = std::make_shared<FixtureSwitches>();
-  switches->set(3, false);  // of a run before
+  switches->set(3, false);  // left over from an earlier run
   SequenceStep first = step(FixtureAction::wait, "");
   first.not_before_s = 1;
   using enum FixtureAction;
@@ -127,7 +127,7 @@ TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
       {{first, step(activate, "valve")}, false},
       {{first, step(release, "valve"), step(activate, "valve")}, true},
       {{first, step(activate, "valve"), step(release, "valve")}, false},
-      // To wait for it is no action.
+      // Waiting for a fixture is not an action on it.
       {{until_reached(step(wait, "valve"))}, true},
       {{until_reached(step(wait, "valve")), step(activate, "valve")}, false}};
   for (const auto& [steps, active] : cases) {

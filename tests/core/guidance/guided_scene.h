@@ -1,5 +1,5 @@
-// What the tests of guidance on top of a renderer share: fixtures, steps, targets and frames in one line
-// each.
+// Shared helpers for the tests of guidance on top of a renderer: fixtures, steps, targets and frames in one
+// line each.
 #pragma once
 
 #include <gtest/gtest.h>

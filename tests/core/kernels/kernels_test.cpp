@@ -249,15 +249,15 @@ TEST(Roots, SmallestAheadAndLargestWithinR1OfManyPoints) {
   EXPECT_GT(entrenched, 100);
 }
 
-// As a sensor's file has it. volatile: before arithmetic in long double, g++ 12 -O3 leaves the rounding to
-// float out.
+// The value as a sensor's file stores it. volatile: otherwise g++ 12 -O3 omits the rounding to float before
+// arithmetic in long double.
 double stored_as_float(double value) {
   volatile float stored = static_cast<float>(value);
   return stored;
 }
 
-// At 1 m the discriminant of the quadratic loses 4e-16 m^2, which is 4e-14 m at r_c; the perpendicular form
-// stays at the rounding of the coordinates.
+// The discriminant of the quadratic loses 4e-16 m^2 at 1 m, which is 4e-14 m at r_c. The perpendicular form
+// keeps the error at the rounding of the coordinates.
 TEST(FirstHit, LandsOnTheContactRadiusFromAMetreAway) {
   const PointCloud at = scenes::random_cloud(300, 1, 8), offset = scenes::random_cloud(300, 0.0028, 9);
   for (const Kernels* kernels : supported_kernels())

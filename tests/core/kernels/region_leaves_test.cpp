@@ -109,7 +109,7 @@ struct PlainChoice {
     bool gone = false;
   };
   std::vector<Region> regions;
-  std::size_t count = 0;  // of those that are not gone
+  std::size_t count = 0;  // number of regions that are not gone
 
   PlainChoice(const Patch& patch, std::size_t found) : count(found) {
     for (std::size_t i = 0; i < found; ++i)
@@ -133,8 +133,8 @@ struct PlainChoice {
   }
 };
 
-// From the deepest to the shallowest, and of each what it stands for goes: the same bits on every level, from
-// columns that close up, for all lengths around the lanes.
+// Regions are kept from the deepest to the shallowest, and each kept region removes those it stands for. All
+// levels give the same bits, from columns that close up, for all lengths around the number of lanes.
 TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
   const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
   std::size_t closed_up = 0;

@@ -86,7 +86,7 @@ TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatter) {
   }
 }
 
-// In a groove all touching normals lie in a plane, and each two of them leave the same line.
+// All touching normals in a groove lie in a plane, and any two of them leave the same line.
 TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatterInAGroove) {
   ProxyParameters p;
   p.contact_rule = ContactRule::regions;

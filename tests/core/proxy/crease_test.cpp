@@ -77,7 +77,7 @@ TEST(Crease, OnTheMeanPlaneTheProxyWandersByUpTo3mmBelow100Degrees) {
   EXPECT_LT(wide_m, 1e-6);
 }
 
-// Where (4.8) calls a contact converged the angle theta leaves 0.1 degrees of a spring of 20 mm.
+// (4.8) accepts a contact as converged at an angle theta of 0.1 degrees: 35 um for a spring of 20 mm.
 TEST(Crease, TheRuleForCreasesSettlesNearestToTheHip) {
   at_every_crease([&](double opening_deg, double xi, const PointCloud& cloud, const Vec3& hip_W) {
     const Rest creases = rest(parameters(ContactRule::creases, xi), cloud, hip_W),
@@ -89,7 +89,7 @@ TEST(Crease, TheRuleForCreasesSettlesNearestToTheHip) {
   });
 }
 
-// On a flat grid as dense as in chapter 4 there is no crease: equal bits.
+// A flat grid as dense as in chapter 4 has no crease, so both rules give equal bits.
 TEST(Crease, ThereIsNoneOnAFlatGrid) {
   ProxyRenderer plain = scenes::renderer(parameters(ContactRule::tangent_plane, 0.1)),
                 creases = scenes::renderer(parameters(ContactRule::creases, 0.1));

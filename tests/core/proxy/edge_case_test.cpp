@@ -102,7 +102,8 @@ TEST(EdgeCase, ACloudOfOnePoint) {
   renderer.on_frame(scenes::frame(cloud));
   hold(renderer, Vec3(0.001, 0.02, 0), 1);
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 100);
-  // In line with the HIP above the point, or slipped round it: never nearer than the contact radius.
+  // The proxy is in line with the HIP above the point, or has slipped round the point: never nearer than the
+  // contact radius.
   EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);
 }
 
@@ -140,7 +141,7 @@ TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
   }
 }
 
-// On a rough cloud the steps go round in circles; the budget ends the tick, and nothing grows.
+// The steps go round in circles on a rough cloud. The step budget ends the tick, and nothing grows.
 TEST(EdgeCase, LimitCyclesEndWithTheBudget) {
   PointCloud cloud = scenes::flat_grid(60);
   const PointCloud noise = scenes::random_cloud(static_cast<int>(cloud.size()), 0.008, 5);

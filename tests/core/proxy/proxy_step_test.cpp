@@ -164,7 +164,7 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
 TEST(EntrenchedStep, WithoutANormalItGoesBackFromTheHip) {
   PointCloud cloud;
   cloud.append({0, 0, 0});
-  cloud.append({0.003, 0.004, 0});  // at r_c: touched, but not within r1, so it sets no step
+  cloud.append({0.003, 0.004, 0});  // distance r_c: touched, but not within r1, so the point sets no step
   GatheredPoints points;
   points.reserve(2, false, false);
   BruteForceSearch(cloud).gather({Vec3::Zero(), 1}, scenes::kernels(), points);
@@ -235,7 +235,7 @@ TEST(ExitRule, AHipOutsideFreesTheProxyAlongTheNormal) {
   EXPECT_LT(contact_step(kUp, {0.01, -1e-9, 0}, out).y(), 1e-12);
 }
 
-// From anywhere in the contact region, on one point and on a plane of them.
+// The proxy starts anywhere in the contact region, over one point and over a plane of points.
 TEST(ExitRule, TwoStepsFreeTheProxy) {
   ProxyParameters out;
   out.exit_rule = ExitRule::out_of_contact;

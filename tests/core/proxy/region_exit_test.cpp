@@ -192,7 +192,7 @@ TEST(GrowingRegion, MotionIsStillSeen) {
   std::vector<GrowingFrame> rises{{0, 0}, {0, 0}};
   for (int j = 1; j < 6; ++j) rises.push_back({0.002 * j, 0.003 * j});
   const double apart = estimates(false, rises).back(), together = estimates(true, rises).back();
-  // From a reach of 17 mm to one of 20 mm.
+  // The reach grows from 17 mm to 20 mm.
   const double limit_m_per_s = 30 * (sag_m(0.012 + kDefault.contact_radius_m()) + kBand_m);  // 1.6 mm/s
   EXPECT_NEAR(apart, 0.002 * 30, limit_m_per_s);
   EXPECT_NEAR(together, 0.005 * 30, limit_m_per_s);

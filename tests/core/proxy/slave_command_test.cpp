@@ -1,4 +1,4 @@
-// Where the slave robot is sent, 5.2: to the proxy, but never into a region.
+// The command to the slave robot, 5.2: it follows the proxy, but never into a region.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST(SlaveCommand, FollowsTheProxyWhereItIsOutside) {
   EXPECT_GT(contact, 50);
 }
 
-// As printed the proxy stays inside.
+// The proxy stays inside under the printed rule.
 TEST(SlaveCommand, IsHeldWhileTheProxyIsInsideARegion) {
   ProxyParameters p;
   p.max_exit_steps = 0;
@@ -76,8 +76,8 @@ TEST(SlaveCommand, FollowsTheProxyOutOfATrap) {
   }
 }
 
-// A tick that ends inside was outside on its way: that is the newest position to go to. What a tick of many
-// steps passes is what as many ticks of one step show.
+// A proxy that ends a tick inside a region was outside on its way. The command is its newest position
+// outside. The positions within a tick of many steps are found with as many ticks of one step.
 TEST(SlaveCommand, IsTheLatestPositionOutsideWithinATick) {
   ProxyParameters many, one;
   many.velocity_estimate = one.velocity_estimate = false;

@@ -58,7 +58,7 @@ class HandPath {
   static constexpr int kSegment = 400, kMoving = 250;
   HandPath(unsigned seed, double half_width) : draw_(seed), half_width_(half_width) {}
 
-  // To be called with 0, 1, 2, ... The first position is outside.
+  // Returns the hand's position. Call it with 0, 1, 2, ... in order. The first position is outside.
   Vec3 at(int tick) {
     if (tick == 0) return {half_width_ + 0.1, 0, 0};
     const int within = tick % kSegment;

@@ -19,12 +19,12 @@ constexpr unsigned kUnions = 12;
 constexpr int kTicks = 8000;
 const ProxyParameters kDefault;
 
-// How wide union number i spreads: from regions that all overlap to a few that touch.
+// Half width of union number i: from regions that all overlap to a few that touch.
 double half_width(unsigned i) {
   return i % 3 == 0 ? 0.05 : i % 3 == 1 ? 0.09 : 0.15;
 }
 
-// A hand's way through one union; look(hip, output) is asked after every tick. The frame comes once, or, with
+// Moves a hand through one union and calls look(hip, output) after every tick. The frame comes once or, with
 // the velocity estimate, at the camera's rate although nothing moves.
 template <class Look>
 void walk(unsigned i, const ProxyParameters& p, const PointCloud& cloud, Look look) {
@@ -46,7 +46,7 @@ void walk_all(const ProxyParameters& p, Look look) {
   }
 }
 
-// With and without the velocity estimate, both exit rules, an even and an odd number of steps.
+// All combinations of velocity estimate, exit rule, and an even or odd number of steps.
 std::vector<ProxyParameters> settings() {
   std::vector<ProxyParameters> all;
   for (const bool velocity : {false, true})
@@ -54,7 +54,7 @@ std::vector<ProxyParameters> settings() {
       for (const int steps : {30, 31}) {
         ProxyParameters p;
         p.velocity_estimate = velocity, p.exit_rule = rule, p.steps_per_tick = steps;
-        p.max_exit_steps = 0;  // as printed
+        p.max_exit_steps = 0;  // the printed rule
         all.push_back(p);
       }
   return all;
@@ -123,7 +123,7 @@ TEST(UnionOfSpheres, ATickMayEndInsideARegion) {
   }
 }
 
-// With one closing step the proxy has to go back now and then, with ten it never had to here.
+// One closing step: the proxy has to go back now and then. Ten closing steps: it never had to here.
 TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
   for (ProxyParameters p : settings())
     for (const int closing : {1, 10}) {
@@ -168,8 +168,8 @@ TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutsideAMovingCloud) {
   }
 }
 
-// At a converged tick (5.18) no allowed position around is nearer to the HIP by more than what lies between
-// the ends of the contact shell and what an angle of theta leaves over.
+// No allowed position around a converged proxy (5.18) may be nearer to the HIP by more than the tolerance:
+// the width of the contact shell plus what an angle of theta leaves.
 TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
   ProxyParameters p;
   p.velocity_estimate = false;
@@ -268,8 +268,8 @@ double mean_stiffness(const PointCloud& cloud, const Vec3& p, double own) {
   return static_cast<double>(sum / weights);
 }
 
-// With one step a tick the force starts from the position that the tick before ended in. Largest relative
-// deviation of force / (|u| - r_c) from what is expected there.
+// Returns the largest relative deviation of force / (|u| - r_c) from the expected value. With one step a
+// tick, the force starts from the position in which the previous tick ended.
 template <class Expected>
 double max_deviation(const PointCloud& cloud, double own, Expected expected, int& asked) {
   ProxyParameters p;

@@ -70,7 +70,8 @@ TEST(VirtualCoupling, VelocityTermMovesTheProxyOnBetweenFrames) {
   EXPECT_LT((force(VelocityForce::none) - spring(u)).norm(), 1e-13);
 }
 
-// What (4.15) is for: the force just before an update and just after it, when the proxy has been carried on.
+// The purpose of (4.15): the force just before an update equals the force just after it, when the proxy has
+// been carried on.
 TEST(VirtualCoupling, MinusMakesTheForceContinuousAtAFrame) {
   const double speed = 0.1, interval = 1.0 / 30;
   const Vec3 before(0, -0.03, 0), v(0, speed, 0), after = before - speed * interval * Vec3::UnitY();

@@ -149,7 +149,8 @@ TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
   }
 }
 
-// Every point whose normals are what is asked is found; of the others only those whose words leave it open.
+// Every point whose normals match the request is found. Other points are found only if their words leave it
+// open.
 TEST(Noise, CandidatesAreFoundByTheirWords) {
   constexpr std::uint32_t kFirst = 12345, kCount = 40001;
   const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
@@ -250,7 +251,7 @@ TEST(Noise, EveryPartOfTheKeyGivesItsOwnNoise) {
   for (std::size_t a = 0; a < columns.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {
       EXPECT_NE(columns[a][0], columns[b][0]);
-      // Of independent columns: within 5 standard deviations 1/sqrt(n).
+      // Independent columns: the correlation is within 5 standard deviations 1/sqrt(n).
       EXPECT_LT(std::abs(correlation(columns[a], columns[b])), 5 / std::sqrt(count)) << a << " " << b;
     }
 }

@@ -34,7 +34,7 @@ TEST(SurfaceVelocity, EvenMotionIsKnownAfterOneUpdate) {
   for (int frame = 0; frame < 6; ++frame) {
     surface = frame * v * kInterval;
     proxy += velocity.on_frame(frame * kInterval, kUp).y();
-    const double step = surface - proxy;  // what it takes to be back on the surface
+    const double step = surface - proxy;  // distance back to the surface
     if (frame == 1) {
       EXPECT_NEAR(step, v * kInterval, 1e-17);
     }
@@ -47,7 +47,7 @@ TEST(SurfaceVelocity, EvenMotionIsKnownAfterOneUpdate) {
   }
 }
 
-// Under acceleration a the estimate lags one frame: the correction misses a / f_c^2, the bound of (4.14).
+// The estimate lags one frame under acceleration a: the correction misses a / f_c^2, the bound of (4.14).
 TEST(SurfaceVelocity, AccelerationIsMissedByOneFrame) {
   const double a = 3;
   SurfaceVelocity velocity(1);
@@ -129,7 +129,7 @@ TEST(SurfaceVelocity, PredictionIsBoundedWhenFramesStayAway) {
   const double v = velocity.m_per_s();
   EXPECT_NEAR(velocity.on_frame(kInterval + 60, kUp).y(), v * max_length, 1e-16);
   velocity.on_step(0.001 * kUp);
-  // What it was carried and the step, over the true time.
+  // The velocity is the carried distance plus the step, over the true time.
   EXPECT_NEAR(velocity.m_per_s(), (v * max_length + 0.001) / 60, 1e-15);
   EXPECT_NEAR(velocity.on_frame(2 * kInterval + 60, kUp).y(), velocity.m_per_s() * kInterval, 1e-15);
 }

@@ -1,4 +1,4 @@
-// The contact radius that follows the spacing of the points.
+// A contact radius that follows the spacing of the points.
 #include "core/rivals/density_proxy_renderer.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace remote_touch::density_proxy_renderer_test {
 namespace {
 
-// Pressed 2 cm deep over a grid of that spacing.
+// Output after the HIP was pressed 2 cm deep into a grid of this spacing.
 RenderOutput press(const DensityProxyParameters& p, double spacing_m) {
   DensityProxyRenderer r(p, 1000, scenes::kernels());
   r.on_frame(scenes::frame(scenes::flat_grid(40, spacing_m)));
@@ -20,8 +20,8 @@ RenderOutput press(const DensityProxyParameters& p, double spacing_m) {
   return out;
 }
 
-// Between four points a ball of f spacings sinks by f - sqrt(f^2 - 1/2) spacings: 0.063 to 0.095 for f within
-// 20 % of 10/3, which is what 24 neighbours on a grid leave open. A ball of one radius falls through points
+// A ball of f spacings sinks between four points by f - sqrt(f^2 - 1/2) spacings: 0.063 to 0.095 for f within
+// 20 % of 10/3, the range that 24 neighbours on a grid leave open. A ball of one radius falls through points
 // that are more than 1.41 r_c apart.
 TEST(DensityProxy, DoesNotSinkBetweenSparsePoints) {
   for (const double spacing : {0.0015, 0.003, 0.005}) {

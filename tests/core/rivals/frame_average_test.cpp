@@ -141,7 +141,7 @@ TEST(BlockSearch, FindsWhatBruteForceFinds) {
   }
 }
 
-// On a surface at rest without noise there is nothing to average.
+// A surface at rest without noise has nothing to average.
 TEST(AveragedProxy, IsTheProxyOnASurfaceAtRestAndLagsBehindOneThatMoves) {
   for (const double speed : {0.0, 0.06}) {
     ProxyRenderer plain({}, 1000, scenes::kernels());

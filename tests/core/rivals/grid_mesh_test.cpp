@@ -93,7 +93,7 @@ TEST(GridMesh, IsTheSameForEverySearchAndHasAllThatMeetTheBall) {
     EXPECT_EQ(near.triangles()[i].normal, by_grid.triangles()[i].normal);
   }
   EXPECT_LT(near.triangles().size(), all.triangles().size() / 4);
-  const PointCloud ends = scenes::random_cloud(400, 0.0034, 5);  // in a cube inside of the ball
+  const PointCloud ends = scenes::random_cloud(400, 0.0034, 5);  // points in a cube inside the ball
   for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
     const Vec3 from = ball.centre + ends.point(i), to = ball.centre + ends.point(i + 1);
     const auto a = all.first_crossing(from, to), b = near.first_crossing(from, to);

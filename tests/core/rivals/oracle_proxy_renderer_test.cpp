@@ -41,8 +41,8 @@ TEST(TrueMotion, IsNoneWhereItIsNotKnown) {
   EXPECT_EQ(true_motion(*unknown, Vec3::Zero(), 0, 1).velocity_m_per_s, 0);
 }
 
-// How deep the proxy is at the end when the plane jumps at every frame by more than r_c, which no estimate
-// follows in time: (4.14).
+// Height of the proxy above the plane at the end. The plane jumps at every frame by more than r_c, which no
+// estimate follows in time: (4.14).
 double end_height(bool tells) {
   const auto height = [](double t) { return 3.0 * t * t; };
   OracleProxyRenderer r({}, 1000, scenes::kernels());

@@ -47,7 +47,7 @@ TEST(PenaltyRenderer, IsZeroInFreeSpaceAndRisesFromZeroAtTheRim) {
   EXPECT_NEAR(force(r, {0, kRadius_m - 1e-6, 0}).y(), kStiffness_N_per_m * 1e-6, 1e-12);
 }
 
-// What direct rendering is known for.
+// The known weakness of direct rendering: behind the surface, the force points away from its front.
 TEST(PenaltyRenderer, PopsThrough) {
   PenaltyRenderer r = over(scenes::flat_grid(61, 0.0005));
   double highest = 0;

@@ -56,7 +56,7 @@ PointCloud with_regions(PointCloud cloud) {
   return cloud;
 }
 
-// What a mesh of neighbours needs: rows of that width, and the numbers of the points as they came.
+// A mesh of neighbours needs the width of the rows, and the numbers of the points in their original order.
 TEST(NeighbourSearch, TellsHowWideTheRowsOfAnOrganisedFrameAre) {
   EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
   const PointCloud grid = scenes::flat_grid(30);
@@ -118,7 +118,7 @@ TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
   expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
 }
 
-// Where the list comes from another order of the points, the columns must follow it.
+// The list comes from another order of the points: the columns must follow it.
 TEST(NeighbourSearch, ARegionStaysWithItsPoint) {
   PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));

@@ -24,7 +24,7 @@ struct Problem {
 
   void add(const Vector<N>& row, double bound) { rows.push_back(row), bounds.push_back(bound); }
   int size() const { return static_cast<int>(rows.size()); }
-  // Of the most violated row, as a distance; minus infinity without rows.
+  // Returns the violation of the most violated row, as a distance; minus infinity without rows.
   double violation(const Vector<N>& y) const {
     double worst = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -74,18 +74,18 @@ std::optional<Vector<N>> nearest_of_all_subsets(const Problem<N>& problem, doubl
   return best;
 }
 
-// What became of the generators of a cone.
+// Nearest point of a cone, and what happened to the cone's generators.
 struct ConePoint {
   Eigen::VectorXd nearest;
-  Eigen::VectorXd weight;  // of each generator, 0 or more
-  int dropped = 0;         // times that a generator left
-  int returned = 0;        // times that one came back
+  Eigen::VectorXd weight;  // weight of each generator, 0 or more
+  int dropped = 0;         // number of times that a generator left
+  int returned = 0;        // number of times that one came back
 };
 
-// The point of a cone nearest to x (Wilhelmsen 1976): takes in the generator that points most towards x, goes
-// to the nearest point of the span of those taken in, and drops those whose weight falls to 0 on the way.
-// may_return: a generator that was dropped may be taken in again. Without that, as published code has it, the
-// answer can be wrong.
+// Returns the point of a cone nearest to x (Wilhelmsen 1976). It adds the generator that points most towards
+// x, moves to the nearest point of the span of the added ones, and drops those whose weight falls to 0 on the
+// way. may_return: a dropped generator may be added again. Without that, as in published code, the answer can
+// be wrong.
 inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen::VectorXd& x,
                                  bool may_return = true) {
   const Eigen::Index count = generators.cols();
@@ -127,8 +127,9 @@ inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen:
 }
 
 // Least distance programming (Lawson and Hanson 1974): y - target follows from the point of the cone of the
-// columns (row, bound - row . target) nearest to (0, 1). Where that is (0, 1) itself, no y fulfils all rows:
-// its weights are Farkas' proof. gap: how far it is from that, in 0 .. 1.
+// Least distance programming (Lawson and Hanson 1974): y - target follows from the point nearest to (0, 1) of
+// the cone of the columns (row, bound - row . target). If that point is (0, 1) itself, no y fulfils all rows,
+// and its weights are Farkas' proof. gap: distance of the point from (0, 1), in 0 .. 1.
 template <int N>
 struct LeastDistance {
   double gap;

@@ -88,7 +88,7 @@ void expect_no_better_answer_of_nlopt() {
   int compared = 0, agreed = 0;
   for (int i = 0; i < 10000; ++i) {
     Problem<N> p = problem<N>(kKinds[i % 9], count_of(random, 1, 30), random);
-    // SLSQP looks at rows as they are given.
+    // SLSQP does not normalise rows.
     for (std::size_t j = 0; j < p.rows.size(); ++j) {
       const double length = p.rows[j].norm();
       p.rows[j] /= length, p.bounds[j] /= length;
@@ -168,7 +168,7 @@ TEST(QuadraticProgram, TheFirstRowLeavesAndComesBack) {
   int seen = 0;
   for (int i = 0; i < 1000; ++i) {
     const Problem<6> p = cone_problem(random);
-    // Of the rows taken in one after the other, stopped by a program of the rows seen so far.
+    // Adds the most violated row to a part of the problem, solves it, and repeats until no row is violated.
     Problem<6> part;
     part.target = p.target;
     Vector<6> y = p.target;

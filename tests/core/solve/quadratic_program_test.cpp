@@ -1,5 +1,5 @@
-// What QuadraticProgram promises: accuracy, what must not matter, small cases worked out by hand, elastic
-// use. That its answers are right in general: program_proof_test.cpp.
+// The contract of QuadraticProgram: accuracy, inputs that must not matter, small cases worked out by hand,
+// elastic use. program_proof_test.cpp shows that its answers are right in general.
 #include "core/solve/quadratic_program.h"
 
 #include <gtest/gtest.h>

@@ -61,7 +61,7 @@ TEST(PairChoice, RatesAPairByTheShortestMotionThatViolatesIt) {
   for (const double degrees : {10.0, 20.0, 35.0, 60.0, 90.0, 150.0}) {
     const Region deepest{0, inclined(0)}, other{1.5e-5, inclined(degrees)};
     const std::vector<ChosenPair> pairs = chosen_of({deepest, other});
-    // What no motion within a step can violate is not kept.
+    // A pair that no motion within a step can violate is not kept.
     const double shortest_m = shortest_violation_m(deepest, other);
     if (degrees == 10) {
       EXPECT_GT(shortest_m, 0.5 * kLookAhead_m);

@@ -18,8 +18,8 @@
 namespace remote_touch::region_contacts_test {
 namespace {
 
-constexpr double kRadius_m = 0.04;   // of the regions, as in 7.5.1
-constexpr double kSettled_m = 1e-4;  // deeper than this a tool may not end a tick
+constexpr double kRadius_m = 0.04;   // radius of the regions, as in 7.5.1
+constexpr double kSettled_m = 1e-4;  // largest depth at which a tool may end a tick
 
 std::shared_ptr<const SphereTree> one_leaf(double radius_m) {
   auto tree = std::make_shared<SphereTree>();
@@ -52,7 +52,7 @@ PointCloud wheel() {
   return regions_at(places);
 }
 
-// How deep any leaf is in any region, one after the other.
+// Largest depth of any leaf in any region, computed pair by pair.
 double deepest_m(const SphereTree& tool, const ToolPose& pose, const PointCloud& cloud) {
   double deepest = -1;
   for (const Sphere& leaf : tool.leaves())
@@ -102,7 +102,7 @@ TEST(RegionContacts, ABallStopsAtTheNearestPlaceOfARegion) {
   EXPECT_NEAR((held.pose.p_W.normalized() - expected).norm(), 0, 0.004);  // a fifth of a millimetre
 }
 
-// Between two regions it comes to lie in the crease: as far from both as the radii add up to.
+// The ball comes to rest in the crease of two regions: its distance to both is the sum of the radii.
 TEST(RegionContacts, ABallLiesInTheCreaseOfTwoRegions) {
   Held held(kBox, one_leaf(0.01));
   held.frame(regions_at({{-0.03, 0, 0}, {0.03, 0, 0}}));
@@ -208,8 +208,8 @@ TEST(RegionContacts, ComesToRestInAWedge) {
   }
 }
 
-// What is chosen, against all pairs: no motion of half the look-ahead that obeys the contacts of a leaf
-// violates any of its pairs.
+// The chosen contacts are checked against all pairs: no motion of half the look-ahead that obeys the contacts
+// of a leaf violates any of its pairs.
 TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
   const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
@@ -265,7 +265,7 @@ TEST(RegionContacts, DoNotDependOnTheLevelOrTheLookBefore) {
   EXPECT_GT(found, 1000u);
 }
 
-// Clear, in contact and deep inside, and what is touched is told without memory too.
+// The tool is clear, in contact, and deep inside. touched() does not allocate memory either.
 TEST(RegionContacts, AllocatesOnlyWithAFrame) {
   Held held(kBox, spheres_of_box());
   const PointCloud cloud = wheel();

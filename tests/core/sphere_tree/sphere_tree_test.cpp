@@ -43,7 +43,7 @@ TEST(SphereTree, EveryNodeEnclosesItsChildrenAndEveryLeafHasOne) {
   const std::vector<Sphere> leaves = random_spheres(1000, 0.1, 3);
   const SphereTree tree = tree_of(leaves, 7);
   ASSERT_EQ(tree.leaves().size(), leaves.size());
-  ASSERT_EQ(tree.level_count(), 3u);  // of 143, 18 and 3 nodes
+  ASSERT_EQ(tree.level_count(), 3u);  // levels of 143, 18 and 3 nodes
   for (std::size_t level = 0; level < tree.level_count(); ++level) {
     std::size_t next = 0;
     for (const SphereNode& node : tree.level(level)) {

@@ -44,7 +44,7 @@ HeightMap fitted(const PatchPoints& points, double sigma) {
 double tilted(double u, double v) {
   return 0.3 + 0.2 * u - 0.1 * v;
 }
-double ball(double u, double v) {  // of ten contact radii
+double ball(double u, double v) {  // radius: ten contact radii
   return std::sqrt(std::max(0.0, 100 - u * u - v * v)) - 10;
 }
 double ridge(double u, double) {
@@ -182,7 +182,7 @@ TEST(Trend, FewPointsHaveNone) {
   for (const double c : fit_trend(points, 0.01).c) EXPECT_EQ(c, 0);
 }
 
-// On two lines any curvature between them fits: many points do not determine it.
+// Any curvature between two lines of points fits them: many points do not determine it.
 TEST(Trend, PointsThatDoNotDetermineACurvatureHaveNone) {
   PatchPoints points(scenes::kernels());
   points.reserve(400);

@@ -48,7 +48,7 @@ TEST(HeightProfile, FindsTheShift) {
     }
 }
 
-// Of two sheets both must agree: shifts by their distance match one of them only.
+// Both of two sheets must agree: a shift by their distance matches only one of them.
 TEST(HeightProfile, ASecondSheetTellsWhichOneItIs) {
   const HeightProfile before = profile({0, -3}, 0.2, 500, 1), now = profile({0, -3}, 0.2, 500, 2, 1.8, 20);
   EXPECT_NEAR(before.shift_of(now.smoothed(0.3), 3), 1.8, 0.15);

@@ -29,7 +29,7 @@ GatheredPoints gathered_points() {
 
 HeightMap bumpy_map() {
   HeightMap map;
-  map.set_plane(0.3, 0.2, -0.1, 6);  // nothing is known in the corners
+  map.set_plane(0.3, 0.2, -0.1, 6);  // the corners are unknown
   for (int j = 0; j < HeightMap::kNodes; ++j)
     for (int i = 0; i < HeightMap::kNodes; ++i) map.node(i, j).height += 0.01 * ((7 * i + 3 * j) % 11);
   map.fill_cells();
@@ -64,7 +64,7 @@ TEST(PatchPoints, AreThoseOfTheRegionAtTheirPlaces) {
   }
 }
 
-// What lies on the rim is outside for the kernels as for PatchRegion::holds().
+// Points on the rim are outside, for the kernels as for PatchRegion::holds().
 TEST(PatchPoints, TheRimIsOutside) {
   const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), 1), 8, 6};
   PointCloud cloud;

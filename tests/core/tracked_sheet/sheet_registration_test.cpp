@@ -1,4 +1,4 @@
-// How a frame's sheet lies against the one before, from points alone.
+// Registration of a frame's sheet to that of the frame before, from points alone.
 #include "core/tracked_sheet/sheet_registration.h"
 
 #include <gtest/gtest.h>
@@ -13,10 +13,10 @@ namespace remote_touch::sheet_registration_test {
 namespace {
 
 constexpr double kHalfRange = 8;
-constexpr double kStandardError = 0.029;  // of a mean over some 1200 points, in sigma
+constexpr double kStandardError = 0.029;  // standard error of a mean over some 1200 points, in sigma
 const PatchPlace kProxy{0, 0, 1};
 
-// A sheet at height + slope_u u + slope_v v with noise, and one below it where that is asked for.
+// A sheet at height + slope_u u + slope_v v with noise, and a second one below it if second_below is not 0.
 PatchPoints sheet(double height, double slope_u, double slope_v, double sigma, unsigned seed,
                   double second_below = 0) {
   std::mt19937 random(seed);

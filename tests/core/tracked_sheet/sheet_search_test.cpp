@@ -1,4 +1,4 @@
-// What a tracked sheet leaves of a frame, and which strays are surfaces.
+// Points of a frame that a tracked sheet leaves over, and stray points that are surfaces.
 #include "core/tracked_sheet/sheet_search.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   shown.start(region, frame, buffer);
   for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place(i), gathered, points.source(i));
   shown.finish();
-  shown.reserve(2 * frame->size(), true, true);  // what is shown stays
+  shown.reserve(2 * frame->size(), true, true);  // the shown points stay
   for (int i = 0; i < 200; ++i) {
     // Radii between two points' distances: shown places are rounded to a micrometre.
     const Ball ball{Vec3(0.0007 * (i % 100) - 0.03, 0.0003 * i - 0.03, 0.001 * (i % 50) - 0.02),

@@ -1,4 +1,4 @@
-// What is shown of a sheet that is followed from frame to frame.
+// Points shown of a sheet that is tracked from frame to frame.
 #include "core/tracked_sheet/sheet_tracker.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::shared_ptr<const NeighbourSearch> plane(double height_m, double sigma, unsi
 }
 
 struct Shown {
-  double count = 0, rms_m = 0;  // of the points within 3 r_c of the y axis; their height about the plane
+  double count = 0, rms_m = 0;  // number of points within 3 r_c of the y axis; rms height about the plane
 };
 
 Shown shown_of(const NeighbourSearch& points, double height_m, double max_height_m) {

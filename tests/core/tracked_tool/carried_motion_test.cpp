@@ -1,4 +1,4 @@
-// How a tool is carried: the least squares against motions that are known.
+// Motion with which a tool is carried: the least-squares solution, tested against known motions.
 #include "core/tracked_tool/carried_motion.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Where patches of tracked sheets begin around a tool.
+// Positions at which patches of tracked sheets begin around a tool.
 #include "core/tracked_tool/sheet_patches.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::shared_ptr<const NeighbourSearch> floor_and_wall() {
   return std::make_shared<BruteForceSearch>(cloud);
 }
 
-// With the wall: one contact that is deeper than the others, at this place among them.
+// Contacts with the wall. The one at index `deepest` is deeper than the others.
 std::vector<ToolContact> wall_contacts(std::size_t deepest) {
   const Vec3 n_T = -Vec3::UnitX();
   std::vector<ToolContact> contacts;

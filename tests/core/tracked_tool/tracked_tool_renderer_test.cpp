@@ -18,7 +18,7 @@ namespace {
 
 const Vec3 kHalf_m(0.02, 0.005, 0.02);
 constexpr double kUnit_m = 0.005, kSpacing_m = 0.0015, kFrames_hz = 30;
-constexpr int kTicks = 33;  // from frame to frame
+constexpr int kTicks = 33;  // ticks from frame to frame
 
 // Points of square panels, with noise and without normals.
 class Panels {
@@ -72,7 +72,8 @@ DeviceState device(const Vec3& p_W, const Eigen::Quaterniond& q = Eigen::Quatern
   return {p_W, q};
 }
 
-// From 3 cm above a surface in five frames to a pose, pressing from the third on.
+// Device pose on an approach along up_W: 4 cm before the end pose in frame 0, and at it from frame 4 on. An
+// end pose a few millimetres below a surface thus presses from frame 4 on.
 DeviceState approaching(int frame, const Vec3& up_W, const DeviceState& end) {
   return device(end.position_W + std::max(0, 4 - frame) * 0.01 * up_W, end.orientation_W);
 }
@@ -124,7 +125,7 @@ TEST(TrackedTool, LiesOnTheRimOfAHole) {
   }
 }
 
-// Without noise and at rest nothing is changed: every bit is that of the tool of chapter 6.
+// Every bit is that of the tool of chapter 6 if the scene has no noise and rests.
 TEST(TrackedTool, WithoutNoiseAndAtRestItIsThePlainTool) {
   TrackedToolRenderer r = renderer();
   ToolParameters p;
@@ -166,9 +167,9 @@ TEST(TrackedTool, ATiltingPlaneTakesThePlateAlong) {
   }
 }
 
-// How the force goes on between frames: on a plane that rises by 5 mm a frame with the hand 8 mm below it, it
-// has no step at a frame; nor has the torque on one that turns, too. There the plate slides down the slope,
-// so the force along it changes.
+// The force has no step at a frame on a plane that rises by 5 mm a frame with the hand 8 mm below it. Nor has
+// the torque on a plane that turns, too. There the plate slides down the slope, so the force along it
+// changes.
 TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
   for (const double turn_rad : {0.0, 0.02}) {
     TrackedToolRenderer r = renderer();
@@ -238,7 +239,7 @@ TEST(TrackedTool, ASheetThatSweepsOverAFreeToolTakesItAlong) {
   }
 }
 
-// One frame without points is bridged; after that the tool is let go.
+// The tool bridges one frame without points. After that it is released.
 TEST(TrackedTool, AMissingSurfaceHoldsForOneFrame) {
   TrackedToolRenderer r = renderer();
   Panels panels(0);

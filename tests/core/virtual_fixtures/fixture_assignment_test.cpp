@@ -1,4 +1,4 @@
-// How rules follow each other: order, blending, strength over time, and the columns of r_f and k_s.
+// Combination of successive rules: order, blending, strength over time, and the columns of r_f and k_s.
 #include "core/virtual_fixtures/fixture_assignment.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Column = std::vector<double>;
 
-// Shares as they are told.
+// A rule that returns given shares.
 class Told final : public FixtureRule {
  public:
   Told(const FixtureValues& values, Column weights) : FixtureRule(values), weights_(std::move(weights)) {}
@@ -90,15 +90,15 @@ TEST(FixtureAssignment, NoRuleThatNamesAStiffnessNoColumnOfIt) {
   EXPECT_EQ(assigned({{{0.02}, {1, 1}}}, cloud).stiffness_N_per_m, (Column{5, 6}));
 }
 
-// Half of the renderer's own stiffness is not known here.
+// The renderer's own stiffness is not known here, so a half of it cannot be blended in.
 TEST(FixtureAssignment, APointWithoutAStiffnessTakesTheRulesAtOnce) {
   const Column got = assigned({{{0.02, 100}, {0, 0.25, 1}}}, points(3)).stiffness_N_per_m;
   EXPECT_TRUE(std::isnan(got[0])) << "which is the renderer's own";
   EXPECT_EQ(got[1], 100);
   EXPECT_EQ(got[2], 100);
-  // From then on there is something to be drawn from.
+  // The first rule gives the point a stiffness, with which the second is blended.
   expect_near(assigned({{{0.02, 100}, {0.25}}, {{0.02, 200}, {0.25}}}, points(1)).stiffness_N_per_m, {125});
-  // A stiffness of 0 is one.
+  // A stiffness of 0 is a stiffness, too.
   expect_near(assigned({{{0.02, 0}, {1}}, {{0.02, 200}, {0.25}}}, points(1)).stiffness_N_per_m, {50});
 }
 

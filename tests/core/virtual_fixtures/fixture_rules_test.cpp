@@ -1,4 +1,4 @@
-// Which points the fixture rules pick, and how far each counts for a point.
+// Points that the fixture rules pick, and the share of each point in them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -106,7 +106,7 @@ TEST(NearPoint, FallsEvenlyToNothingBeyond) {
               {1, 1, 0.75, 0.5, 0.25, 0, 0, 0});
 }
 
-// 6 x 4 pixels that look at a wall 1 m away, a point every 0.1 m; holes are missing.
+// A wall 1 m away in 6 x 4 pixels, a point every 0.1 m; points at the holes are missing.
 PointCloud wall(const std::vector<std::pair<int, int>>& holes = {}) {
   PointCloud cloud;
   cloud.image = ImageLayout{{6, 4, 10, 10, 2, 1}, RigidTransform::Identity(), 0};
@@ -224,7 +224,7 @@ TEST(HueRange, GreysHaveNoHue) {
 
 TEST(HueRange, DarkAndLightPointsAreNotPicked) {
   HueRange::Settings s = hues(0, 360);
-  s.min_lightness = 0.2, s.max_lightness = 0.8;  // of 510: 102 and 408
+  s.min_lightness = 0.2, s.max_lightness = 0.8;  // 102 and 408 of 510
   EXPECT_EQ(of_colours(s, {0x660000, 0x650000, 0xFF9999, 0xFF9A9A, kRed}), (Shares{1, 0, 1, 0, 1}));
   s.max_lightness = 0.2;
   EXPECT_EQ(of_colours(s, {0x660000, kRed}), (Shares{1, 0}));

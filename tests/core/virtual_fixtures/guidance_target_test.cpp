@@ -1,4 +1,4 @@
-// Where guidance leads to: the mean of the points of a class, and the plane they lie in.
+// The target of guidance: the mean of the points of a class, and the plane in which they lie.
 #include "core/virtual_fixtures/guidance_target.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ GuidanceTarget whole(const PointCloud& cloud) {
   return guidance_target(cloud, std::vector<double>(cloud.size(), 1));
 }
 
-// Of even n, in the plane through kCentre that R turns from x and y. The points lie noise_m above and below
-// it like the fields of a chessboard, which changes neither the mean nor the plane.
+// A grid of n x n points, n even, in the plane through kCentre that R turns from x and y. The points lie
+// noise_m above and below it like the fields of a chessboard, which changes neither the mean nor the plane.
 PointCloud chessboard(const Eigen::Matrix3d& R, int n, double noise_m) {
   PointCloud cloud;
   for (int i = 0; i < n; ++i)

@@ -70,7 +70,7 @@ class Stream : public oni::driver::StreamBase {
  public:
   Stream(Device& device, bool is_depth) : device_(device), is_depth_(is_depth) {
     mode_ = is_depth ? depth_modes[0] : colour_modes[0];
-    is_mirrored_ = true;  // as real cameras do
+    is_mirrored_ = true;  // real cameras mirror too
   }
   ~Stream() override { Stream::stop(); }
 
@@ -197,7 +197,7 @@ OniStatus Stream::getProperty(int property, void* data, int* size) {
       return give(mode_, data, size);
     case ONI_STREAM_PROPERTY_MIRRORING:
       return give(static_cast<OniBool>(is_mirrored_), data, size);
-    case ONI_STREAM_PROPERTY_CROPPING:  // without these two a recording plays no frames
+    case ONI_STREAM_PROPERTY_CROPPING:  // OpenNI plays no recording without these two
       return give(OniCropping{}, data, size);
     case ONI_STREAM_PROPERTY_STRIDE:
       return give(mode_.resolutionX * pixel_bytes(), data, size);

@@ -1,5 +1,5 @@
-// What the virtual camera sees: every pixel of every frame has a value of its own, so that a frame that is
-// torn, turned round, repeated or shifted is not the one that its number asks for.
+// The pattern that the virtual camera sees. Every pixel of every frame has a value of its own, so that a
+// frame that is torn, turned round, repeated or shifted differs from the frame that its number belongs to.
 #pragma once
 
 #include <cstdint>

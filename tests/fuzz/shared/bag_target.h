@@ -1,4 +1,4 @@
-// What the targets of bags share: a file is opened, and what it has is read as the program does.
+// Shared by the targets of bags: opens a file and reads its content as the program does.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace remote_touch::fuzz {
 
-// name: of the file, with the ending of its kind.
+// name: name of the file, with the ending of its kind.
 void read_bag(const std::string& name, std::string_view bytes);
 
 }  // namespace remote_touch::fuzz

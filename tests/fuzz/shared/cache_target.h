@@ -16,7 +16,7 @@ inline constexpr const char* kCacheKey = "key";
 std::filesystem::path cache_folder(const std::string& kind, int version, std::string_view bytes);
 std::string cache_bytes(const std::filesystem::path& folder, const std::string& kind);
 
-// What was read from there is written as it was.
+// Requires that write() leaves the cache file as it was read.
 template <class Write>
 void require_written_as_read(const std::filesystem::path& folder, const std::string& kind, Write write) {
   const std::string before = cache_bytes(folder, kind);

@@ -25,7 +25,7 @@ struct Content {
 
 Content content_of(std::string_view text);
 
-// As a sealed file of that content is read.
+// Returns the reader that a sealed file of that content would have.
 Hdf5Reader reader_of(Content content);
 
 // The text up to a line "---", and what follows it; without one, the text twice: two results to compare.

@@ -10,15 +10,15 @@
 namespace remote_touch::fuzz {
 
 struct Target {
-  const char* name;  // of its corpus and its program
-  // Reads the bytes as a user's file or message. May return; throws for what is a finding.
+  const char* name;  // name of its corpus and its program
+  // Reads the bytes as a user's file or message. It may return; an exception is a finding.
   void (*read)(std::string_view bytes);
 };
 
-// Those of this program: one in a program of libFuzzer, all in the one that replays the corpus.
+// The targets of this program: one in a program of libFuzzer, all in the program that replays the corpus.
 std::vector<Target>& targets();
 
-// A global of a target's file puts it on that list.
+// A global of this type in a target's file adds the target to the list.
 struct Registered {
   Registered(const char* name, void (*read)(std::string_view bytes)) { targets().push_back({name, read}); }
 };

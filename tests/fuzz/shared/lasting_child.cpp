@@ -55,7 +55,7 @@ bool receive(int from, Head& head, std::string& bytes) {
   return read_all(from, bytes.data(), size);
 }
 
-// In the child.
+// Runs in the child.
 [[noreturn]] void answer_all(int questions, int answers) noexcept {
   ChildReader reader = nullptr;
   std::string question;

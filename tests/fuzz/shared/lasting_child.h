@@ -22,7 +22,7 @@ class LastingChild {
   LastingChild& operator=(const LastingChild&) = delete;
   ~LastingChild() { end(); }
   std::string operator()(const ChildLimits& limits, ChildReader reader, const std::string& question);
-  int begun() const { return begun_; }  // how many processes so far, each after the end of the one before
+  int begun() const { return begun_; }        // number of processes so far, one after another
   int repeated() const { return repeated_; }  // questions that were asked again
 
  private:
@@ -38,8 +38,8 @@ class LastingChild {
   int begun_ = 0, repeated_ = 0;
 };
 
-// How targets run the readers that want a child: by default as the program does, in libFuzzer's programs in a
-// lasting child.
+// The way in which targets run the readers that need a child: by default as the program does, in libFuzzer's
+// programs in a lasting child.
 RunInChild& run_in_child();
 
 }  // namespace remote_touch::fuzz

@@ -11,7 +11,7 @@ TEST(ProgressText, SaysWhatIsKnown) {
   EXPECT_EQ(progress_text(30, 100, 10, "runs", 10), "30 of 100 runs, 2/s, 35 s left");
 }
 
-// Nothing is known of the time before anything is done: that is not 0 s.
+// The remaining time is unknown before anything is done, which differs from 0 s.
 TEST(ProgressText, PromisesNothingBeforeAnythingIsDone) {
   EXPECT_EQ(progress_text(0, 10), "  0 %");
   EXPECT_EQ(progress_text(10, 100, 10, "runs", 10), "10 of 100 runs");

@@ -85,7 +85,7 @@ class Spring final : public Renderer {
   }
 
  private:
-  static inline std::atomic<int> total_{0};  // what no renderer may have
+  static inline std::atomic<int> total_{0};  // shared state, which no renderer may have
   Settings settings_;
   int index_ = -1, steps_ = 0;
   std::vector<double> kept_;

@@ -112,7 +112,7 @@ TEST(ExperimentSections, OnlyAnExperimentWithATaskOrGuidanceIsGuided) {
   EXPECT_FALSE(guided({"sequence=[]", "fixtures=[]", "guidance=null"}));
 }
 
-// What a run was made with must be told by its result, also where it was left out.
+// A result must state the settings that it was made with, also those that were left out.
 TEST(ExperimentSections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
   const Json json = resolved({"guidance=null"});
   expect_complete(json["guidance"], defaults<GuidanceSettings>());

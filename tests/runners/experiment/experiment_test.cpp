@@ -43,7 +43,7 @@ TEST(Experiments, SurviveARoundTrip) {
     EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
     EXPECT_FALSE(experiment.settings().title.empty());
 
-    // What the file says is in the resolved configuration.
+    // The resolved configuration contains everything that the file states.
     const Json file = Json::parse(stored.json), resolved = Json::parse(text);
     for (const auto& [key, value] : file.items()) {
       if (key == "fixtures" || key == "sequence") {

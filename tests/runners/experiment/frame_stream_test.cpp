@@ -57,7 +57,8 @@ FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {})
   return FixtureAssignment(std::move(rules));
 }
 
-// What a renderer gets up to a time, asked for every millisecond as in a run.
+// Returns the frames that a renderer receives up to a time. The stream is polled every millisecond, as in a
+// run.
 std::vector<Frame> received(const Scenario& scenario, double until_s, const Transport& transport,
                             std::uint64_t seed = 1, FixtureAssignment fixtures = {}) {
   FrameStream stream(scenario, {nullptr, std::move(fixtures)}, transport, {seed}, false);
@@ -67,7 +68,7 @@ std::vector<Frame> received(const Scenario& scenario, double until_s, const Tran
     const std::size_t before = recorder.frames.size();
     stream.deliver_until(now_s, recorder);
     for (std::size_t i = before; i < recorder.frames.size(); ++i) {
-      // In the tick in which it arrives, neither before nor after.
+      // A frame is delivered in the tick in which it arrives, neither before nor after.
       EXPECT_LE(recorder.frames[i].arrives_s, now_s + kSameTime_s);
       EXPECT_GT(recorder.frames[i].arrives_s, now_s - 0.001 - kSameTime_s);
     }
@@ -206,7 +207,7 @@ TEST(FrameStream, ASceneAtRestIsSentOnWhenItsFixturesChange) {
     EXPECT_NEAR(frame.captured_s, j / 100.0, 1e-12);
     EXPECT_NEAR(frame.arrives_s, j / 100.0 + 0.01, 1e-12);
     EXPECT_EQ(cloud_of(frame).x, std::vector<double>{0});
-    // By the time of capture, not of arrival.
+    // The schedule uses the time of capture, not of arrival.
     EXPECT_NEAR(cloud_of(frame).fixture_radius_m.at(0), 0.02 * std::clamp((j - 10) / 10.0, 0.0, 1.0), 1e-12);
   }
 }

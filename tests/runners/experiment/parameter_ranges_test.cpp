@@ -1,5 +1,5 @@
-// What every parameter of the catalogue takes and refuses, and that its value survives being written and
-// read.
+// Every parameter of the catalogue: the values that it accepts and refuses, and that its value survives being
+// written and read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace remote_touch::parameter_ranges_test {
 namespace {
 
-// What a program writes for NaN is null, but a value made in memory can be NaN.
+// Programs write NaN as null, but a value made in memory can be NaN.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -198,7 +198,7 @@ TEST(Parameters, EveryValueSurvivesARoundTrip) {
 
 // --- what a parameter takes and refuses ---
 
-// For each kind of parameter: both ends of the range, and what lies just outside.
+// Checks each kind of parameter at both ends of its range and just outside.
 struct Bounds {
   const Parameter& p;
   double below() const { return std::nextafter(p.low, -kInfinity); }

@@ -23,7 +23,7 @@ std::string change(const char* time_s, const std::string& parameter, const char*
          value + "}";
 }
 
-// In contact from 0.5 s on, and rising.
+// The proxy is in contact from 0.5 s on, and rises.
 Experiment lift(const std::string& changes = "[]", std::vector<std::string> more = {}) {
   for (const char* setting :
        {"scenario.columns=80", "scenario.rows=80", "scenario.noise_sigma_m=0.001", "duration_s=0.8"})
@@ -70,7 +70,7 @@ TEST(RendererChanges, ThoseOfOneTimeAreCheckedTogether) {
   EXPECT_EQ(lift("[" + r1 + ", " + r2 + "]").changes().size(), 2u);
 }
 
-// At 1000 Hz the first tick at or after 0.1001 s is that of 0.101 s, which makes both changes.
+// The first tick at or after 0.1001 s is that of 0.101 s at 1000 Hz; it makes both changes.
 TEST(RendererChanges, RefusesTwoOfOneParameterInOneTick) {
   const auto two = [](const char* first_s, const char* second_s, const char* parameter) {
     return "[" + change(first_s, "renderer.stiffness_N_per_m", "100") + ", " +
@@ -128,7 +128,7 @@ TEST(RendererChanges, TakeEffectInTheFirstTickAtOrAfterTheirTime) {
     while (tick < plain.length() && changed.force_N[tick] == plain.force_N[tick]) ++tick;
     return tick;
   };
-  std::size_t touched = 0;  // from here on
+  std::size_t touched = 0;  // first tick with a force
   while (plain.force_N[touched].isZero(0)) ++touched;
   ASSERT_LT(touched, 650u);
   EXPECT_EQ(first_other("0.65"), 650u);

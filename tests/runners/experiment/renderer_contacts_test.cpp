@@ -97,7 +97,8 @@ TEST(RendererContacts, HowFarBehindTheSurfaceAPositionIsHeld) {
   EXPECT_EQ(held_depth_m({std::nan("")}), 0) << "a tool";
 }
 
-// How deep a hand sinks into a spring is no error of the surface, and a spring that lets it through is.
+// The depth of a hand in a spring is no error of the surface. A spring that lets the hand through is an
+// error.
 TEST(RendererContacts, APenaltyForceIsJudgedWhereItWouldEnd) {
   for (const double depth_m : {-0.004, -0.001})
     EXPECT_NEAR(pressed(R"({"name": "penalty"})", kDense_m, depth_m).contact.back().height_m, 0, 5e-6);

@@ -45,7 +45,8 @@ TEST(NpyArray, OfTexts) {
             npy("{'descr': '<U3', 'fortran_order': False, 'shape': (), }", c('a') + c(0xfffd) + c(0xfffd)));
 }
 
-// As in the specification (APPNOTE 4.3). The CRC-32 of "123456789" is the check value of its catalogue.
+// The bytes follow the specification (APPNOTE 4.3). The CRC-32 of "123456789" is the check value of its
+// catalogue.
 TEST(ZipArchive, HasTheBytesOfTheSpecification) {
   std::string archive;
   ZipArchive zip([&](const std::string& bytes) { archive += bytes; });

@@ -7,8 +7,8 @@
 namespace remote_touch::ros_messages_test {
 namespace {
 
-// Of 3.5 s: encoding; seconds, nanoseconds, length of the text with its zero, the text, and two bytes up to a
-// multiple of four or eight: 4 + 4 + 4 + 6 = 18, and 20 or 24.
+// Header of a message at 3.5 s: encoding; seconds, nanoseconds, length of the text with its zero, the text,
+// and two bytes up to a multiple of four or eight: 4 + 4 + 4 + 6 = 18, and 20 or 24.
 std::string header(int padding) {
   return std::string("\0\1\0\0", 4) + raw(3) + raw(500'000'000) + raw(6) + std::string("world\0", 6) +
          std::string(static_cast<std::size_t>(padding), '\0');

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 class KernelChoiceTest : public testing::Test {
  protected:
   static std::size_t levels() { return supported_kernels().size(); }
-  // Of which the given level is the fastest.
+  // Times in which the given level is the fastest.
   static LevelTimes times(std::size_t fastest) {
     LevelTimes made(levels(), 3e-5);
     made[fastest] = 1e-5;

@@ -52,7 +52,7 @@ TEST(LevelTiming, IsTheGeometricMeanOfTheLeastTimes) {
 TEST(LevelTiming, EndsAfterTheTimeButNotBeforeThreeRounds) {
   Processor machine = processor(1e-3, 1e-3, 1e-3);
   machine.timed({machine.task(1)}, 9.5e-3);
-  EXPECT_EQ(machine.calls, 4 * 3);  // after three rounds 9 ms have passed
+  EXPECT_EQ(machine.calls, 4 * 3);  // a fourth round, as 9 ms have passed after three
   machine.calls = 0;
   machine.timed({machine.task(1)}, 0);
   EXPECT_EQ(machine.calls, 3 * 3);
@@ -77,7 +77,7 @@ TEST(FastestLevel, AHigherOneMustBeClearlyFaster) {
   EXPECT_EQ(fastest_level({2, 2, 2}), 0u);
 }
 
-// What is measured is the real work, on every level, without an access that a sanitizer would stop.
+// The measured tasks do the real work, on every level, without an access that a sanitizer would stop.
 TEST(KernelTasks, RunOnEveryLevelAndTakeTime) {
   const std::vector<KernelTask> tasks = representative_tasks();
   ASSERT_EQ(tasks.size(), 4u);

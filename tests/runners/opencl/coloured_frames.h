@@ -101,7 +101,8 @@ inline std::string image_differs(DepthProcessor& device, const depth_cases::Sett
   return same_columns(without_rules, expected) ? "" : "columns of an image without rules";
 }
 
-// As a cloud with some rules and without, and as a sensor's image.
+// Compares the device with the CPU on a cloud with all rules, with some and with none, and on a sensor's
+// image. Returns what differs; empty: nothing.
 inline std::string differs(DepthProcessor& device, const depth_cases::Settings& settings,
                            const scenes::DepthScene& scene, const RigidTransform& X_WC) {
   PointCloud measured = cloud_from_depth(scene.depth, scene.camera, X_WC);

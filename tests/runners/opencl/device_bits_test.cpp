@@ -83,7 +83,7 @@ TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
   expect_same(settings, with_holes(83, 37), some_pose());
 }
 
-// As on a device whose single divisions and roots are not rounded correctly.
+// The device behaves like one whose single-precision divisions and roots are not rounded correctly.
 TEST_F(DeviceBits, AreThoseOfTheCpuWithDivisionsInDouble) {
   for (OpenClDevice& device : devices_) device.rounds_division = false;
   expect_same({}, with_holes(161, 121), some_pose());
@@ -99,8 +99,8 @@ TEST_F(DeviceBits, AreThoseOfTheCpuOnRecordedFrames) {
   }
 }
 
-// As the threads of a sweep do from its first runs on: each lists, opens and computes. Before listings came
-// one after another, the loader found no driver in some of them, or crashed.
+// The threads begin at once, as those of a sweep do with its first runs: each lists, opens and computes.
+// Until listings were made one after another, the loader found no driver in some threads, or crashed.
 TEST(DeviceThreads, BeginAtOnceAndHaveTheBitsOfTheCpu) {
   unsetenv("REMOTE_TOUCH_LIBOPENCL");
   const scenes::DepthScene scene = with_holes(70, 30);

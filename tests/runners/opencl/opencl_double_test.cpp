@@ -39,7 +39,7 @@ class OpenClDoubleTest : public testing::Test {
   static bool everything_is_released() {
     return wait_until([] { return library().objects == 0; });
   }
-  // As in a new process.
+  // Restores the state of a new process: no settings, trials or kernels.
   static void begin_anew() {
     library().reset();
     for (const OpenClDevice& device : opencl_devices(opencl_library()))
@@ -155,7 +155,7 @@ TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
   EXPECT_EQ(library().calls, 1);
   library().failing = "clEnqueueNDRangeKernel", library().calls = 0;
   const auto second = make_depth_processor(settings, best(), nullptr);
-  EXPECT_EQ(library().calls, 4);  // those of the small first frame, and no trial
+  EXPECT_EQ(library().calls, 4);  // runs of the small first frame, no trial
   EXPECT_TRUE(same_bits(processed_by(*first), processed(scene_, settings, some_pose())));
   EXPECT_TRUE(same_bits(processed_by(*second), processed(scene_, settings, some_pose())));
   library().failing = "clBuildProgram", library().calls = 0;
@@ -164,7 +164,7 @@ TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
   EXPECT_EQ(library().calls, 1);  // another window, other kernels
 }
 
-// What was built for a device that was lost is of no use when it is there again.
+// Kernels that were built for a lost device are of no use when it is there again.
 TEST_F(OpenClDoubleTest, AfterAFailureKernelsAreBuiltAndTriedAnew) {
   const auto pipeline = opened();
   library().failing = "clFinish", library().failing_call = 1;
@@ -192,7 +192,7 @@ TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
 TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
   library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
   EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
-  // At once, while they still hang: that long ctest does not wait for a test.
+  // The call throws at once while they still hang; ctest would not wait 10 hours for a test.
   EXPECT_THROW(listed_devices(std::chrono::hours(10)), OpenClTimeout);
   EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
   EXPECT_TRUE(refusal("auto").empty());

@@ -283,7 +283,8 @@ TEST(OperatorModel, RefusesWhatCannotBe) {
   EXPECT_EQ(validate(s), "presses: duration 0.009000: expected 0.01 or more");
 }
 
-// As stiff as it may be at the slowest rate, without a damper: it rings, and does not run away.
+// The spring is as stiff as allowed at the slowest rate, without a damper: the hand rings, but does not
+// diverge.
 TEST(OperatorModel, AnAllowedSpringIsStableAtTheSlowestRate) {
   OperatorSettings s;
   s.mass_kg = 0.01, s.stiffness_N_per_m = 100000, s.damping_Ns_per_m = 0;

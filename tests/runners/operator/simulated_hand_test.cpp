@@ -1,4 +1,4 @@
-// What moves the device of a run: the script alone, or a hand that feels what the device exerts.
+// The motion of a run's device: by the script alone, or by a hand that feels the forces of the device.
 #include "runners/operator/simulated_hand.h"
 
 #include <gtest/gtest.h>

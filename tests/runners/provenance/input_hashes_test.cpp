@@ -1,5 +1,5 @@
-// What result files say of the recordings that they were made from. The hashes below are from sha256sum, as
-// runners/provenance/input_hashes.h tells; tests/system/command_line/inputs runs it on real files.
+// The hashes in result files of the recordings that they were made from. The hashes below are from sha256sum,
+// as runners/provenance/input_hashes.h describes; tests/system/command_line/inputs runs it on real files.
 #include "runners/provenance/input_hashes.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class Inputs : public ::testing::Test {
  protected:
   RecordingPart part(int first = 0, int last = -1) const { return {folder_.path().string(), first, last}; }
   std::string text(int first = 0, int last = -1) const { return input_hashes({part(first, last)}); }
-  // What follows the path.
+  // Text after the path of the folder.
   std::string rest(const std::string& of) const { return of.substr(folder_.path().string().size()); }
   std::string names(int first = 0, int last = -1) const {
     std::string list;
@@ -30,7 +30,7 @@ class Inputs : public ::testing::Test {
     return list;
   }
 
-  // Whether the text is another one when this file's first such letter is.
+  // True if the text changes when the first such letter of this file changes.
   bool depends_on(const std::string& name, char letter, int first = 0, int last = -1) const {
     const std::string before = text(first, last), bytes = bytes_of(folder_ / name);
     std::string changed = bytes;

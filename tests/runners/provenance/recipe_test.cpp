@@ -1,4 +1,4 @@
-// What made a result comes back field by field, and nothing that a file says is taken for a command.
+// A recipe is read back field by field, and no text of a file is accepted as a command.
 #include "runners/provenance/recipe.h"
 
 #include <gtest/gtest.h>

@@ -13,8 +13,8 @@
 namespace remote_touch::enough_threads_test {
 namespace {
 
-// In a thread where OpenMP was not at work yet. The number of threads that it has there then, and the
-// refusal.
+// Result of use_threads() in a thread where OpenMP has not run yet: the number of threads there afterwards,
+// and the refusal, empty if none.
 struct Outcome {
   int threads = 0;
   std::string problem;

@@ -22,7 +22,7 @@
 
 namespace remote_touch::benchmark_plan_test {
 
-// What a test says of its scene.
+// gtest prints a scene as its name.
 void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
   *out << scene.name;
 }

@@ -59,7 +59,7 @@ Json json_of(const ScorecardReport& report) {
 TEST(Score, CountsSuccessesAndTellsWhoStandsOut) {
   const Scorecard card = two_scenes();
   const SceneScore& scene = card.scenes[0];
-  EXPECT_EQ(scene.success[0].at_level[0].events, 1);  // without noise, twenty times the same run
+  EXPECT_EQ(scene.success[0].at_level[0].events, 1);  // twenty equal runs without noise count once
   EXPECT_EQ(scene.success[0].at_level[0].runs, 1);
   EXPECT_EQ(scene.success[0].noise_free->runs, 1);
   EXPECT_EQ(scene.success[0].at_level[1].events, 19);
@@ -82,7 +82,8 @@ SweepResult timed(const std::vector<double>& depth, double last_s) {
 }
 
 TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
-  // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 2.5 where both hold.
+  // The second method loses the surface in two of three runs, where it is quiet: 0.1 against 2. Where both
+  // methods hold it has 2.5.
   std::vector<double> upper, at_times;
   for (int i = 0; i < 54; ++i)
     upper.push_back(1 + 0.01 * i), at_times.push_back(i % 3 == 0 ? 1 : -1 - 0.01 * i);
@@ -93,7 +94,7 @@ TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
   rules.measures = {{"time", Better::smaller}, {"time", Better::neither}};
   const SceneScore scene = score(rules, {held, lost}, false);
   const Ranking& judged = scene.measures[0].ranking;
-  EXPECT_EQ(judged.mean[1].pairs, 12);  // of the two levels with noise
+  EXPECT_EQ(judged.mean[1].pairs, 12);  // two levels with noise
   EXPECT_EQ(judged.mean[1].mean, 2.5);
   EXPECT_EQ(judged.order.front(), 0u);
   EXPECT_TRUE(judged.has_best);
@@ -212,7 +213,7 @@ TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
   EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);
 }
 
-// What the project's own method is behind in comes from weaknesses().
+// The list "behind" of the project's own method comes from weaknesses().
 TEST(ScorecardReport, SaysWhereTheOwnMethodIsBehind) {
   Scorecard card = two_scenes();
   card.methods[1] = kOwnMethod;

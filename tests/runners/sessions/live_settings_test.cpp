@@ -1,4 +1,4 @@
-// Where device and camera stand, as settings.
+// The placement of device and camera, as settings.
 #include "runners/sessions/live_settings.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the safety gate of a live run allows, as settings.
+// The limits of a live run's safety gate, as settings.
 #include "runners/sessions/safety_limits.h"
 
 #include <gtest/gtest.h>

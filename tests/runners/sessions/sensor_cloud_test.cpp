@@ -1,4 +1,4 @@
-// Where the points of a sensor's frame are.
+// The positions of the points of a sensor's frame.
 #include "runners/sessions/sensor_cloud.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 namespace remote_touch::session_cloud_test {
 namespace {
 
-// Of a sensor that sends clouds: as many points in each frame as there are.
+// The sensor sends clouds, and every frame has its own number of points.
 TEST(SessionCloud, GivesBackCloudsWithAndWithoutNormalsAndColour) {
   for (const bool more : {false, true}) {
     const TestFolder folder("session_file");

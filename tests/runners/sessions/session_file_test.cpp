@@ -1,4 +1,4 @@
-// What is recorded comes back to the bit; a file that is no recording is refused in one line.
+// A recording is read back bit for bit; a file that is no recording is refused in one line.
 #include "runners/sessions/session_file.h"
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ TEST(SessionFile, GivesBackFramesWithAndWithoutColour) {
   }
 }
 
-// What the renderer got depends on where the camera stood, its registration included.
+// The renderer's points depend on the pose of the camera, its registration included.
 TEST(SessionFile, GivesBackTheViewToTheBit) {
   const TestFolder folder("session_file");
   SmallSession session;
@@ -206,7 +206,7 @@ struct RawSession {
   std::vector<std::uint64_t> changed_at{4, 4};
   std::vector<std::int32_t> changed{1, 0};
   std::vector<double> value{0.02, 0.004};
-  unsigned long long width = 3, height = 2;  // of the images as they are stored
+  unsigned long long width = 3, height = 2;  // size of the images as stored
   std::string left_out;                      // a dataset that is not there
 
   void view_with(const std::string& old, const std::string& now) {
@@ -260,7 +260,7 @@ void expect_refused(const std::vector<Damage>& damages) {
   }
 }
 
-// Of version 0.2 before parameters could change.
+// The file is of version 0.2, from before parameters could change.
 TEST(SessionFile, OneWithoutAListOfChangesIsRead) {
   const TestFolder folder("session_file");
   RawSession session;

@@ -163,7 +163,8 @@ TEST(SessionSettings, AreThePathOfAFile) {
 
 // --- the experiment ---
 
-// What made the frames and moved the hand is in them already; what was made of them is done again.
+// Settings that made the frames and moved the hand are dropped, because the recording contains their effects.
+// Fixtures and renderer are applied again.
 TEST_F(SessionSceneTest, TheExperimentIsTheRecordedOneWithTheseFramesAndThisHand) {
   session_.config = R"({"haptic_rate_hz": 500, "seed": 7, "duration_s": 9, "frame_latency_s": 0.1,
     "frame_jitter_s": 0.01, "frame_drop_probability": 0.5, "scenario": {"name": "ramp", "width": 64},

@@ -1,4 +1,4 @@
-// What --set and the like put on top of a configuration: refused, named, and told in the title.
+// Changes that --set and the like make to a configuration: refused, named, and stated in the title.
 #include "runners/settings/changed_settings.h"
 
 #include <gtest/gtest.h>

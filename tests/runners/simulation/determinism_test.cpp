@@ -51,7 +51,7 @@ TEST(Determinism, EveryInstructionSetAndNumberOfThreads) {
     const std::string reference = digest_of(c.experiment, c.overrides, Isa::x86_64);
     for (const auto& [isa, threads] : {Other{Isa::x86_64_v3, 2}, Other{Isa::x86_64_v4, 8}}) {
       omp_set_num_threads(threads);
-      // Which there are is named in the build's summary by the digests_across_builds test.
+      // The digests_across_builds test names the available levels in the build's summary.
       const Isa used = std::min(isa, best_isa());
       EXPECT_EQ(digest_of(c.experiment, c.overrides, used), reference)
           << c.experiment << ", " << kernels_for(used).isa << ", " << threads << " threads";

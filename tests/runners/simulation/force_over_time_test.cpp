@@ -10,8 +10,8 @@ namespace remote_touch::force_over_time_test {
 namespace {
 
 constexpr double kContactRadius = 0.005, kStiffness = 600;
-// Of a proxy that is pressed straight down between four points of a grid, 1.5 mm apart: it touches all of
-// them. Anywhere from r1 to r2, which is 0.01 mm to both sides.
+// Rest height of a proxy that is pressed straight down between four points of a grid, 1.5 mm apart: it
+// touches all of them. It may rest anywhere from r1 to r2, which is 0.01 mm to both sides.
 const double kRest_m = std::sqrt(kContactRadius * kContactRadius - 2 * 0.00075 * 0.00075);
 constexpr double kBand_N = kStiffness * 1.03e-5;
 
@@ -63,7 +63,7 @@ TEST(ForceOverTime, TheLatestContactIsCarriedWithTheCloud) {
     if (tick % 40 == 0 && frame > 13) max_jump = std::max(max_jump, std::abs(out.force_N.y() - before));
     before = out.force_N.y();
   }
-  // What the estimate cannot know is the acceleration: a / f_c^2 = 1.6 mm, 0.96 N. Left behind, the contact
+  // The estimate cannot know the acceleration: a / f_c^2 = 1.6 mm, 0.96 N. A contact that was left behind
   // would jump by the whole update, more than 4 mm.
   EXPECT_LT(max_jump, 1.2);
   EXPECT_GT(before, 5);

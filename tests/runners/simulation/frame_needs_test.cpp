@@ -56,7 +56,8 @@ std::string renderer(const Method& method) {
   return R"({"name": ")" + std::string(method.renderer) + "\"" + method.settings + "}";
 }
 
-// At the end of the press. Where points only push, a hand that is deeper has passed them: its greatest.
+// Force along `outwards` at the end of the press. If points only push, a deeper hand has passed them by then,
+// and the greatest force of the run is returned.
 double felt_N(const Trace& trace, const Kind& kind, const Method& method) {
   if (find_entry(renderers(), method.renderer, "renderer").contact_model != ContactModel::nothing)
     return trace.force_N[trace.length() - 1].dot(kind.outwards);

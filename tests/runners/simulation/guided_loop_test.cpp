@@ -98,7 +98,8 @@ TEST(GuidedLoop, AHandThatLetsGoIsLedToTheGoal) {
   EXPECT_LT((trace.hip_position_m[trace.length() - 1] - Vec3(0, 0.05, 0)).norm(), 1e-9);
 }
 
-// From the press on; the step ends when the tool is within 5 mm, and then nothing pulls any more.
+// The guidance pulls from the press on. The step ends when the tool is within 5 mm; then nothing pulls any
+// more.
 TEST(GuidedLoop, ATaskIsPlayedByThePressesOfTheHand) {
   const Trace trace = beside_a_goal(
       {R"(sequence=[{"action": "activate", "fixture": "valve", "start": "button", "button": 4, "done": "reached"},
@@ -146,7 +147,7 @@ TEST(GuidedLoop, TheTorqueThatRemainsIsAboutTheHandle) {
   EXPECT_GT(std::abs(torque_T.x()), 0.05);
   EXPECT_LT(torque_T.tail<2>().norm(), 1e-6);
   EXPECT_LT(trace.device_torque_Nm[end].norm(), 1e-6);
-  // With all motors nothing remains.
+  // No torque remains with all motors.
   const Trace whole = of_a_tool("[40,30,-20]", {"operator.grip=[[0,0]]", "duration_s=20"});
   EXPECT_LT(whole.torque_Nm[end].norm(), 1e-6);
   EXPECT_LT(rotation_vector(whole.hip_orientation[end] * whole.guidance_orientation[end].conjugate()).norm(),

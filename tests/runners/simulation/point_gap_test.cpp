@@ -94,7 +94,7 @@ TEST(PointGap, OfAGridIsHalfTheDiagonalOfACell) {
   EXPECT_EQ(widest_gap(grid(0.0016, 0.0097), Vec3::Zero(), kBall_m, kKnown_m).radius_m, 0);
 }
 
-// At the border of a dense surface points hold no disk beside it.
+// Points at the border of a dense surface hold no disk beside it.
 TEST(PointGap, IsNoneBesideASurface) {
   const PointGap gap = widest_gap(grid(0.0015, 0.0015, -0.001), Vec3::Zero(), kBall_m, kKnown_m);
   EXPECT_EQ(gap.radius_m, 0);

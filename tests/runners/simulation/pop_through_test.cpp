@@ -1,4 +1,4 @@
-// Which runs pop through: scenes whose answer is known, through the whole loop.
+// The runs that pop through: scenes whose answer is known, through the whole loop.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ TEST(PopThrough, IsNotThatTheHandSlidesOffTheEdge) {
   }
 }
 
-// From its back to its front and back again.
+// The tool moves from the back of the sheet to its front and back again.
 TEST(PopThrough, IsNotThatAToolStaysBehindASheet) {
   const Trace trace = simulate(Experiment::load("tool-sheet"));
   EXPECT_LT(end_distance_m(trace), -0.02);

@@ -19,7 +19,7 @@ double popped_at(double velocity, const std::vector<std::string>& more) {
   return popped_through(simulate(Experiment::load("fig4.12", settings)));
 }
 
-// Without an estimate an update of more than r_1 puts the proxy on the wrong side: r_1 f_c = 0.1497 m/s.
+// An update of more than r_1 puts the proxy on the wrong side if there is no estimate: r_1 f_c = 0.1497 m/s.
 TEST(Predecessor, PopsThroughAboveItsVelocityBound) {
   const std::vector<std::string> predecessor = {"renderer.step_rule=fixed",
                                                 "renderer.velocity_estimate=false"};
@@ -28,8 +28,8 @@ TEST(Predecessor, PopsThroughAboveItsVelocityBound) {
   EXPECT_EQ(popped_at(0.16, {}), 0) << "the estimate of (4.13) removes the bound on velocity";
 }
 
-// With noise a tick often ends a step away from contact: the printed gate of the force drops out, the one in
-// use not.
+// Noise often makes a tick end a step away from contact. The printed gate of the force then drops out; the
+// gate in use does not.
 TEST(ForceGate, LatestContactHasNoDropouts) {
   const auto silent = [](const std::string& gate) {
     const Trace trace = simulate(Experiment::load(

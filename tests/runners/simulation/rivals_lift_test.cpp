@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPressed_m = 0.01;
 
-// How far behind the surface the proxy was at most. Not popped_through: a point proxy lies on the points, and
-// so behind the true surface by their noise.
+// Greatest depth of the proxy behind the surface. popped_through() is not used, because a point proxy lies on
+// the points, and so behind the true surface by their noise.
 double lost_m(const std::string& renderer, double acceleration_m_per_s2, double noise_sigma_m = 0) {
   return max_penetration_m(simulate(Experiment::load(
       "fig4.12",

@@ -1,4 +1,4 @@
-// How many ticks a run has.
+// The number of ticks of a run.
 #include <gtest/gtest.h>
 
 #include "runners/simulation/simulation.h"

@@ -37,7 +37,7 @@ constexpr const char* kPress =
 TEST(RunReport, AnOrdinaryPressHasNoNotes) {
   const RunReport report = report_of_run(kPlane, kPress);
   EXPECT_TRUE(report.notes.empty());
-  EXPECT_TRUE(report.inputs.empty());  // nothing was read
+  EXPECT_TRUE(report.inputs.empty());  // no recording was read
   EXPECT_EQ(text_of(report), "");
   EXPECT_NO_THROW(refuse_notes(report));
 }

@@ -61,8 +61,8 @@ double ToolAuditor::signed_distance_m(const Vec3& p_T) {
   return signed_distance_m(p_T, face);
 }
 
-// How deep a place on this part of the way is, if it is above the tolerance; 0: none is. max_m: how far the
-// point moves on the whole way.
+// Returns the depth of a position on this part of the way that is deeper than the tolerance, 0 if none is.
+// max_m: upper bound of the point's motion on the whole way.
 double ToolAuditor::depth_on(const Way& way, double from, double until, double max_m, int& face) {
   const double middle = 0.5 * (from + until), half_m = 0.5 * (until - from) * max_m;
   const double distance_m = signed_distance_m(way.at(middle), face);
@@ -91,7 +91,7 @@ void ToolAuditor::look(Point& point, const Way& way, double max_m) {
 void ToolAuditor::tick(Group& group, const ToolPose& from, const Vec3& shift_W, const Vec3& turn_W) {
   const double shift_m = shift_W.norm(), turn_rad = turn_W.norm();
   audit_.point_ticks += static_cast<std::int64_t>(group.last - group.first);
-  // How the tool turns does not matter there.
+  // The tool cannot reach a far group, however it turns.
   const bool is_far = (group.centre_W - from.p_W).norm() - group.radius_m - shift_m > reach_m_ + tolerance_m_;
   for (std::size_t i = group.first; i < group.last && !is_far; ++i) {
     Point& point = points_[i];

@@ -18,10 +18,10 @@
 namespace remote_touch {
 
 struct ToolAudit {
-  std::int64_t point_ticks = 0;  // points times ticks that were looked at
-  std::int64_t inside = 0;       // of those, how many begin with the point deeper than the tolerance
-  std::int64_t entered = 0;      // begin outside, and get deeper on the way: a missed crossing
-  double deepest_m = 0;          // greatest depth of the points that entered, where it was found
+  std::int64_t point_ticks = 0;  // number of points times ticks
+  std::int64_t inside = 0;       // number of them that begin with the point deeper than the tolerance
+  std::int64_t entered = 0;      // number that begin outside and get deeper on the way: missed crossings
+  double deepest_m = 0;          // greatest depth that was found among the points that entered
 };
 
 class ToolAuditor {
@@ -39,7 +39,7 @@ class ToolAuditor {
   void tick(const ToolPose& from, const ToolPose& to);
 
   const ToolAudit& audit() const { return audit_; }
-  // Of a place in the tool frame, negative inside.
+  // Signed distance of a position in the tool frame to the tool, negative inside.
   double signed_distance_m(const Vec3& p_T);
 
  private:

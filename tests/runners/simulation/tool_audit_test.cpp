@@ -12,7 +12,7 @@ namespace remote_touch::tool_audit_test {
 namespace {
 
 constexpr double kTolerance_m = 1e-5;
-const Vec3 kSides_m(0.08, 0.02, 0.01);  // of the bar
+const Vec3 kSides_m(0.08, 0.02, 0.01);  // edges of the bar
 
 PointCloud one_point(const Vec3& p_W) {
   PointCloud cloud;
@@ -27,7 +27,7 @@ ToolAudit of_bar(const Vec3& p_W, const ToolPose& from, const ToolPose& to) {
   return auditor.audit();
 }
 
-// Of a box, in closed form.
+// Signed distance to the bar, in closed form.
 double to_bar_m(const Vec3& p_T) {
   const Vec3 q = p_T.cwiseAbs() - 0.5 * kSides_m;
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
@@ -79,14 +79,14 @@ TEST(ToolAuditor, FollowsPointsThroughAFrame) {
 
 TEST(ToolAuditor, ATouchIsNoCrossing) {
   const ToolPose from{{-0.06, 0.01, 0}, {1, 0, 0, 0}}, to{{0.03, 0.01, 0}, {1, 0, 0, 0}};
-  EXPECT_EQ(of_bar(Vec3::Zero(), from, to).entered, 0);                          // slides along it
-  EXPECT_EQ(of_bar({0, 2 * kTolerance_m, 0}, from, to).entered, 1);              // as deep as twice
-  EXPECT_EQ(of_bar({0, 0.5 * kTolerance_m, 0}, from, to).entered, 0);            // the tolerance
-  EXPECT_EQ(of_bar({0, 0.001, 0}, {{0, 0.01, 0}, {1, 0, 0, 0}}, to).inside, 1);  // is in it
+  EXPECT_EQ(of_bar(Vec3::Zero(), from, to).entered, 0);                          // slides along the bar
+  EXPECT_EQ(of_bar({0, 2 * kTolerance_m, 0}, from, to).entered, 1);              // twice the tolerance deep
+  EXPECT_EQ(of_bar({0, 0.5 * kTolerance_m, 0}, from, to).entered, 0);            // half the tolerance deep
+  EXPECT_EQ(of_bar({0, 0.001, 0}, {{0, 0.01, 0}, {1, 0, 0, 0}}, to).inside, 1);  // begins in the bar
   EXPECT_EQ(of_bar(Vec3::Constant(std::nan("")), {{0, 0, 0}, {1, 0, 0, 0}}, to).point_ticks, 0);
 }
 
-// Which of many motions cross a point, against the deepest of 4000 places on the way.
+// The reference for whether a motion crosses a point is the deepest of 4001 positions on the way.
 TEST(ToolAuditor, AgreesWithDenseSamplesOfRandomMotions) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;

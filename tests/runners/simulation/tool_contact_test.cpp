@@ -1,4 +1,4 @@
-// What a tool does in scenes whose answer is known: the oracles of chapter 6, through the whole program.
+// A tool in scenes whose answer is known: the oracles of chapter 6, through the whole program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,8 +50,8 @@ double bar_stops_at(const std::string& rule, double spacing_m, double phase_m) {
   return rotation_vector(trace.tool_orientation[trace.length() - 1]).y() / kRadiansPerDegree;
 }
 
-// In closed form 40 sin(a) + 5 cos(a) = 20: 22.62 degrees. Disks hold the corner as a wall would, wherever
-// the columns of points are.
+// The closed form is 40 sin(a) + 5 cos(a) = 20: 22.62 degrees. Disks hold the corner as a wall would,
+// wherever the columns of points are.
 TEST(ToolContact, ABarInASlotStopsWhereItMustByLookAhead) {
   for (const double spacing : {0.001, 0.002, 0.005})
     for (const double phase : {0.0, 0.3, 0.5})
@@ -143,7 +143,7 @@ TEST(ToolContact, BetweenFramesTheForceGoesOnWithTheSurface) {
             tool("slab-40", "look-ahead"), poses("[0,0,0,0,0,0,0]"),
             {"renderer.velocity_estimate=true", "renderer.velocity_force=" + sign, "duration_s=0.4"});
     double max = 0;
-    for (std::size_t i = 1; i < trace.length(); ++i)  // from 0.25 s the estimate has settled
+    for (std::size_t i = 1; i < trace.length(); ++i)  // the estimate has settled at 0.25 s
       if (trace.time_s[i] > 0.25) max = std::max(max, (trace.force_N[i] - trace.force_N[i - 1]).norm());
     EXPECT_GT(trace.force_N.back().y(), 5);
     return max;
@@ -154,8 +154,9 @@ TEST(ToolContact, BetweenFramesTheForceGoesOnWithTheSurface) {
   EXPECT_GT(max_jump_N("plus"), 1.9 * jump_N);
 }
 
-// From rest the frames of an even acceleration differ by a / f_c^2: with the estimate that is all the tool
-// has to survive, a < (h - 2w) f_c^2; without it the speed grows beyond every bound.
+// The frames of a constant acceleration from rest differ by a / f_c^2. That is all that the tool has to
+// survive if there is an estimate, a < (h - 2w) f_c^2. Without the estimate the speed grows beyond every
+// bound.
 TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
   const double bound = 900 * (0.01 - 0.001);
   for (const std::string rule : {"voxels", "look-ahead"})
@@ -171,7 +172,7 @@ TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
     }
 }
 
-// From behind the sheet to 5 mm before it, and back.
+// The tool moves from behind the sheet to 5 mm before it, and back.
 Trace from_behind(const std::string& mesh, const std::string& rule) {
   return run(
       R"({"name": "sheet"})", tool(mesh, rule),
@@ -187,7 +188,7 @@ TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
     const Trace trace = from_behind(t.mesh, "look-ahead");
     for (std::size_t i = 500; i < 700; ++i)
       EXPECT_NEAR(trace.proxy_position_m[i].z(), -t.half_m, 2e-4) << t.mesh;
-    for (std::size_t i = 1; i < trace.length(); ++i)  // on the way back it follows as soon as it may
+    for (std::size_t i = 1; i < trace.length(); ++i)  // it follows the device back as soon as it may
       if (i > 700 && trace.hip_position_m[i].z() < -t.half_m - 1e-4) {
         EXPECT_LT((trace.proxy_position_m[i] - trace.hip_position_m[i]).norm(), 1e-12) << t.mesh;
       }
@@ -216,8 +217,8 @@ TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
     }
 }
 
-// What held the tool is forgotten once it is left behind: a ball that was at the back of a plane, and went
-// round it, is lifted by it like one that was not.
+// A contact that held the tool is forgotten once it is left behind. A ball that was at the back of a plane
+// and went round it is lifted by the plane like a ball that was not.
 TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
   for (const char* displacement :
        {"[0,-0.05,0,0,0,0,0], [0,-0.009,0,0,0,0,0.3]", "[0,-0.05,0,0,0,0,0], [0,-0.03,0,0,0,0,0.3]"}) {
@@ -233,7 +234,7 @@ TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
   }
 }
 
-// As printed the normal pulls a tool through from behind: the reading that look-ahead mends.
+// The normal as printed pulls a tool through from behind. Look-ahead corrects this.
 TEST(ToolContact, TheBackOfASheetSucksTheToolThroughByVoxels) {
   const Trace trace = from_behind("ball", "voxels");
   double max_distance = -1;

@@ -102,23 +102,23 @@ TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
   expect_none(GetParam(), "voxels", kVoxels_m);
 }
 
-// Where points are so dense that one disk stands for many, every point is asked whether it stops a motion.
+// Points are so dense here that one disk stands for many. Each motion is still checked against every point.
 TEST(ToolCrossings, ThereAreNoneWherePointsAreMerged) {
   const ToolAudit audit = audited("fig6.3", "continuous", kContinuous_m, {"scenario.spacing_m=0.0005"});
   EXPECT_GT(audit.point_ticks, 10'000'000);
   EXPECT_EQ(audit.entered, 0) << audit.deepest_m;
 }
 
-// What the printed rule does to a tool that comes from the back of a surface.
+// The tool comes from the back of a surface. The printed rule pulls it through.
 TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
   EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);
   EXPECT_EQ(audited("tool-sheet", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
 }
 
-// Where it is known which point of a frame was where in the one before, points are followed through frames,
-// too: a surface that rises by more than the plate's thickness in every frame takes it along and does not
-// pass through.
+// Points are followed through frames too, because the position of each point in the frame before is known. A
+// surface that rises by more than the plate's thickness in every frame takes the plate along and does not
+// pass through it.
 TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
   for (const char* surface : {"scenario.shape=flat", "scenario.tilt_deg=30", "scenario.tilt_deg=-45"}) {
     const auto entered = [&](const std::string& rule) {

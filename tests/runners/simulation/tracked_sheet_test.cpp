@@ -1,6 +1,6 @@
-// What the tracked sheet is for: a pressed proxy is not lost when the cloud is lifted, noise neither lifts
-// nor shakes it, and where there is no noise it is the proxy of chapter 4, bit for bit. Seeds here are not
-// those of the figure.
+// The purpose of the tracked sheet: a pressed proxy is not lost when the cloud is lifted, noise neither lifts
+// nor shakes it, and without noise it is the proxy of chapter 4, bit for bit. Seeds here are not those of the
+// figure.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,8 @@ struct Heights {
   double mean = 0, sd = 0, jump_N = 0;
 };
 
-// Of the proxy above where it would rest without noise, in contact radii, while it slides on a flat cloud.
+// Height of the proxy above its rest position without noise, in contact radii, while it slides on a flat
+// cloud.
 Heights slide(const std::string& renderer, double sigma, int seed) {
   const Trace trace =
       run("fig4.11", {renderer, setting("scenario.noise_sigma_m", sigma * kRc), seeded(seed),
@@ -85,7 +86,7 @@ TEST(TrackedSheet, NoiseNeitherLiftsNorShakesTheProxy) {
   }
 }
 
-// Of the map of Fig 4.13, here and there; the paper's method holds less than half of it.
+// Samples of the map of Fig 4.13; the paper's method holds less than half of the map.
 TEST(TrackedSheet, LiftsAreHeld) {
   int lost = 0, low = 0, lifts = 0;
   for (const double sigma : {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0})

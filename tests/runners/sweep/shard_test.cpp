@@ -1,4 +1,4 @@
-// Which part of a sweep a process does.
+// The part of a sweep that a process runs.
 #include "runners/sweep/shard.h"
 
 #include <gtest/gtest.h>

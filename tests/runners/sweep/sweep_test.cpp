@@ -1,5 +1,4 @@
-// What a sweep is: its definition, axes and cells. What it refuses is in command_line/sweep_bad_input
-// too.
+// The definition, axes and cells of a sweep. command_line/sweep_bad_input tests refusals too.
 #include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +29,7 @@ Sweep along(const std::string& axis, const std::vector<std::string>& overrides =
   all.insert(all.end(), overrides.begin(), overrides.end());
   return small(all);
 }
-// What the experiment of a cell has for a path like "scenario.noise_sigma_m".
+// Value at a path like "scenario.noise_sigma_m" in the experiment of a cell.
 Json value_in(const Sweep& sweep, std::size_t cell, const std::string& path, int replicate = 0) {
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
@@ -239,7 +238,7 @@ TEST(Overrides, ReachTheSweepOrItsExperiment) {
   EXPECT_EQ(sweep.refinement()->budget, 99u);
   EXPECT_EQ(sweep.refinement()->first_replicates, 3);
   EXPECT_EQ(value_in(sweep, 4, "renderer.xi"), 0.25);
-  // Those of the command line come after those of the file.
+  // Settings of the command line are applied after those of the file.
   EXPECT_EQ(value_in(small({"haptic_rate_hz=800"}), 0, "haptic_rate_hz"), 800);
   EXPECT_EQ(value_in(small({"set={}"}), 0, "haptic_rate_hz"), 1000);
 }

@@ -1,4 +1,5 @@
-// What the header of a PLY file claims is held against the size of the file before any library reads it.
+// The counts that the header of a PLY file claims are checked against the size of the file before any library
+// reads it.
 #include "runners/tool_files/ply_header.h"
 
 #include <gtest/gtest.h>

@@ -427,7 +427,7 @@ TEST(ImageTrajectories, ReportWhichPixelsTheyFollow) {
              "row " + std::to_string(chosen.row()) + ", column " + std::to_string(chosen.column()));
 }
 
-// What the message proposes can be used: the pixel, and -1 for both.
+// Both proposals of the message can be used: the pixel, and -1 for both.
 TEST(ImagePress, ProposesAPixelThatCanBeTouched) {
   const Surface ring = [](double x, double y) {
     const double r = std::hypot(0.5 * x, 0.5 * y);

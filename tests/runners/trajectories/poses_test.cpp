@@ -56,7 +56,7 @@ TEST(Poses, TakeTheShorterWayRound) {
   const Eigen::Quaterniond c = about({0, 0, 1}, -160);
   for (double fraction = 0; fraction < 1; fraction += 0.07)
     expect_at(device.at(1 + fraction), {0, 0, 0}, b.slerp(fraction, c));
-  // At a constant rate.
+  // The rotation has a constant rate.
   const double first = device.at(0.3).orientation_W.angularDistance(device.at(0.31).orientation_W);
   const double later = device.at(0.7).orientation_W.angularDistance(device.at(0.71).orientation_W);
   EXPECT_NEAR(first, later, 1e-8);

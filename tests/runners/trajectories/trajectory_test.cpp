@@ -62,7 +62,7 @@ TEST(PolylinePath, JumpsWaitsAndEnds) {
   EXPECT_DOUBLE_EQ(path.duration_s(), 2);
   expect_at(path.at(-3), {0, 0, 0});
   expect_at(path.at(std::nextafter(1.0, 0.0)), {0, 0, 0});
-  expect_at(path.at(1), {5, 0, 0});  // at the moment of a jump the device is already there
+  expect_at(path.at(1), {5, 0, 0});  // the jump is done at its moment
   expect_at(path.at(1.49), {5, 0, 0});
   expect_at(path.at(1.75), {5, 0.5, 0});
   expect_at(path.at(2), {5, 1, 0});
@@ -112,14 +112,14 @@ TEST(Press, FollowsFramesOrTheMovingPlane) {
   expect_at(stepwise.at(16 / 30.0).position_W, {0.01, frame_16 - 0.03, 0.03});
   expect_at(stepwise.at(0.566).position_W, {0.01, frame_16 - 0.03, 0.03});
   expect_at(smooth.at(16 / 30.0).position_W, {0.01, frame_16 - 0.03, 0.03});
-  const double sag = 3.0 / 8 / 900;  // of the parabola in the middle between two updates
+  const double sag = 3.0 / 8 / 900;  // sag of the parabola midway between two updates
   expect_at(smooth.at(16.5 / 30).position_W, {0.01, 0.5 * (frame_16 + frame_17) - sag - 0.03, 0.03});
 }
 
 TEST(FollowSurface, KeepsItsDepthAndSpeedOnAFlat) {
   const FlatGrid scene = made<FlatGrid>();
   const FollowSurface device({}, scene);
-  const double down = (0.02 + 0.005) / 0.05;  // from the clearance to the depth, at 5 cm/s
+  const double down = (0.02 + 0.005) / 0.05;  // time from the clearance to the depth, at 5 cm/s
   EXPECT_NEAR(device.duration_s(), down + 0.2 / 0.05 + down, 1e-12);
   expect_at(device.at(0).position_W, {-0.1, 0.02, 0});
   for (const double t : {0.0, 0.3, 1.7, 3.9})
@@ -142,7 +142,7 @@ TEST(FollowSurface, StaysInsideAWaveByItsDepth) {
     const double moved = (device.at(t + 1e-4).position_W - hip).norm();
     ASSERT_LE(moved, 1e-4 * s.speed_m_per_s * (1 + 1e-9));
   }
-  // Where two circles meet, below a peak, the piece between places passes at most half a sample lower.
+  // The piece between two positions passes at most half a sample lower, where two circles meet below a peak.
   EXPECT_GT(deepest, -s.depth_m - 0.5e-4);
 }
 
@@ -215,7 +215,7 @@ TEST(ImageScan, TouchesWhatWasSeenWithoutGaps) {
           z = std::max(z, scene.true_depth().z_m[pixel(x, v)]);
       return z;
     };
-    std::vector<double> behind;  // how far the HIP is behind the surface that its pixel sees
+    std::vector<double> behind;  // distance of the HIP behind the surface at its pixel
     for (double t = 0; t < scan.duration_s() + 0.001; t += 0.001) {
       const Vec3 hip = cloud.image->X_WC.inverse() * scan.at(t).position_W;
       ASSERT_NEAR(camera.fy * hip.y() / hip.z() + camera.cy, scan.row(), 1e-9) << "along the row";
@@ -259,7 +259,7 @@ TEST(ImageScan, RefusesWhatItCannotScan) {
   ImageScan::Settings s;
   s.row = 480;
   EXPECT_THROW(ImageScan(s, scene), InputError);
-  s.row = 0;  // at the border nothing is supported on all sides
+  s.row = 0;  // border pixels are not supported on all sides
   EXPECT_THROW(ImageScan(s, scene), InputError);
   s.row = 240, s.first_column = 20, s.last_column = 10;
   EXPECT_NE(validate(s), "");

@@ -41,7 +41,7 @@ inline std::string decompressed(const std::string& base64, std::size_t max_bytes
   return bytes;
 }
 
-// What a browser reads.
+// The data of a page, decoded as a browser does.
 struct ReadPage {
   explicit ReadPage(const std::string& html)
       : json(Json::parse(between(html, "id=\"view\">", "</script>"))),

@@ -49,12 +49,13 @@ TEST(ShownPoints, AllNearTheProxyAndAboutAsManyOthersAsAllowed) {
     if (from_path_m <= 0.005) {
       EXPECT_TRUE(is_shown(shown, i)) << i;
       ++near;
-    } else if (from_path_m > 1.1 * 0.005) {  // in between either is right
+    } else if (from_path_m > 1.1 * 0.005) {  // both are right in between
       ++others, others_shown += is_shown(shown, i);
     }
   }
   ASSERT_GT(near, 20u);
-  // As if each of the others were drawn with the same chance: within four standard deviations.
+  // The number is that of a draw with the same chance for each of the others, within four standard
+  // deviations.
   const double chance = 500 / static_cast<double>(others);
   EXPECT_NEAR(static_cast<double>(others_shown), 500, 4 * std::sqrt(500 * (1 - chance)));
 }
@@ -82,7 +83,7 @@ TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
   for (const std::uint32_t i : always) EXPECT_TRUE(is_shown(few, i));
 }
 
-// What is left out of one frame is left out of the next: a picture that plays does not flicker.
+// A point that is left out of one frame is left out of the next, so that an animation does not flicker.
 TEST(ShownPoints, TheSamePlacesOfAnImageInEveryFrame) {
   PointCloud cloud = cloud_with_holes();
   const ShownPointsRule rule{kBox, 0, 300};

@@ -14,7 +14,7 @@
 namespace remote_touch::beating_heart_test {
 namespace {
 
-constexpr double kBeat_s = 0.8;  // at 75 beats a minute
+constexpr double kBeat_s = 0.8;  // period of 75 beats a minute
 
 BeatingHeart made(const BeatingHeart::Settings& settings = {}) {
   return BeatingHeart(settings, NoiseKey{1}, scenes::kernels());

@@ -32,7 +32,7 @@ std::size_t pixel(int u, int v) {
 RayHit table(const Vec3& origin, const Vec3& ray) {
   return ray.y() < 0 ? RayHit{-origin.y() / ray.y(), kTable} : RayHit{};
 }
-// On the table a block fills the half-space x > 0 below its top.
+// A block on the table fills the half-space x > 0 below its top.
 RayHit table_and_block(const Vec3& origin, const Vec3& ray) {
   const RayHit top = {(kBlockTop_m - origin.y()) / ray.y(), kBlock};
   return origin.x() + top.t * ray.x() > 0 ? top : table(origin, ray);

@@ -69,7 +69,7 @@ class EllipsoidTest : public testing::TestWithParam<Shape> {
   const Ellipsoid solid_{kCentre, GetParam().semi_axes, GetParam().axes};
 };
 
-// On the surface, along the normal, and not beyond a focal surface: that makes the closest point.
+// A point is the closest if it is on the surface, along the normal, and not beyond a focal surface.
 TEST_P(EllipsoidTest, TheClosestPointObeysTheConditions) {
   const double shortest = semi_axes().minCoeff();
   for (const Vec3& p : places()) {
@@ -78,7 +78,7 @@ TEST_P(EllipsoidTest, TheClosestPointObeysTheConditions) {
     const Vec3 normal = x.cwiseQuotient(semi_axes()).cwiseQuotient(semi_axes()).normalized();
     const double along = offset.dot(normal);
     ASSERT_NEAR(solid_.signed_distance(p), along, 1e-9 * shortest + 1e-14 * offset.norm()) << p.transpose();
-    // What an error of the foot adds to the distance is of second order.
+    // An error of the foot point changes the distance only in second order.
     ASSERT_LE(offset.cross(normal).norm(), 1e-6 * (shortest + offset.norm())) << p.transpose();
     ASSERT_GE(along, -shortest * (1 + 1e-12)) << "deeper than the ellipsoid is thick";
     ASSERT_EQ(solid_.signed_distance(p) < 0, level(to_axes(p)) < 1);
@@ -158,7 +158,7 @@ TEST_P(EllipsoidTest, CastMeetsTheSurfaceFirstWhereTheEquationSays) {
   int hits = 0, misses = 0, starts_inside = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Vec3 origin = from[i];
-    if (i % 10 == 9) continue;  // from 10^4 radii away no digits are left
+    if (i % 10 == 9) continue;  // no digits are left from 10^4 radii away
     const Vec3 towards = from_axes(0.7 * displacement.point(i).cwiseProduct(semi_axes())) - origin;
     const Vec3 direction = i % 2 == 0 ? towards : Vec3(3 * displacement.point(i));
     const double t = solid_.cast(origin, direction);
@@ -211,7 +211,7 @@ TEST(Ellipsoid, BallByHand) {
   const Ellipsoid ball({0, 1, 0}, {0.5, 0.5, 0.5});
   EXPECT_NEAR(ball.signed_distance({3, 5, 0}), 4.5, 1e-15);
   EXPECT_NEAR(ball.signed_distance({0.1, 1, 0}), -0.4, 1e-16);
-  EXPECT_NEAR(ball.cast({0, 5, 0.3}, {0, -2, 0}), 1.8, 1e-15);  // in units of the direction
+  EXPECT_NEAR(ball.cast({0, 5, 0.3}, {0, -2, 0}), 1.8, 1e-15);  // t is in units of the direction
   EXPECT_EQ(ball.cast({0, 5, 0.3}, {0, 2, 0}), kInfinity);      // behind
   EXPECT_EQ(ball.cast({0, 5, 0.6}, {0, -2, 0}), kInfinity);     // beside
   EXPECT_NEAR(ball.height(0.3, 0), 1.4, 1e-15);

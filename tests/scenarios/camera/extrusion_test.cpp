@@ -167,7 +167,7 @@ TEST(Extrusion, BoxByHand) {
   EXPECT_NEAR(box.signed_distance({0.08, 0.12, 0.2}), 0.05, 1e-16);     // an edge: 3-4-5
   EXPECT_NEAR(box.signed_distance({0.07, 0.09, 0.28}), 0.03, 1e-16);    // a corner: 2-1-2
   EXPECT_NEAR(box.signed_distance({0.045, 0.04, 0.2}), -0.005, 1e-16);  // nearest to a cap
-  EXPECT_NEAR(box.cast({0, 0.5, 0.2}, {0, -2, 0}), 0.21, 1e-15);        // in units of the direction
+  EXPECT_NEAR(box.cast({0, 0.5, 0.2}, {0, -2, 0}), 0.21, 1e-15);        // t is in units of the direction
   EXPECT_EQ(box.cast({0, 0.5, 0.2}, {0, 1, 0}), kInfinity);             // behind
   EXPECT_EQ(box.cast({0, 0.1, 0.2}, {1, 0, 0}), kInfinity);             // level, above the top
   EXPECT_NEAR(box.cast({-1, 0.04, 0.2}, {1, 0, 0}), 0.97, 1e-15);       // through a cap

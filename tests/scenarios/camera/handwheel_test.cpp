@@ -127,7 +127,7 @@ TEST(Handwheel, DistancesThatAreKnown) {
   EXPECT_NEAR(at(0.045, 0, 0), -0.007, 1e-15) << "in the middle of the tube";
 }
 
-// From cameras all around: cast, and the first place where the ray is inside by a march of small steps.
+// Compares cast(), from cameras all around, with a march of small steps to the first position inside.
 TEST(Handwheel, RaysMeetItWhereAMarchMeetsIt) {
   const Handwheel wheel(kCentre, kRing_m);
   const std::vector<Vec3> origins = places(400, 0.5, 2), targets = places(400, 0.07, 3);

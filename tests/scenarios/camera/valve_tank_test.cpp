@@ -155,7 +155,7 @@ TEST(ValveTank, TurbidWaterLosesDepthAndMakesItNoisy) {
   EXPECT_NEAR(last_lost, 1 - 0.98 * std::exp(-0.25 * 3 * 0.98), 0.03) << "most of the wall is 1 m away";
 }
 
-// What a fixture by colour needs: at the defaults both rules find their valve and little else.
+// A fixture by colour must work at the defaults: both rules find their valve and little else.
 TEST(ValveTank, HueFindsTheValves) {
   const ValveTank tank = made();
   const PointCloud cloud = tank.cloud(0);

@@ -85,7 +85,7 @@ TEST(RayNoise, RemembersTheFramesBefore) {
       three = two, two = one, one = n;
     }
     square.expect(1, "variance");
-    // Of a sum that is cut off after age 16: sum of m^i m^(i + lag), over sum of m^(2 i).
+    // Correlation of a sum that is cut off after age 16: sum of m^i m^(i + lag), over sum of m^(2 i).
     const auto expected = [&](int lag) {
       double product = 0, squares = 0;
       for (int i = 0; i <= 16; ++i) {

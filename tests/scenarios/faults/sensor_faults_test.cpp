@@ -115,7 +115,7 @@ TEST(SensorFaults, OutliersLieWithinTheirReach) {
   EXPECT_GT(furthest, 0.199);
 }
 
-// In an image points stay on their rays, so that the search by pixels finds them.
+// Points in an image stay on their rays, so that the search by pixels finds them.
 TEST(SensorFaults, InAnImagePointsMoveAlongTheirRays) {
   SensorFaults s;
   s.flying_probability = 0.3, s.max_flying_distance_m = 0.05, s.quantisation_m = 0.01;
@@ -184,7 +184,8 @@ TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
   expect_fraction(twice, lost, 0.3);  // one tells nothing about the next
 }
 
-// What is gone is what lies within the radius of some middle that is gone, and nothing else.
+// Checks that the missing points are those within the radius of a middle around which all are missing, and no
+// others.
 void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view_direction,
                         double radius_m) {
   const auto apart = [&](std::size_t i, std::size_t j) {

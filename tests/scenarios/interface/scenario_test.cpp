@@ -107,10 +107,10 @@ TEST(FlatGrid, NoiseIsRedrawnOrKept) {
   EXPECT_TRUE(same_bits(made<FlatGrid>(s).cloud(0), made<FlatGrid>(s).cloud(3)));
   double squares = 0;
   for (const double y : made<FlatGrid>(s).cloud(0).y) squares += y * y;
-  EXPECT_NEAR(std::sqrt(squares / 1e4), 0.002, 5 * 0.002 / std::sqrt(2e4));  // of 10^4 draws
+  EXPECT_NEAR(std::sqrt(squares / 1e4), 0.002, 5 * 0.002 / std::sqrt(2e4));  // standard error for 10^4 draws
 }
 
-// The noise is made where it is asked for; the oracle makes all of it and looks at every point.
+// Noise is drawn on demand here. The oracle draws all of it and tests every point.
 TEST(MovingLift, LazyPointsAreTheCloudBitForBit) {
   std::mt19937 random(1);
   for (const double sigma : {0.0, 0.003, 0.015}) {
@@ -128,7 +128,7 @@ TEST(MovingLift, LazyPointsAreTheCloudBitForBit) {
         balls.push_back({i % 2 == 0 ? far : near, 0.002 + 0.0003 * static_cast<double>(i)});
         balls.push_back({balls.back().centre + Vec3(0.001, 0.0002, -0.001), 0.01});  // a proxy moves a little
       }
-      // Where the noise has thrown a point highest: only a bound that no normal exceeds finds it.
+      // The point that the noise has moved highest: only a bound that no normal variate exceeds finds it.
       const auto highest = std::max_element(cloud.y.begin(), cloud.y.end()) - cloud.y.begin();
       balls.push_back({cloud.point(static_cast<std::size_t>(highest)), 1e-5});
       const auto search = lift.points(frame);
@@ -161,14 +161,14 @@ TEST(MovingLift, HeightsFollowTheSpeeds) {
     EXPECT_NEAR(lift.cloud(j).y[17], y, 1e-15) << j;
     const double between = lift.surface_height(0, 0, lift.captured_s(j) + 0.25 / 30);
     const double next_v = j >= 15 ? v + 0.1 : v;
-    // On the parabola with the acceleration, which begins one update before the rise ends.
+    // The surface follows the parabola of the acceleration, which begins one update before the rise ends.
     const double sag = j >= 14 ? 0.5 * 0.25 * 0.75 * 3 / 900 : 0;
     EXPECT_NEAR(between, j == 25 ? y : y + 0.25 * next_v / 30 - sag, 1e-15) << j;
     // The truth that a renderer is judged by is the newest frame's plane.
     EXPECT_NEAR(lift.signed_distance({0, 0.01, 0}, lift.captured_s(j)), 0.01 - y, 1e-15) << j;
     EXPECT_NEAR(lift.signed_distance({0, -1, 0}, lift.captured_s(j) + 0.9 / 30), -1 - y, 1e-15) << j;
   }
-  EXPECT_NEAR(y, 10 * 0.1 / 30 + 3.0 * 10 * 11 / 2 / 900, 1e-15);  // in closed form
+  EXPECT_NEAR(y, 10 * 0.1 / 30 + 3.0 * 10 * 11 / 2 / 900, 1e-15);  // closed form of the sum
   EXPECT_NEAR(lift.surface_height(0, 0, 100), y, 1e-15);
 }
 

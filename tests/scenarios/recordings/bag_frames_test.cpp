@@ -130,8 +130,8 @@ TEST_F(Frames, OfDepthHaveTheCameraBesideThem) {
              "/x/image_raw, message 0: has 4 x 3 pixels: expected 5 x 3, as its CameraInfo has");
 }
 
-// With the name of another coordinate frame, which must be as long as "optical": what follows stays in its
-// place.
+// A camera message with another coordinate frame. Its name must be as long as "optical", so that the bytes
+// that follow stay at their offset.
 BagMessage camera_of(const std::string& topic, const std::string& frame_id) {
   BagMessage message = camera(topic);
   const std::size_t rest = MessageBytes().header(1, "optical").done().size();

@@ -1,4 +1,4 @@
-// What later frames of a recording must have in common with the first.
+// Properties that later frames of a recording must have in common with the first.
 #include "scenarios/recordings/frame_layout.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(FrameLayout, WithoutACameraHasNoneInAnyFrame) {
   EXPECT_EQ(later.columns(), 4);
 }
 
-// Nothing, or too little for a fit, was measured.
+// The frame has no measured point, or too few for a fit.
 TEST(FrameLayout, FramesWithTooFewPointsForAFitHaveTheCameraOfTheFirst) {
   const FrameLayout layout = layout_of(image(kCamera, 1));
   PointCloud nothing, one_point = image(kCamera, 2);

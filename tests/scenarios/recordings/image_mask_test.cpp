@@ -52,7 +52,8 @@ TEST_F(ImageMasks, MayHaveColours) {
             (Shares{0, 1, 1, 1}));
 }
 
-// What can be seen through is as black, or not, as without.
+// A fully transparent pixel selects nothing. A partly transparent one counts by its colour, like an opaque
+// one.
 TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
   const std::uint8_t rgba[12] = {0, 0, 0, 255, 9, 0, 0, 0, 9, 0, 0, 1};
   EXPECT_EQ(weights(folder_.write_png("rgba.png", 3, 1, PNG_FORMAT_RGBA, rgba), image(3, 1)),

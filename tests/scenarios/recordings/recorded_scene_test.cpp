@@ -1,4 +1,4 @@
-// What a recording tells of the true surface, wherever its camera stands.
+// The true surface that a recording defines, wherever its camera stands.
 #include "scenarios/recordings/recorded_scene.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ RecordedScene::Settings two_walls(const TestFolder& folder) {
   return settings;
 }
 
-// Where pixel (u, v) looks, so far away.
+// Returns the position that pixel (u, v) sees at depth z.
 Vec3 seen(double u, double v, double z) {
   return {(u - 7.5) / 100 * z, (v - 7.5) / 100 * z, z};
 }
@@ -55,7 +55,7 @@ TEST(RecordedSceneTest, KnowsTheSameWhereverItsCameraStands) {
       const RecordedScene moved(settings, {}, scenes::kernels());
       const RigidTransform X_WC(Eigen::Translation3d(place) * rotation(kRadiansPerDegree * turn));
       for (int u = 0; u < kSide; ++u)
-        for (const double z : {0.48, 0.51, 0.53, 0.7}) {  // at 0.5 the patch is 2 pixels wide to the last bit
+        for (const double z : {0.48, 0.51, 0.53, 0.7}) {  // not 0.5: the patch would be just 2 pixels wide
           const Vec3 p_C = seen(u, 8, z);
           const double expected = as_recorded.signed_distance(p_C, 0),
                        got = moved.signed_distance(X_WC * p_C, 0);
@@ -84,7 +84,7 @@ TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
   }
   RecordedScene::Settings settings;
   settings.path = folder.write("x.pcd", pcd).string();
-  settings.camera_position_m = {0, 1, 0};  // of the file, registered in the base frame
+  settings.camera_position_m = {0, 1, 0};  // origin of the file's coordinates in the base frame
   settings.truth_radius_m = 0.03;          // the wall is steep
   const RecordedScene scene(settings, {}, scenes::kernels());
   const PointCloud cloud = scene.cloud(0);
@@ -311,7 +311,7 @@ TEST(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
   }
 }
 
-// As recorded is as recorded, whatever comes after the last frame.
+// A loop keeps the recorded stamps; the first frame follows one mean period after the last.
 TEST(RecordedSceneTest, ALoopHasTheStampsOfItsFrames) {
   const TestFolder folder("recorded_scene_test");
   write_stamped(folder, {"5", "5.25", "5.5", "6.5"});

@@ -1,4 +1,4 @@
-// Where recordings are looked for.
+// Folders in which a recording is searched.
 #include "scenarios/recordings/recording_part.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST_F(FindRecording, BagsAreReadAsAWhole) {
   EXPECT_EQ(files_of({"one.bag", 0, -1})[0].name, "one.bag");
 }
 
-// It is input of the program, which the command line hands on.
+// The environment variable is an input of the program, which the command line passes on.
 TEST_F(FindRecording, DoesNotReadTheEnvironment) {
   folder_.write("data/a.png", "");
   ::setenv("REMOTE_TOUCH_DATA", (folder_ / "data").c_str(), 1);

@@ -156,7 +156,7 @@ TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
       const Vec3 expected = origin + turned({s.grid.x(column), 0, s.grid.z(row)}, rotation_deg);
       EXPECT_LT((cloud.point(i) - expected).norm(), 1e-15) << frame;
     }
-    // Of a tilted plane, also over places beyond its border.
+    // The height is that of a tilted plane, also over positions beyond its border.
     for (const double x : {0.0, 0.03, -1.0})
       EXPECT_NEAR(shape.surface_height(x, 0.01, frame / 30.0),
                   origin.y() + std::tan(rotation_deg * kPi / 180) * (x - origin.x()), 1e-14);

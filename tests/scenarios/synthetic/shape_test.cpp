@@ -89,7 +89,7 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
   std::mt19937 random(1);
   const auto even = [&] { return random() / 2147483648.0 - 1; };
   for (const Kind kind : kKinds) {
-    if (kind == Kind::corner) continue;  // without a border: below
+    if (kind == Kind::corner) continue;  // has no border: see the next test
     SCOPED_TRACE(static_cast<int>(kind));
     const Shape::Settings s = settings_of(kind);
     const Shape shape(s, kGrid);
@@ -103,7 +103,7 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
       // The nearest place of the surface lies within half a gap of a sample.
       EXPECT_LE(got, brute + 1e-12) << p.transpose();
       EXPECT_GE(std::sqrt(got * got + 0.25 * samples.max_gap_m * samples.max_gap_m) +
-                    0.25 * samples.max_gap_m * samples.max_gap_m / 0.005,  // of a curved one
+                    0.25 * samples.max_gap_m * samples.max_gap_m / 0.005,  // extra gap of a curved surface
                 brute)
           << p.transpose();
       below += shape.signed_distance(p) < 0;

@@ -53,7 +53,7 @@ TEST(TextFile, APipeIsReadToItsEnd) {
   EXPECT_EQ(text.get(), sent);
 }
 
-// As SIGTERM does, whose handler lets interrupted calls go on.
+// The signal arrives like SIGTERM, whose handler lets interrupted calls continue.
 TEST(TextFile, ASignalEndsTheWaitForAPipe) {
   const TestFolder folder("text_file_test");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

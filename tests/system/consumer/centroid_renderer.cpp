@@ -56,7 +56,7 @@ RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
   const PointsView points = near_.view();
   // A sum of whole numbers does not depend on the order of the points, which is that of the search.
   const double grid_m = 0x1p-26 * settings_.radius_m;
-  Vec3 sum = Vec3::Zero();  // of the points seen from the HIP, in units of the grid
+  Vec3 sum = Vec3::Zero();  // sum of the points relative to the HIP, in units of the grid
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const Vec3 offset_m = Vec3(points.x[i], points.y[i], points.z[i]) - device.position_W;
     sum += Vec3((offset_m / grid_m).array().round());

@@ -30,7 +30,7 @@ class Dome final : public remote_touch::Scenario {
   double signed_distance(const remote_touch::Vec3& p_W, double time_s) const override;
 
  private:
-  double height_m(double time_s) const;  // of the centre
+  double height_m(double time_s) const;  // height of the centre
 
   Settings settings_;
   remote_touch::NoiseKey key_;

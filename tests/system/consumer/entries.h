@@ -1,4 +1,4 @@
-// What this laboratory adds: a renderer, a scenario, a hand and a measure.
+// The entries that this laboratory adds: a renderer, a scenario, a hand and a measure.
 #pragma once
 
 #include <runners/experiment/catalog.h>

@@ -52,10 +52,10 @@ int errno_of(const char* name) {
   return std::strcmp(name, "ENOMEM") == 0 ? ENOMEM : EIO;
 }
 
-// Of the return addresses, relative to the libraries that they are in.
+// Hash of the return addresses, each relative to the library that it is in.
 std::uint64_t hash_of_stack() {
   void* stack[kFrames + 3];
-  const int depth = ::backtrace(stack, kFrames + 3);  // with those of this library
+  const int depth = ::backtrace(stack, kFrames + 3);  // includes this library's frames
   std::uint64_t hash = 1469598103934665603U;
   for (int i = 1; i < depth; ++i) {
     dl_find_object object{};

@@ -1,4 +1,4 @@
-// What the files of the preloaded library share; fail_once.cpp says what it is for.
+// The part that the files of the preloaded library share. fail_once.cpp describes its purpose.
 #pragma once
 
 #include <dlfcn.h>
@@ -23,14 +23,14 @@ struct Process {
 };
 extern Process this_process;
 
-// Which call fails: KIND:N:HOW.
+// Reads the call that is to fail, KIND:N:HOW.
 void read_wish(const char* text);
 // Files count below PLACE + below.
 void count_below(const char* place, const char* below);
 
 // Counts a call. True if it is the one that fails; errno is then set.
 bool fails(Kind kind);
-// The same where a path or an open file is below the folder; the errno of before stays if it does not fail.
+// The same for a path or an open file below the folder. If the call does not fail, errno keeps its value.
 bool fails_below(Kind kind, const char* path);
 bool fails_below(Kind kind, int file);
 
@@ -41,5 +41,5 @@ Function* next(const char* name) {
 }
 
 using Main = int(int, char**, char**);
-// With FAIL_ONCE_SERVER: answers requests with copies of the program, see fail_once.cpp.
+// Answers requests with copies of the program, if FAIL_ONCE_SERVER is set; see fail_once.cpp.
 int serve(Main* own_main, int argc, char** argv, char** environment);

@@ -32,7 +32,7 @@ void set_below(const char* name, const char* place, const char* below) {
   ::setenv(name, path, 1);
 }
 
-// In the copy.
+// Runs in the copy of the program.
 void take_request(const char* wish, const char* process, const char* place) {
   redirect(STDIN_FILENO, "/dev/null", "", O_RDONLY);
   redirect(STDOUT_FILENO, place, "/out", O_WRONLY | O_CREAT | O_TRUNC);
@@ -47,7 +47,7 @@ void take_request(const char* wish, const char* process, const char* place) {
   if (::chdir(std::getenv("FAIL_ONCE_BELOW")) != 0) ::_exit(125);
   this_process.is_chosen = std::strcmp(process, "0") == 0 || std::strcmp(process, "1") == 0;
   read_wish(wish);
-  ::alarm(600);  // what does not end
+  ::alarm(600);  // it ends a copy that hangs
   this_process.is_running = true;
 }
 

@@ -33,20 +33,20 @@ class OfABox : public testing::Test {
   const ClearWay way_{tool_};
 };
 
-// Towards a face the closed form: to where the point is kTouch_m outside.
+// Closed form of a motion towards a face: it ends where the point is kTouch_m outside.
 TEST_F(OfABox, EndsWhereAPointTouches) {
   for (const double distance_m : {2e-6, 1e-5, 2e-4, 7e-4, 2e-3})
     for (const double motion_m : {3e-4, 1e-3, 3e-3}) {
       const Vec3 p_T(0.002, -0.001, 0.005 + distance_m);
       const double expected = std::min(1.0, (distance_m - ClearWay::kTouch_m) / motion_m);
-      const double accuracy = 1e-5 + 2e-8 / motion_m;  // of a part of the way; of the field
+      const double accuracy = 1e-5 + 2e-8 / motion_m;  // 1e-5 of the way, and 2e-8 m of the field
       EXPECT_NEAR(fraction(p_T, shift({0, 0, motion_m})), expected, accuracy)
           << distance_m << " " << motion_m;
       EXPECT_LE(fraction(p_T, shift({0, 0, motion_m})), expected + 1e-7);
     }
 }
 
-// Nearer than kTouch_m is touched, also where the motion ends before the surface.
+// A point nearer than kTouch_m touches, even if the motion ends before the surface.
 TEST_F(OfABox, EndsBeforeAMotionThatWouldEndAHairOutside) {
   for (const double distance_m : {2e-4, 7e-4, 2e-3}) {
     const Vec3 p_T(0.002, -0.001, 0.005 + distance_m);
@@ -141,7 +141,7 @@ TEST(ClearWay, IsNoLaterThanDenseSamples) {
       ++tried;
       if (found == 1) continue;
       ++stopped;
-      // Where it stops the point is hardly farther away than the bend of its way.
+      // The distance of the point at the stop is hardly more than the bend of its way.
       early_m = std::max(early_m, at(found));
     }
   }

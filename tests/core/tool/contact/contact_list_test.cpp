@@ -19,9 +19,9 @@ namespace {
 const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
 constexpr double kCellsPer_m = 250;
-// Between its nodes the field of a convex tool is convex but for a fraction of a voxel.
+// Error of interpolation: between its nodes a convex tool's field is convex but for a fraction of a voxel.
 constexpr double kInterpolated_m = 5e-5;
-constexpr double kTouched_m = 3e-4;  // what is nearer is searched
+constexpr double kTouched_m = 3e-4;  // distance below which points are searched
 
 // Points around the tool with normals in all directions; every seventh has none.
 PointCloud cloud_of(std::size_t count) {
@@ -63,8 +63,8 @@ bool same(const ToolContact& a, const ToolContact& b) {
   return a.r_T == b.r_T && a.n_T == b.n_T && a.depth_m == b.depth_m && a.side == b.side;
 }
 
-// In vectors, whatever the instruction set: bit for bit the contacts of one disk after the other, on both
-// sides and with disks that reach out of the grid.
+// The vectorised search gives, on every instruction set, bit for bit the contacts of one disk after the
+// other, on both sides and with disks that reach out of the grid.
 TEST(ContactList, TheSameBitsOnEveryInstructionSet) {
   for (const double ratio : {0.75, 2.0})
     for (const double side : {0.0, 1.0, -1.0}) {
@@ -101,7 +101,7 @@ TEST(ContactList, FewContactsAreAllThere) {
   EXPECT_EQ(near.deepest_m, deepest_m);
 }
 
-// Whatever was asked for before. What is searched is always there.
+// The answer does not depend on earlier queries. The contacts of searched points are always there.
 TEST(ContactList, WhatIsAskedForIsThereAndNothingFartherAway) {
   const PointCloud cloud = cloud_of(800);
   ContactList list(kTool, {}, scenes::kernels());
@@ -186,7 +186,7 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
   }
 }
 
-// What may stop a motion of the continuous rule is asked of every point, also where few stand for many.
+// Every point that may stop a motion of the continuous rule is tested, even where few points stand for many.
 TEST(ContactList, PointsWithinReachAreNeverMerged) {
   const PointCloud cloud = scenes::dense_plane();
   ToolParameters p;

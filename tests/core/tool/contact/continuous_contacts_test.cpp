@@ -31,8 +31,8 @@ std::shared_ptr<const VoxelTool> two_pins() {
   return tool;
 }
 
-// On a dense flat surface, where one disk stands for many points, and finds the pin that its field falls
-// towards: points in the other one are found all the same.
+// One disk stands for many points of a dense flat surface, and finds only the pin that its field falls
+// towards. Points in the other pin are found all the same.
 TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   constexpr double kDepth_m = 2e-4;
   const auto pin = two_pins();

@@ -9,7 +9,7 @@
 namespace remote_touch::disk_contact_test {
 namespace {
 
-constexpr double kMissed_m = 5e-5;  // by a search along two lines, at a corner
+constexpr double kMissed_m = 5e-5;  // error of a search along two lines, at a corner
 
 // Nineteen voxels high, so that its middle is the middle of a cell.
 const auto kPlate = scenes::box_tool({0.01, 0.00475, 0.01});
@@ -34,7 +34,8 @@ TEST(DiskContact, FromBehindThePlaneIsTurned) {
   EXPECT_EQ(contact.side, -1);
 }
 
-// What a frame leaves halfway between two faces came from the sensor's side: the field tells nothing there.
+// A point that a frame leaves halfway between two faces came from the sensor's side. The field has no clear
+// direction there, so the normal decides.
 TEST(DiskContact, AtTheRidgeOfTheFieldTheNormalTells) {
   for (const double up : {1.0, -1.0}) {
     const SurfaceDisk disk = disk_at({0.001, 0, 0.002}, {0, up, 0});
@@ -45,7 +46,7 @@ TEST(DiskContact, AtTheRidgeOfTheFieldTheNormalTells) {
   }
 }
 
-// What is known of the side counts inside the tool, and nowhere else.
+// A known side counts inside the tool, and nowhere else.
 TEST(DiskContact, AKnownSideCountsInside) {
   const SurfaceDisk inside = disk_at({0.001, -0.00425, 0.002}, Vec3::UnitY()),
                     outside = disk_at({0.001, -0.00485, 0.002}, Vec3::UnitY());
@@ -53,7 +54,7 @@ TEST(DiskContact, AKnownSideCountsInside) {
   EXPECT_EQ(near_contact(*kPlate, outside, nearest_place(*kPlate, outside), -1).n_T, Vec3(0, 1, 0));
 }
 
-// Beside the plate, edge-on and within reach of its rim: the surface of the tool is met, at the rim.
+// The disk lies beside the plate, edge-on and within reach of its rim: it touches the tool at the rim.
 TEST(DiskContact, ADiskEdgeOnIsMetAtItsRim) {
   const SurfaceDisk disk = disk_at({0.0112, 0.001, 0.002}, Vec3::UnitZ());
   const DiskPlace nearest = nearest_place(*kPlate, disk);

@@ -107,7 +107,7 @@ TEST(MergedPoints, DisksDoNotCloseHoles) {
 }
 
 TEST(MergedPoints, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
-  const auto level = [](double, double) { return 5e-4; };  // in the middle of a layer of cubes
+  const auto level = [](double, double) { return 5e-4; };  // the middle of a layer of cubes
   EXPECT_FALSE(merged_points(surface(level), kCube_m).empty());
   EXPECT_TRUE(merged_points(surface(level, 2 * kFlat_m), kCube_m).empty());
   std::vector<CloudPoint> coarse = surface([](double, double) { return 0; });
@@ -122,8 +122,8 @@ TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
   EXPECT_TRUE(merged_points(points, kCube_m).empty());
 }
 
-// As many squares along a side as there can be, and a point on each end of the disk's axes: the last square
-// ends there.
+// The largest possible number of squares along a side, with a point on each end of the disk's axes: the last
+// square ends there.
 TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
   constexpr int kHalf = 64;
   constexpr double kStep_m = 1.0 / (1 << 16);

@@ -61,7 +61,8 @@ std::vector<SurfaceDisk> plain_disks(const TiledCloud& cloud, const ToolPose& po
   return disks;
 }
 
-// As a slide in the plane of the disk begins.
+// True if the bound is the field's own distance: the disk is near enough to be searched, and the field is too
+// flat in the disk's plane for a slide to begin.
 bool is_exact(const SurfaceDisk& disk) {
   const Vec3 along = disk.at.gradient_T - disk.at.gradient_T.dot(disk.n_T) * disk.n_T;
   return lower_bound_m(disk) <= NearDisks::kSearch_m && is_flat(along.norm(), disk.radius_m, disk.extent_m);
@@ -114,14 +115,14 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   }
 }
 
-// How many disks are within a distance.
+// Number of disks within a distance.
 std::size_t within(const NearDisks& disks, double distance_m) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < disks.size(); ++k) count += disks.distance_m(k) <= distance_m ? 1 : 0;
   return count;
 }
 
-// What was found for a pose is not what counts in the next frame, at another pose or for another reach.
+// A result for one pose is not reused in the next frame, at another pose or for another reach.
 TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   const PointCloud cloud = cloud_with_normals();
   const Kernels& kernels = scenes::kernels();

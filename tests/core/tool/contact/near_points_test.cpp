@@ -59,7 +59,7 @@ struct Look {
     points.reserve(finder.cloud().padded_size());
     points.on_frame();
   }
-  // Whether the points are those that are found one by one, bit for bit. count: how many there are.
+  // True if the points are those found one by one, bit for bit. count: number of points found one by one.
   bool is_right(const ToolPose& pose, double reach_m, std::size_t& count) {
     points.query(finder, kernels, pose, reach_m);
     const auto expected = plain_places(finder.cloud(), pose, reach_m);

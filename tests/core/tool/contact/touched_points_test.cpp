@@ -132,7 +132,7 @@ TEST(TouchedPoints, AContactListCountsAllThatCount) {
     }
 }
 
-// In the grid and a little outside.
+// Five points a fraction of a cell outside the grid.
 TEST(TouchedPoints, PlacesOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
   const PointCloud cloud = scenes::points_outside(grid);

@@ -40,7 +40,7 @@ TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
   EXPECT_GT(motion.side, 0);
 }
 
-// Off centre the tool tips over the point: Gauss' principle by hand. With row (n, r x n), M = diag(1, I):
+// The tool tips over an off-centre point: Gauss' principle by hand. With row (n, r x n), M = diag(1, I):
 // a = wish + M^-1 row^T lambda, lambda = -row.wish / (row M^-1 row^T).
 TEST(MotionProgram, AnOffCentreContactTipsTheTool) {
   MotionProgram program({}, *kTool);
@@ -88,8 +88,8 @@ TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
   EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);  // the multiplier belongs to the last of the three
 }
 
-// What is left of the wish, as the coupling makes a wrench of it, is what one contact can push: a force f n
-// and the torque f r x n. With the inertia of the tool it is not.
+// The coupling turns the blocked rest of the desired motion into a wrench. It is one that a single contact
+// can exert: a force f n and the torque f r x n. With the inertia of the tool as the metric it is not.
 TEST(MotionProgram, OnACornerTheWrenchOfTheCouplingIsThatOfTheContact) {
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0.004}, Vec3(0.1, 1, 0.2).normalized(), 0, 1}};
   const Vector6 wish = desired({1e-4, -2e-3, 0}, {0.01, 0, -0.02});

@@ -33,7 +33,7 @@ TEST(ToolPose, MovingByTheDisplacementArrives) {
   }
 }
 
-// As the tool sees it, and back: lengths stay, so a bound of the way holds in either.
+// Rotation into the tool's axes and back keeps lengths, so a bound of the way holds in either.
 TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
   std::mt19937 random(4);
   for (int i = 0; i < 2000; ++i) {

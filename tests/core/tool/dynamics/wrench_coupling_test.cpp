@@ -152,7 +152,7 @@ TEST(WrenchCoupling, WithoutTheJacobianADiagonalKDoesWork) {
   EXPECT_GT(std::abs(relative_loop_work(uneven, tool, 400, without_jacobian(uneven))), 0.01);
 }
 
-// As printed the torque of an uneven inertia has no energy: the loop gains or loses a good part of the peak.
+// The printed torque of an uneven inertia has no energy: the loop gains or loses a good part of the peak.
 TEST(WrenchCoupling, ThePrintedTorqueDoesWork) {
   ToolParameters p = without_limits();
   p.torque_rule = TorqueRule::printed;

@@ -86,7 +86,7 @@ TEST(GeneratedTools, TheHuskyIsStoppedByTheNarrowBox) {
   EXPECT_LE(minus, 21.5);
 }
 
-// In a slot of 40 mm: 80 sin a + 10 cos a = 40.
+// The angle of the bar in a slot of 40 mm: 80 sin a + 10 cos a = 40.
 TEST(GeneratedTools, TheBarFitsASlotUpTo22Degrees) {
   const double a = 22.62 * 3.14159265358979323846 / 180;
   Eigen::Matrix3d about_y;

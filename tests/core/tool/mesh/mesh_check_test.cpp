@@ -125,7 +125,7 @@ TEST(MeshRepair, TurnsEachPartOutwardsForItself) {
 
 TEST(MeshRepair, LeavesAClosedMeshAlone) {
   MeshRepair done;
-  done.flipped_triangles = 7;  // of a mesh before
+  done.flipped_triangles = 7;  // left over from an earlier mesh
   const TriangleMesh same = repair_mesh(kBox, done);
   EXPECT_EQ(same.triangles, kBox.triangles);
   EXPECT_EQ(same.vertices, kBox.vertices);

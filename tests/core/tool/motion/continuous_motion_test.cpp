@@ -1,4 +1,4 @@
-// What only the continuous rule keeps: the side of a surface that a frame has taken past the tool.
+// Only the continuous rule keeps the side of a surface that a frame has taken past the tool.
 #include "core/tool/motion/continuous_motion.h"
 
 #include <gtest/gtest.h>
@@ -170,7 +170,7 @@ TEST(ContinuousMotion, NeedsNoNormals) {
   EXPECT_NEAR(ride.out.proxy_W.y(), height_m + kHalf_m.y(), 1e-4);
 }
 
-// Between two sheets that close on the plate it stays, however often frames come.
+// The plate stays between two sheets that close on it, however often frames come.
 TEST(ContinuousMotion, StaysBetweenWallsThatClose) {
   Ride ride({});
   for (int n = 0; n < 20; ++n) {

@@ -114,7 +114,7 @@ TEST(GodObjectMotion, NoPointGetsIntoTheTool) {
   EXPECT_GT(held, 100);
 }
 
-// In one tick from above to far below, through points that are not farther apart than the tool is wide.
+// The device moves in one tick from above to far below. No gap between the points is as wide as the tool.
 TEST(GodObjectMotion, StopsAtTheFirstContactOfALongMotion) {
   ToolGodObjectParameters p;
   p.steps_per_tick = 200;
@@ -125,8 +125,8 @@ TEST(GodObjectMotion, StopsAtTheFirstContactOfALongMotion) {
   EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y() + kGap_m, 1e-5);
 }
 
-// The coupling of the source: no force for the part of the motion that the contacts allow. With one step a
-// tick the tool is still 20 mm behind along the plane.
+// The coupling of the source gives no force for the part of the motion that the contacts allow. After one
+// step in the tick, the tool is still 20 mm behind along the plane.
 TEST(GodObjectMotion, OnlyWhatContactsTakeAwayIsFelt) {
   ToolGodObjectParameters p;
   ToolRenderer whole = renderer(p);

@@ -49,7 +49,8 @@ class Planes final : public NearContactSource {
   std::vector<ToolContact> all_, listed_;
 };
 
-// From a side or from all around, up to a look-ahead away, and pressed in by depth_m.
+// Contact planes from one side or, with is_wedge, from all around: up to a look-ahead away, and pressed in by
+// depth_m.
 std::vector<ToolContact> planes_around(std::mt19937& random, int count, double depth_m, bool is_wedge) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<ToolContact> all;

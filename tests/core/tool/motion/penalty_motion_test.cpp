@@ -30,7 +30,7 @@ PointCloud sheet(int columns, int rows, double x_m = 0) {
   return cloud;
 }
 
-// After some ticks with the device at this height of its lower side.
+// Output after 49 ticks with the device at a pose whose lower side is at this height.
 RenderOutput pressed(const PointCloud& cloud, double lower_side_m, const ToolPenaltyParameters& p = {}) {
   ToolRenderer r = renderer(p);
   r.on_frame(scenes::frame(cloud));
@@ -77,7 +77,7 @@ TEST(PenaltyMotion, PointsWithoutANormalPushTheSame) {
   EXPECT_NEAR((without.force_N - with.force_N).norm(), 0, 1e-3);
 }
 
-// What the hand feels is the push of the point: its force, and its torque about the centre of mass.
+// The hand feels the push of the point: its force, and its torque about the centre of mass.
 TEST(PenaltyMotion, APointBesideTheMiddleTurnsTheTool) {
   const RenderOutput out = pressed(sheet(1, 1, 0.009), -0.001);
   const Vec3 r = Vec3(0.009, 0, 0) - out.proxy_W;
@@ -86,14 +86,14 @@ TEST(PenaltyMotion, APointBesideTheMiddleTurnsTheTool) {
   EXPECT_GT(out.tool->torque_Nm.z(), 1e-3);
 }
 
-// Nothing constrains the tool: points beyond its middle push it through.
+// The tool is not constrained: points beyond its middle push it through.
 TEST(PenaltyMotion, PressedHardItPassesTheSurface) {
   EXPECT_LT(pressed(sheet(20, 10), -0.3).proxy_W.y(), -0.1);
 }
 
-// Where the sheet lies on the lower side of a layer of voxels, the planes go through their middles:
-// k (y - y_device) = 10 k_p (s / 2 - y) for the lower side y of the tool. Its points are not quite symmetric,
-// so it tilts by a hair.
+// The sheet lies on the lower side of a layer of voxels, so the planes go through the voxels' middles:
+// k (y - y_device) = 10 k_p (s / 2 - y)
+// for the lower side y of the tool. Its points are not quite symmetric, so it tilts slightly.
 TEST(PenaltyMotion, OnAVoxmapItRestsOnTheMiddlesOfVoxels) {
   constexpr double k = 600, k_p = 2400;
   for (const double voxel_m : {0.003, 0.004}) {

@@ -89,7 +89,7 @@ TEST_P(EveryRule, CloudsWithoutUsePointsHoldNothing) {
   }
 }
 
-// Without normals the printed rule has no direction: such points do nothing, and are counted.
+// The printed rule has no direction without normals: such points have no effect, and are counted.
 TEST_P(EveryRule, PointsWithoutANormalAreCounted) {
   PointCloud cloud = sheet();
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.nx[i] = cloud.ny[i] = cloud.nz[i] = kNaN;
@@ -221,12 +221,12 @@ TEST(ToolRenderer, SlidesWithoutRipple) {
   EXPECT_LT(high - low, 2e-4);
 }
 
-// A walk through clutter: nothing but numbers, and never deeper than a voxel while the frame rests.
+// A walk through clutter: no output is NaN, and the tool is never deeper than a voxel while the frame rests.
 TEST_P(EveryRule, AWalkThroughClutterStaysOutside) {
   PointCloud clutter = sheet();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-0.05, 0.05);
-  for (int ball = 0; ball < 12; ++ball) {  // of 8 mm, on the sheet
+  for (int ball = 0; ball < 12; ++ball) {  // balls of radius 8 mm on the sheet
     const double x = place(random), z = place(random);
     for (int k = 0; k < 400; ++k) {
       const double v = 2 * (k + 0.5) / 400 - 1, turn = 2.399963 * k, w = std::sqrt(1 - v * v);

@@ -19,7 +19,7 @@ TEST(MassProperties, Box) {
   EXPECT_LT((mass.inertia_m2 - diagonal(0.05, 0.1, 0.13) / 12).norm(), 1e-13);
 }
 
-// With corners at 0 and the unit vectors: volume 1/6, centre 1/4, about it 3/80 on and 1/80 off the diagonal.
+// Corners at 0 and the unit vectors: volume 1/6, centre 1/4; inertia 3/40 on and 1/80 off the diagonal.
 TEST(MassProperties, Tetrahedron) {
   const MassProperties mass =
       mass_properties(meshes::tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}));

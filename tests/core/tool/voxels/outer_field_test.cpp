@@ -177,7 +177,7 @@ TEST(SlopeBlocks, BoundTheChangeAlongEveryWay) {
     ASSERT_LE(bound, least + 1e-9);
     closest = std::min(closest, least - bound);
   }
-  EXPECT_LT(closest, 1e-7);  // on the flat sides of the blade
+  EXPECT_LT(closest, 1e-7);  // reached on the flat sides of the blade
 }
 
 TEST(SlopeBlocks, KnowNothingOfLongWaysAndPlacesOutside) {

@@ -101,7 +101,7 @@ TEST(VoxelTool, FieldOutsideTheGridGrowsWithTheDistance) {
       const double expected = q.cwiseMax(0.0).norm();
       const FieldSample sample = sample_field(tool, p);
       EXPECT_GE(sample.distance_m, expected - 5e-4);
-      EXPECT_LE(sample.distance_m, expected + 0.012);  // from the grid's box on
+      EXPECT_LE(sample.distance_m, expected + 0.012);  // the distance is summed at the grid's box
       EXPECT_GT(sample.gradient_T.dot(displacement), 0.8);
       EXPECT_NEAR(sample.gradient_T.norm(), 1, 1e-9);
     }

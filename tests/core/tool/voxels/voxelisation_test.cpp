@@ -63,7 +63,8 @@ std::vector<Voxel> voxels_in(const TriangleMesh& mesh, const VoxelGrid& grid) {
   return voxels_of(grid, distance_field(TriangleTree(mesh), grid, inside_nodes(mesh, grid).inside));
 }
 
-// As thick as whole voxels come nearest to; one layer of shell at either face, and interior of h - 2w.
+// A box is as thick as the nearest number of whole voxels: one layer of shell at either face, and an interior
+// of h - 2w.
 TEST(Voxelisation, ABoxIsItsThicknessInVoxels) {
   for (const double side : {0.01, 0.0105, 0.01025, 0.0101}) {
     const TriangleMesh box = box_mesh({side, 2 * side, side});
@@ -89,7 +90,7 @@ void expect_inside(const TriangleMesh& mesh, double voxel, int step) {
     const double winding = meshes::winding(mesh, p);
     const bool expected = winding > 0.5;
     const bool got = inside[i + (grid.cells[0] + 1) * (j + (grid.cells[1] + std::size_t(1)) * k)];
-    if (got != expected && meshes::distance(mesh, p) < 1e-8) return;  // on the surface
+    if (got != expected && meshes::distance(mesh, p) < 1e-8) return;  // either is right on the surface
     ASSERT_EQ(got, expected) << p.transpose();
     ++(expected ? in : out);
   });
@@ -198,7 +199,7 @@ TEST(Voxelisation, WindingNumbersFillAnOpenMesh) {
   EXPECT_GT(count, 18000);
 }
 
-// From the middle of the opening of a box one sees half of all directions: the node there is outside.
+// A node in the middle of the opening of a box sees half of all directions: it is outside.
 TEST(Voxelisation, TheMiddleOfAnOpeningIsOutside) {
   const TriangleMesh whole = box_mesh({0.02, 0.02, 0.02});
   const VoxelGrid grid{Vec3::Constant(-0.02), 1e-3, {40, 40, 40}};

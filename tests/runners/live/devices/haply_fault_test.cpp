@@ -14,7 +14,7 @@ namespace {
 
 class HaplyFault : public SimulatedHaplyTest {
  protected:
-  // How long a call takes, in microseconds.
+  // Duration of a call, in microseconds.
   std::int64_t takes_us(const std::function<void()>& call) {
     const std::int64_t start_ns = clock_.now_ns();
     call();
@@ -137,7 +137,8 @@ TEST_F(HaplyFault, ForceThatDoesNotFollow) {
 
 class HaplyRelease : public HaplyFault {
  protected:
-  // From another thread, so to speak; how long it takes, in microseconds.
+  // Releases the device at that moment, as another thread would. Stores the duration in took_us_, in
+  // microseconds.
   void let_go_at(HapticDevice& device, double moment_s) {
     clock_.at(moment_s, [&] { took_us_ = takes_us([&] { device.release(); }); });
   }
@@ -159,7 +160,7 @@ TEST_F(HaplyRelease, BetweenTwoTicks) {
   let_go_at(*device, 0.0207);
   std::string last;
   for (int i = 0; i < 40; ++i) last = tick(*device, {1, 0, 0});
-  EXPECT_EQ(took_us_, 200);  // until the service has answered
+  EXPECT_EQ(took_us_, 200);  // it waits for the service's answer
   EXPECT_EQ(last, "the device was let go");
   EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
   EXPECT_EQ(newest_force_N(), 0);

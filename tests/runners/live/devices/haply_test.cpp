@@ -21,13 +21,13 @@ TEST_F(Haply, AxesAndUnits) {
   for (const auto& sent : service_.sent())
     EXPECT_TRUE(sent.command.force_N.isZero()) << "before the first write";
 
-  service_.world.position_m = Vec3(0.1, 0.2, 0.3);  // to the right, away from the user, up
+  service_.world.position_m = Vec3(0.1, 0.2, 0.3);  // right, away from the user, up
   service_.world.velocity_m_per_s = Vec3(1, 2, 3);
   ASSERT_EQ(tick(*device), "");
   EXPECT_TRUE(reading_.position_m.isApprox(Vec3(0.1, 0.3, -0.2), 1e-12));
   EXPECT_TRUE(reading_.velocity_m_per_s.isApprox(Vec3(1, 3, -2), 1e-12));
 
-  ASSERT_EQ(tick(*device, {1, 2, 3}), "");  // to the right, up, towards the user
+  ASSERT_EQ(tick(*device, {1, 2, 3}), "");  // right, up, towards the user
   const HaplyCommand& command = service_.sent().back().command;
   EXPECT_EQ(command.force_N, Vec3(1, -3, 2));
   EXPECT_EQ(command.key, "vector");
@@ -147,13 +147,13 @@ TEST_F(Haply, OneCommandATickAtTheRateThatIsAskedFor) {
     for (const auto& sent : service_.sent())
       if (sent.at_ns >= start_ns && !sent.command.force_N.isZero()) pushed_ns.push_back(sent.at_ns);
     ASSERT_EQ(pushed_ns.size(), static_cast<std::size_t>(rate_hz));
-    // Until the answers, which take 0.2 ms, are all there in time.
+    // The first tick from which on all answers, which take 0.2 ms, arrive in time.
     constexpr int kFirst = 10;
     EXPECT_EQ(pushed_ns.back() - pushed_ns[kFirst], (rate_hz - 1 - kFirst) * (ms(1000) / rate_hz));
   }
 }
 
-// What was measured for a command long ago tells of long ago.
+// A state that was measured for a command long ago does not describe the present.
 TEST_F(Haply, AStateThatIsOlderThan20MsIsAskedForAgain) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device), "");

@@ -1,4 +1,4 @@
-// What the tests of Haply's adapter share: ticks, and faults as text.
+// Shared by the tests of Haply's adapter: ticks, and faults as text.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr const char* kLate = "the Haply service does not answer";
 // The adapter at a service on a simulated clock.
 class SimulatedHaplyTest : public testing::Test {
  protected:
-  // Of a millisecond, and its first fault.
+  // Runs a tick of one millisecond. Returns its first fault; empty if there was none.
   std::string tick(HapticDevice& device, const Vec3& force_N = Vec3::Zero()) {
     const std::int64_t end_ns = clock_.now_ns() + ms(1);
     const std::string read = told(device.read(reading_)), written = told(device.write(force(force_N)));

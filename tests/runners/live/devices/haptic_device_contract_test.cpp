@@ -1,4 +1,4 @@
-// What every adapter of a vendor's library promises, each with its test double.
+// The contract of every adapter of a vendor's library. Each is tested with its test double.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -125,7 +125,7 @@ TEST_P(HapticDeviceContract, AThousandTicksASecondUntilToldToStop) {
 // The others leave it to the scheduler of their vendor.
 class RunsByTheClock : public HapticDeviceContract {};
 
-// Those that pass during a tick of 50.3 ms are left out, and the others come when they would have come.
+// One tick takes 50.3 ms. Ticks that fall into it are skipped; the later ones come at their usual times.
 TEST_P(RunsByTheClock, LateTicksAreLeftOut) {
   const auto device = open();
   std::vector<std::int64_t> at_us;

@@ -68,7 +68,7 @@ TEST_F(OpenHapticsTest, TraitsInOurUnits) {
   EXPECT_DOUBLE_EQ(traits.max_torque_Nm, 0.3);
 }
 
-// Without a scheduler the cycle still runs, is told why nothing works and decides when to end.
+// The cycle still runs without a scheduler: its ticks receive the reason as a fault, and decide when it ends.
 void expect_fault_of_the_scheduler(HapticDevice& device, DeviceDouble& behind, int before, const char* what) {
   DeviceFault fault, written;
   run_ticks(device, before + 3, [&](int i) {

@@ -13,20 +13,21 @@ const Wrench kPush = {Vec3(1, 2, 3), Vec3::Zero()};
 
 using Vendors = testing::TestWithParam<const VendorDevice*>;
 
-// On a simulated clock.
+// The device runs on a simulated clock.
 class Release : public Vendors {
  protected:
   const VendorDevice& vendor() const { return *GetParam(); }
   std::unique_ptr<HapticDevice> open() { return vendor().open("", clock_); }
 
-  // At the hand, from a moment on.
+  // Greatest force that the hand feels from a moment on.
   double max_force_from(std::int64_t start_ns) const {
     double max = double_->now().force();
     for (const DeviceDouble::Event& event : double_->events())
       if (event.at_ns > start_ns) max = std::max(max, event.force());
     return max;
   }
-  // Beside the ticks, at that moment: lets go, and notes when that is over. There is no force from then on.
+  // Releases the device at that moment, beside the ticks, and stores the time when this is done. No force
+  // follows.
   void let_go_at(HapticDevice& device, double moment_s) {
     clock_.at(moment_s, [&] {
       EXPECT_GT(double_->now().force(), 0);
@@ -68,7 +69,7 @@ TEST_P(Release, MotorsThatDoNotSwitchOnAreAFault) {
   EXPECT_EQ(double_->now().force(), 0);
 }
 
-// Between two calls of the vendor's nothing is waited for.
+// A tick that hangs between two calls of the vendor's library does not delay the release.
 TEST_P(Release, WhileATickHangsIsAtOnce) {
   const auto device = open();
   let_go_at(*device, 0.0205);

@@ -35,7 +35,7 @@ class Spacenav : public testing::Test {
     server_.accept();
     return device;
   }
-  // After so long.
+  // Reads the device after a sleep of after_s.
   DeviceReading read(HapticDevice& device, double after_s) {
     clock_.sleep_s(after_s);
     DeviceReading reading;
@@ -204,7 +204,8 @@ TEST(SpacenavAddress, WhatCannotBeOpened) {
 
 // --- the stock daemon: in its own time, of which a busy machine may take much ---
 
-// What comes of a packet of the mouse, when the daemon has passed it on.
+// Waits until a reading meets the condition, once the daemon has passed on a packet of the mouse. Returns
+// true if one does.
 bool comes(HapticDevice& device, DeviceReading& reading,
            const std::function<bool(const DeviceReading&)>& condition) {
   return wait_until([&] { return !device.read(reading) && condition(reading); });

@@ -1,4 +1,4 @@
-// What a live run does when its camera stops or is unplugged, on a simulated clock.
+// A live run whose camera stops or is unplugged, on a simulated clock.
 #include <gtest/gtest.h>
 
 #include <memory>

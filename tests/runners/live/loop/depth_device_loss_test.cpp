@@ -1,5 +1,5 @@
-// What a live run does when the OpenCL device of its depth pipeline fails or hangs, with a test double of the
-// library. A program of its own: a library is loaded once for a process.
+// A live run whose depth pipeline runs on an OpenCL device that fails or hangs, with a test double of the
+// library. The test is a program of its own, because a process loads a library only once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
 TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
   const LiveResult live = run("opencl");
   EXPECT_TRUE(told_.empty());
-  // From the disk frames come as clouds: another way through the device, with the same bits.
+  // Frames from the disk come as clouds: they take another path through the device, and have the same bits.
   SimulationOptions offline;
   offline.kernels = &scenes::kernels(), offline.hash_frames = true;
   const int before = kernel_runs();
@@ -121,8 +121,8 @@ TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
   EXPECT_EQ(attribute(Hdf5Reader(folder_ / "cpu.h5").attributes(), "depth_device"), "");
 }
 
-// In real time, with the threads of a live run: the camera's waits 2 s for the driver, the haptic loop does
-// not. In the eleventh frame the driver hangs, and the CPU goes on with the twelfth.
+// The run is in real time, with the threads of a live run. The camera's thread waits 2 s for the driver, the
+// haptic loop does not wait. The driver hangs in the eleventh frame, and the CPU takes over with the twelfth.
 TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   const Experiment experiment = at_the_valves("opencl");
   std::vector<std::string> told;

@@ -17,7 +17,7 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
  protected:
   void SetUp() override {
     camera_->state.distance_m = kWall_m;
-    // Of the Azure Kinect the double has a lens that distorts.
+    // The double of the Azure Kinect has a lens that distorts.
     if (GetParam() == &kK4a)
       camera_->state.lens = {
           .fx = 250, .fy = 251, .cx = 160.2, .cy = 143.1, .k = {-0.1, 0.01, 0, 0, 0, 0}, .p1 = 1e-3};
@@ -27,7 +27,7 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
     EXPECT_TRUE(camera_->misuse().empty()) << camera_->misuse().front();
     EXPECT_FALSE(camera_->is_started());
   }
-  // In front of the wall until kPressed_s, then behind it.
+  // The hand is in front of the wall until kPressed_s, then behind it.
   LiveResult run(double duration_s) {
     hold(kAbove_m);
     clock_.at(kPressed_s, [&] { hold(kBelow_m); });

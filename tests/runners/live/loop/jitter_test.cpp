@@ -1,4 +1,4 @@
-// What is counted as late, on a simulated clock. How late this machine is, `remote-touch jitter` tells.
+// Ticks that count as late, on a simulated clock. `remote-touch jitter` reports how late this machine is.
 #include "runners/live/loop/jitter.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What a live run says when its camera stops or is unplugged: OpenNI 2's own run-time library with a virtual
-// camera as its driver, in real time. What the hand feels meanwhile is in camera_loss_test.cpp.
+// The messages of a live run whose camera stops or is unplugged: OpenNI 2's own run-time library with a
+// virtual camera as its driver, in real time. camera_loss_test.cpp tests the force at the hand meanwhile.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -30,7 +30,7 @@ class LiveCamera : public testing::Test {
   }
   void TearDown() override { unsetenv("VIRTUAL_CAMERA"); }
 
-  // Until is_over(), which is asked in every tick.
+  // Runs until is_over(), which is called in every tick.
   LiveResult run(const char* camera, const std::function<bool()>& is_over) {
     setenv("VIRTUAL_CAMERA", camera, 1);
     std::atomic<bool> stop = false;

@@ -117,7 +117,7 @@ TEST_F(LiveControlsTest, NoiseIsThatOfTheNextFrame) {
   EXPECT_EQ(scenario->cloud(3).y, noisy->cloud(3).y);
 }
 
-// Without noise there is one frame, which is repeated: a camera may ask for a later one all the same.
+// A scenario without noise has one frame, which is repeated; a camera may ask for a later one all the same.
 TEST_F(LiveControlsTest, NoiseCanBeSwitchedOffAndOnAgain) {
   const auto scenario = controls_.scenario();
   const PointCloud before = scenario->cloud(40);

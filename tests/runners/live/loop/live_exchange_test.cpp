@@ -1,4 +1,4 @@
-// What threads of the live loop hand over to each other; meant for the thread sanitizer too.
+// The exchange of data between threads of the live loop; meant for the thread sanitizer too.
 #include <gtest/gtest.h>
 
 #include <array>

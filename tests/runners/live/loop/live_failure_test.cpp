@@ -1,5 +1,5 @@
-// What a haptic device feels when something of a live run fails: test doubles of the vendors' libraries stand
-// for the device, the force is taken at the device's side, and all times are those of a simulated clock.
+// Force at a haptic device when a part of a live run fails. Test doubles of the vendors' libraries replace
+// the device, the force is measured at the device's side, and all times are those of a simulated clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,8 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
                     [](const Experiment&, Clock& clock) { return GetParam()->open("", clock); }};
 };
 
-// At 300 ms it is told so to the tick; the user's part looks every 10 ms, and the next tick is the last.
+// The tick receives the fault just after 300 ms. The user's part of the run checks every 10 ms, and the tick
+// after its check is the last.
 TEST_P(PressedDevice, UnpluggedTheRunEndsSayingSo) {
   at(kTrouble_s + 0.0005,
      [](DeviceDouble& device) { device.set([](DeviceDouble::State& state) { state.is_unplugged = true; }); });

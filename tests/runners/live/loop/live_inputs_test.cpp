@@ -1,4 +1,4 @@
-// Which recordings a live run reads.
+// The recordings that a live run reads.
 #include "runners/live/loop/live_inputs.h"
 
 #include <gtest/gtest.h>

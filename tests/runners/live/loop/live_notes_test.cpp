@@ -30,7 +30,7 @@ const char* const kAbove = R"({"name": "waypoints", "waypoints": [[0, 0.3, 0, 0]
 
 struct Session {
   LiveResult result;
-  TextAttributes stored;  // in the recording
+  TextAttributes stored;  // attributes of the recording
 };
 
 Session run(const std::string& experiment, double duration_s) {
@@ -73,7 +73,7 @@ TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
   EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
 }
 
-// With this focal length the pixels see points of the table 11 mm apart, so that a ball of radius 5 mm falls
+// The pixels of this focal length see points of the table 11 mm apart, so that a ball of radius 5 mm falls
 // between them.
 TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
   std::string sparse = press(kPress);

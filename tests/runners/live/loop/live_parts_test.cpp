@@ -1,4 +1,4 @@
-// How much room a live run makes for the points of its camera, and its end if a frame cannot be used.
+// The room that a live run reserves for the points of its camera, and its end if a frame cannot be used.
 #include "runners/live/loop/live_parts.h"
 
 #include <gtest/gtest.h>

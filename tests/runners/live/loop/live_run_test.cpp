@@ -178,7 +178,7 @@ TEST(LiveRun, ARecordingOfCloudsGivesTheSameDigestOffline) {
   }
 }
 
-// With threads, for as long as a busy machine needs to take some frames.
+// The run uses threads, and lasts as long as a busy machine needs to receive some frames.
 TEST(LiveRun, ARecordingInRealTimeGivesTheSameDigestOffline) {
   const TestFolder folder("live_run");
   const Experiment experiment = Experiment::from_json(kProxy, "test");

@@ -1,5 +1,5 @@
-// What happens to a live run whose device is behind a service of its vendor, on a simulated clock: Haply's,
-// and spacenavd, of which a socket of the test's own stands in.
+// A live run whose device is behind a service of its vendor, on a simulated clock: Haply's service, and
+// spacenavd, which a socket of the test replaces.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -22,7 +22,7 @@ class PressedInverse3 : public testing::Test {
   }
   // The service's z is up.
   void hold(double above_m) { service_.world.position_m = Vec3(0, 0, height_m_ + above_m); }
-  // What the service was told.
+  // Forces that the service received.
   ForceOverTime force() const {
     ForceOverTime force;
     for (const auto& [at_ns, command] : service_.sent())
@@ -48,7 +48,7 @@ TEST_F(PressedInverse3, AStopEndsTheForceInTheNextTick) {
   EXPECT_FALSE(result.failed);
 }
 
-// Without messages the device idles; nobody can tell it anything.
+// The device idles without messages, and no program can command it any more.
 TEST_F(PressedInverse3, AServiceThatDiesEndsTheRun) {
   clock_.at(0.3, [&] { service_.die(); });
   const LiveResult result = run_.run();

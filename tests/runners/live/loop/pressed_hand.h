@@ -1,4 +1,4 @@
-// What tests of whole live runs share: a hand that presses on a table, on a simulated clock.
+// Shared by tests of whole live runs: a hand that presses on a table, on a simulated clock.
 #pragma once
 
 #include <algorithm>

@@ -52,7 +52,7 @@ class ScriptedDevice final : public HapticDevice {
 
 class ScriptedRenderer final : public Renderer {
  public:
-  std::function<void(int)> on_step;  // with the number of steps before
+  std::function<void(int)> on_step;  // argument: number of earlier steps
   Vec3 force_N = Vec3::Zero();
   int steps = 0;
 
@@ -213,7 +213,8 @@ TEST_F(ServoTest, ARefusedForceDoesNotCountAsWritten) {
   EXPECT_EQ(ticks[2].written.force_N.norm(), 0);
 }
 
-// By what a fault says, not by where the text is: an adapter in a library of its own has its own copy.
+// The fault is recognised by its text, not by the text's address: an adapter in a library of its own has its
+// own copy.
 TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
   const std::string said = kReleased.what;
   in_read(3, [&] { return DeviceFault{said.c_str()}; });

@@ -23,7 +23,7 @@ class SimulatedRun {
     std::string line;
   };
 
-  // What happens meanwhile is to be asked of the clock before run().
+  // Events that are to happen during the run must be added to the clock before run().
   SimulatedRun(SimulatedClock& clock, Experiment experiment, DeviceOpener open_device,
                SourceOpener open_source = scenario_camera)
       : clock_(clock),
@@ -41,8 +41,8 @@ class SimulatedRun {
   LiveOptions options;
   const std::vector<Told>& told() const { return told_; }
 
-  // Until its duration or its stop ends it, or a failure. What other threads do in run_live() is done here in
-  // the sleeps of the loop, before a tick of the same moment.
+  // Runs until its duration, its stop or a failure ends it. The work that other threads do in run_live() is
+  // done here in the sleeps of the loop, before a tick of the same moment.
   LiveResult run() {
     LiveParts parts(experiment_, options, clock_, open_device_(experiment_, clock_),
                     open_source_(experiment_, clock_));

@@ -1,5 +1,5 @@
-// What the adapters of depth cameras' libraries promise alike, with test doubles of the libraries on a
-// simulated clock.
+// The common contract of the adapters of depth cameras' libraries, tested with test doubles of the libraries
+// on a simulated clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace remote_touch::depth_library_test {
 namespace {
 
-constexpr double kRounding_s = 1e-12;  // of sums of times
+constexpr double kRounding_s = 1e-12;  // rounding of sums of times
 
 class DepthLibraryContract : public testing::TestWithParam<const DepthLibrary*> {
  protected:

@@ -176,7 +176,7 @@ TEST(FrameEncoder, RefusesWhatNoSensorSends) {
   EXPECT_HAS(problem(grid(0), stiff), "frame 3 has forbidden regions or stiffnesses of its own");
 }
 
-// Nothing was measured, so that nothing can be at another place.
+// No point was measured, so no point can be at a wrong position.
 TEST(FrameEncoder, AFrameWithoutMeasuredPointsFitsEveryView) {
   PointCloud holes = grid(4);
   holes.x.assign(12, std::nan(""));

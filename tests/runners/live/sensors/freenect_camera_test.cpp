@@ -16,9 +16,10 @@ namespace remote_touch::freenect_camera_test {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
-constexpr double kRotation_s = 4294967296.0 / 60e6;  // after which the stamps begin anew
+constexpr double kRotation_s = 4294967296.0 / 60e6;  // period after which the stamps begin anew
 
-// What the sensor measures: 11 bits, 2047 where it measures nothing. The first pixel tells the number.
+// Value that the sensor measures: 11 bits, 2047 if it measures nothing. The first pixel encodes the frame's
+// number.
 int shift_at(int number, int u, int v) {
   if (u == 0 && v == 0) return 600 + 20 * number;
   return (7 * u + 13 * v + 31 * number) % 2048;
@@ -49,8 +50,8 @@ int number_in(const SensorFrame& frame) {
   return -1;
 }
 
-// As fakenect-record writes it: the name tells the second and the sensor's stamp. The stamps turn over before
-// frame 3, and a second passes before the last frame.
+// Time of a frame. fakenect-record writes it into the name of the file, together with the sensor's stamp. The
+// stamps overflow before frame 3, and a second passes before the last frame.
 double taken_s(int number) {
   return 100 + number / 30.0 + (number == kFrames - 1 ? 1 : 0);
 }
@@ -69,8 +70,8 @@ void write_recording(const TestFolder& folder) {
   folder.write("INDEX.txt", index);
 }
 
-// When frames arrive. The adapter asks once for each of them, and fakenect leaves none out: on this clock all
-// are as punctual as in the recording.
+// Clock that reports the times at which frames arrive. The adapter reads it once per frame, and fakenect
+// skips none, so all frames are as punctual as in the recording.
 class ArrivalClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return std::llround(1e9 * taken_s(asked_++)); }
@@ -92,7 +93,7 @@ class FreenectCamera : public testing::Test {
 TEST_F(FreenectCamera, Depths) {
   EXPECT_EQ(depth_of(2047), 0);
   EXPECT_EQ(depth_of(1100), 0);
-  // From 0.7 to 1.8 m: within one step of the shift, to which the readings of a fit are rounded.
+  // Depths from 0.7 to 1.8 m agree within one step of the shift, to which the readings of a fit are rounded.
   for (int shift = 600; shift <= 900; shift += 50) {
     const double z_mm = triangulated_mm(shift), step_mm = z_mm * z_mm * kStep_mm / (kReference_mm * kBase_mm);
     EXPECT_NEAR(z_mm, 123.6 * std::tan(shift / 2842.5 + 1.1863), step_mm) << shift;

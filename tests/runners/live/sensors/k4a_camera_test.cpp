@@ -167,7 +167,7 @@ TEST_F(K4aCamera, WideLens) {
       const Eigen::Vector3d ray((u - pinhole.cx) / pinhole.fx, (v - pinhole.cy) / pinhole.fy, 1);
       const double from_axis = ray.head<2>().norm();
       ASSERT_LT(from_axis, 1.71);
-      if (from_axis > 1.65) continue;  // at the rim, where the nearest pixel counts
+      if (from_axis > 1.65) continue;  // rim: the nearest pixel counts
       ASSERT_NEAR(z, 1500 / camera_->state.normal.dot(ray), 1.1) << u << " " << v;
     }
   EXPECT_GT(present, 512 * 512 / 2);

@@ -55,7 +55,7 @@ TEST_F(RealSenseCamera, PinholeCameraAsItIs) {
   EXPECT_EQ(source->view().camera.cy, 238.6f);
 }
 
-// As the L515, whose unit is a quarter of a millimetre, and the D405.
+// The L515 has a unit of a quarter of a millimetre, the D405 one of a tenth.
 TEST_F(RealSenseCamera, UnitsOfTheCamera) {
   camera_->state.distance_m = 0.8;
   for (const double unit_m : {0.001, 0.00025, 0.0001}) {
@@ -108,7 +108,7 @@ TEST_F(RealSenseCamera, LensesThatAreNotKnown) {
   EXPECT_EQ(open_realsense("", clock_)->view().camera.fx, 500);
 }
 
-// As versions in which a model meant one thing for points and another for pixels.
+// Some versions of the library interpreted a lens model differently for points and for pixels.
 TEST_F(RealSenseCamera, LensThatContradictsItself) {
   distort(2);
   camera_->state.fail_name = "rs2_deproject_pixel_to_point";

@@ -34,7 +34,7 @@ class SlowRecording final : public Scenario {
           .build_scenario(scenes::kernels());
 };
 
-// After the last it is shown again and again, at 30 Hz.
+// The camera repeats its last frame at 30 Hz.
 TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
   SimulatedClock clock;
   clock.sleep_s(5);

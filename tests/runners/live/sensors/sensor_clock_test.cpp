@@ -9,7 +9,7 @@ namespace remote_touch::sensor_clock_test {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
-constexpr double kOffset_s = 1234.5;  // from the sensor's zero to the host's
+constexpr double kOffset_s = 1234.5;  // offset of the host's clock from the sensor's
 constexpr double kMinDelay_s = 0.02;
 
 // 20 ms and up to 10 ms of jitter, which is nothing in every seventh frame.
@@ -61,7 +61,7 @@ TEST(SensorClock, BeginsAnewWhenStampsGoBackOrStandStill) {
   EXPECT_EQ(clock.captured_s(0.5, 20), 20);
 }
 
-// After ten minutes without a frame the offset is not trusted more than the drift allows.
+// The sensor sends no frame for ten minutes. The offset is then trusted no more than the drift allows.
 TEST(SensorClock, PauseOfTheSensor) {
   SensorClock clock;
   clock.captured_s(0, kOffset_s);

@@ -21,7 +21,7 @@ Lens described(const CameraLens& lens) {
           [lens](const Vector2d& pixel) { return lens.ray_of(pixel); }};
 }
 
-// As strong as that of the Azure Kinect's wide mode; its corners see nothing.
+// A lens that distorts as strongly as the Azure Kinect's in its wide mode; its corners see nothing.
 CameraLens wide_lens() {
   return {.width = 256,
           .height = 256,
@@ -150,8 +150,7 @@ TEST(Undistortion, NothingLiesBetweenTwoSurfaces) {
   EXPECT_GT(far, 10000);
 }
 
-// What is not measured stays so: one missing pixel takes the place of the pixels nearest to it and of no
-// others.
+// A missing pixel stays missing: the output pixels to which it is the nearest are missing, and no others.
 TEST(Undistortion, MissingPixels) {
   const CameraLens lens = narrow_lens();
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));

@@ -1,5 +1,5 @@
-// What this project declares of the libraries of depth cameras, compared with the vendors' own headers where
-// these are installed. No package of Debian has them: elsewhere nothing is compared, and the tests say so.
+// This project's declarations of the depth cameras' libraries, compared with the vendors' own headers where
+// these are installed. No package of Debian has them: elsewhere nothing is compared, and the tests report so.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What a page gets of a live run, and what it can do to it.
+// The messages that a page receives from a live run, and the changes that it can make to the run.
 #include "runners/live/view/live_channel.h"
 
 #include <gtest/gtest.h>
@@ -167,7 +167,7 @@ TEST_F(LiveChannelTest, APageThatAcknowledgesNothingGetsTwoMessages) {
   EXPECT_TRUE(has_next());
 }
 
-// Of a page that sleeps the run keeps a bounded number of ticks and one frame.
+// The page sleeps. The run keeps a bounded number of ticks and one frame for it.
 TEST_F(LiveChannelTest, ASlowPageLosesPictures) {
   channel_.open();
   channel_.take(tick(0));

@@ -73,7 +73,7 @@ std::string changes(std::uint32_t count, std::size_t there, std::uint32_t paddin
   return bytes;
 }
 
-// Whether there is such a parameter is not known here.
+// The reader does not check that a parameter exists: -1 passes.
 TEST(PageMessage, UpToFourChangesAreReadTogether) {
   const auto message = page_message(changes(4, 4));
   ASSERT_TRUE(message);

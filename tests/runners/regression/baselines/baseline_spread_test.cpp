@@ -1,5 +1,5 @@
-// What the numbers of a baseline may be apart: measured over programs that hand out what they are told to,
-// and what is kept of the old numbers.
+// The spread that the numbers of a baseline may have, measured over programs that write the results that a
+// test gives them, and the part of the old numbers that is kept.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -261,7 +261,7 @@ TEST_F(MeasureSpread, ProgramsThatAreNone) {
   // A result from before is not taken for its own.
   programs.insert(programs.begin() + 1, program("gcc"));
   EXPECT_HAS(refused(programs), programs[2] + ": wrote no result");
-  // What it wrote is no result.
+  // The file that it wrote is no result.
   refused_second(program("text", "echo text >\"$2\"; exit 0"), "wrote no result (");
   EXPECT_HAS(refused(programs), "not a readable HDF5 file");
 }

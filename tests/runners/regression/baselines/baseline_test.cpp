@@ -1,4 +1,4 @@
-// What a check says of each stored baseline.
+// The outcome of a check for each stored baseline.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -151,7 +151,7 @@ std::vector<std::string> all_experiments() {
 
 using Names = std::vector<std::string>;
 
-// Those whose scenario is moving-lift or whose trajectory is press.
+// Experiments whose scenario is moving-lift or whose trajectory is press.
 Names lifts_and_presses() {
   Names names = all_experiments();
   std::erase_if(names, [](const std::string& name) {
@@ -160,7 +160,7 @@ Names lifts_and_presses() {
   });
   return names;
 }
-// What only these have, too.
+// More parts that only these experiments have.
 const std::vector<std::string> kScenes = {"scenario plates"};
 const std::vector<std::string> kRivals = {"renderer surfels", "renderer averaged-proxy",
                                           "renderer density-proxy", "renderer oracle-proxy"};
@@ -214,7 +214,7 @@ TEST(MissingBaselines, WhatCountsAsOne) {
   const Names parts = Names{"scenario moving-lift"} + kScenes + kRivals + Names{"trajectory press"};
   EXPECT_EQ(missing(folder.path(), manifest), experiments(lifts) + parts);
 
-  // What cannot be read has no parts; its own check says why.
+  // A baseline that cannot be read has no parts; its own check reports why.
   manifest.baselines.push_back({"gone", "run", "moon.json"});
   manifest.baselines.push_back({"refused", "run", "fig4.12", {"scenario.moon=1"}});
   EXPECT_EQ(missing(folder.path(), manifest), experiments(without(lifts, {"fig4.12"})) + parts);

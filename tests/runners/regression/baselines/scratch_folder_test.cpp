@@ -52,7 +52,7 @@ TEST_F(ScratchFolderTest, IsGoneAfterwardsWithItsFiles) {
   EXPECT_TRUE(files_in(place_.path()).empty());
 }
 
-// Of programs that were killed; what others made is none of its business.
+// Folders of programs that were killed are removed; those that others made are left alone.
 TEST_F(ScratchFolderTest, TakesAwayWhatNobodyHolds) {
   place_.write("remote-touch-bless-Killed/reference.h5", "half");
   place_.write("remote-touch-other/file", "of another program");

@@ -136,7 +136,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   const json before = divergence["baseline"]["force"], after = divergence["candidate"]["force"];
   ASSERT_EQ(before.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i)
-    EXPECT_EQ(before[i], trace.force_N[409 + i / 3][static_cast<int>(i % 3)]);  // to the last bit
+    EXPECT_EQ(before[i], trace.force_N[409 + i / 3][static_cast<int>(i % 3)]);  // equal to the last bit
   EXPECT_EQ(after[4], trace.force_N[410].y() + 0.25);
   for (const json& name : divergence["baseline"]["state"])
     EXPECT_TRUE(name == "free" || name == "contact" || name == "entrenched") << name;

@@ -206,7 +206,7 @@ TEST_F(CompareSweepFiles, OtherAxesAreNotComparable) {
   }
 }
 
-// What was changed is told; that the runs are still pairs makes them comparable.
+// The change is reported. The sweeps are comparable because their runs still form pairs.
 TEST_F(CompareSweepFiles, OfAnotherConfigurationAreComparable) {
   write("a.h5");
   const Sweep other = quick({"renderer.r1_m=0.0045"});

@@ -85,7 +85,7 @@ TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereAnOutcomeIsUnknown) {
             "popped_through is unknown in one run: the other measures are not judged");
 }
 
-// As many ticks, but of a run that lasted twice as long.
+// The candidate has as many ticks, but lasted twice as long.
 TEST_F(CompareMeasuresOfTraces, AreNoneWhereTheTicksAreFartherApart) {
   Trace slow = run();
   for (double& time_s : slow.time_s) time_s *= 2;

@@ -69,8 +69,8 @@ TEST(LongToolVerification, EveryToolOfTheCatalog) {
   EXPECT_GE(verified, 3);
 }
 
-// By the printed rule a bar of half the size feels another torque on the rising plane and on the dense one,
-// for a cause that is not known: a limit that the page names.
+// A bar of half the size feels another torque by the printed rule, on the rising plane and on the dense one.
+// The cause is not known; the page names this limit.
 TEST(LongToolVerification, OtherRulesOfTheTool) {
   EXPECT_EQ(failures("tool", {"contact_rule=continuous"}), Names{});
   EXPECT_EQ(failures("tool", {"contact_rule=voxels"}),

@@ -78,7 +78,7 @@ TEST(Verification, EveryCheckIsMadeAndComparesTicksOfTouch) {
   }
 }
 
-// In a corner, large steps go to and fro, and differences as small as rounding grow.
+// Large steps go to and fro in a corner, and differences as small as rounding grow.
 TEST(Verification, SaysWhereASceneDecidesNothing) {
   int undecided = 0;
   for (const CheckResult& result : verify(find_entry(renderers(), "proxy", "renderer"), {"gamma=1"}))
@@ -169,7 +169,7 @@ double nearest_distance_m(const PointCloud& cloud, const Vec3& p_W) {
   return nearest;
 }
 
-// How many views entrench the proxy as they find it, carried along by (4.3).
+// Number of views that entrench the proxy at the position that they meet, after the correction by (4.3).
 int entrenching_views(const MetamorphicScene& scene) {
   ProxyRenderer renderer(ProxyParameters{}, scene.haptic_rate_hz, scenes::kernels());
   const std::vector<RenderOutput> outputs = play(scene, renderer);

@@ -17,13 +17,13 @@ enum class Fault {
   silent,                  // never any force
   remembers_others,        // a second renderer differs from the first
   trusts_new_machines,     // differs with the instruction set
-  looks_at_first_point,    // of those that a search returns
-  counts_points,           // of the whole cloud, measured or not
+  looks_at_first_point,    // depends on the order in which a search returns points
+  counts_points,           // size of the whole cloud matters, measured or not
   looks_far,               // points 1 km away matter
   regions_of_nothing,      // a column of radii matters, whatever it holds
   mistrusts_stiff_points,  // a column of stiffness matters beyond its values
   adds_its_own,            // stiffness to that of the points
-  leans_x,                 // to one side of the world
+  leans_x,                 // a little force to one side of the world
   leans_y,
   leans_z,
   prefers_up,         // forces along y are stronger
@@ -145,7 +145,7 @@ class WrongRenderer final : public Renderer {
   int frames_ = 0, ordinal_ = 0;
 };
 
-// As a line of the catalog would be.
+// Entry such as a line of the catalog makes.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
   return {{name, "wrong in one way", []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {

@@ -16,8 +16,8 @@ enum class ToolFault {
   silent,               // never any force
   remembers_others,     // a second renderer differs from the first
   trusts_new_machines,  // differs with the instruction set
-  sees_first_point,     // of those that a search returns
-  counts_points,        // of the whole cloud, measured or not
+  sees_first_point,     // depends on the order in which a search returns points
+  counts_points,        // size of the whole cloud matters, measured or not
   fears_crowds,         // weaker where there are many points
   sees_radii,           // a column of radii matters, whatever it holds
   turns_about_x,        // always a little torque about an axis of the world
@@ -127,7 +127,7 @@ class WrongTool final : public Renderer {
   int frames_ = 0, ordinal_ = 0;
 };
 
-// As a line of the catalog would be.
+// Entry such as a line of the catalog makes.
 template <ToolFault kFault>
 RendererEntry wrong_tool(const char* name) {
   return {{name, "wrong in one way",

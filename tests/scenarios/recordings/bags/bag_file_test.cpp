@@ -142,14 +142,14 @@ TEST_F(Bags, DamagedAreFoundByTheirCrc) {
   folder_.write("x.mcap", bytes);
   EXPECT_HAS(error("x.mcap"), "its CRC is another");
   bytes = mcap_file(messages());
-  bytes[bytes.size() - 60] ^= 1;  // in the index: read from end to end instead
+  bytes[bytes.size() - 60] ^= 1;  // damages the index: the file is read from end to end instead
   folder_.write("x.mcap", bytes);
   const auto bag = open("x.mcap");
   expect_all(*bag);
   EXPECT_EQ(bag->remark(), "has a damaged index: it was read from end to end");
 }
 
-// A change of one byte anywhere: one line or an answer, in bounded memory; the sanitizers watch.
+// A change of one byte anywhere gives a one-line error or an answer, in bounded memory; the sanitizers watch.
 TEST_F(Bags, WithAByteChangedAreNoDanger) {
   write_db3((folder_ / "y.db3").string(), messages());
   const std::string kinds[] = {mcap_file(messages(), {true, true, false, ""}), ros1_file(messages(), "lz4"),

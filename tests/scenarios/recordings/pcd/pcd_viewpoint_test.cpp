@@ -71,7 +71,7 @@ TEST(PcdViewpoint, IsNotUsedWhereTheImageIsSeenFromTheOrigin) {
   EXPECT_TRUE(other.X_FC.matrix().isIdentity(0));
   ASSERT_TRUE(other.cloud.image);
   EXPECT_EQ(other.cloud.x[3], expected.cloud.x[3]);
-  // At the origin a sensor's own frame may be turned in any way: it has the same points, bit for bit.
+  // A sensor at the origin may have its own frame turned in any way: the points are the same, bit for bit.
   const PcdCloud turned = read_text(seen_from(at_origin, "0 0 0 0 1 0 0"));
   EXPECT_FALSE(turned.has_unused_viewpoint);
   EXPECT_EQ(turned.cloud.x[3], expected.cloud.x[3]);

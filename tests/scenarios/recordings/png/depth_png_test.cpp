@@ -133,7 +133,7 @@ TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
       }
 }
 
-// What is said beside the pixels changes nothing.
+// Chunks other than the pixels change nothing.
 TEST_F(DepthPng, LeavesOutTexts) {
   const std::uint16_t samples[1] = {5};
   std::string bytes = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
