@@ -26,32 +26,32 @@ bool is_input(const std::string& column) {
 }
 
 // The tick at which the two runs part, and the rows around it.
-class PartingPlace {
+class PartingTick {
  public:
-  PartingPlace(const ColumnSource& baseline, const ColumnSource& candidate,
-               const std::vector<ColumnComparison>& columns, std::size_t tick)
+  PartingTick(const ColumnSource& baseline, const ColumnSource& candidate,
+              const std::vector<ColumnComparison>& columns, std::size_t tick)
       : baseline_(baseline), candidate_(candidate), columns_(columns), tick_(tick) {}
 
   // Returns the situation at that tick, and a line that gives the reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
     if (!inputs.empty())
-      return {Cause::input, joined(inputs) + " differs; the renderer was given something else"};
+      return {Cause::input, joined(inputs) + " differs; the renderers had different input"};
     if (differs("frame_index"))
-      return {Cause::frame_update, "both were given the same frames, but one did not take the newest"};
+      return {Cause::frame_update, "both received the same frames, but one did not use the newest"};
     if (new_frame(baseline_) || new_frame(candidate_))
-      return {Cause::frame_update, "frame " + std::to_string(frame(baseline_, tick_)) +
-                                       " came in with this tick, the same in both"};
+      return {Cause::frame_update,
+              "frame " + std::to_string(frame(baseline_, tick_)) + " arrived in this tick, the same in both"};
     if (differs("state") || changed(baseline_, "state") || changed(candidate_, "state"))
       return {Cause::state_transition, "baseline " + states(baseline_) + ", candidate " + states(candidate_)};
-    return {Cause::drift, "no frame came in and the state, " + state(baseline_, tick_) + ", did not change"};
+    return {Cause::drift, "no frame arrived and the state, " + state(baseline_, tick_) + ", did not change"};
   }
 
   std::string frame_text() const {
     if (!integer(baseline_, "frame_index", tick_)) return "unknown: the traces have no frame_index here";
     const Column frames = baseline_.column("frame_index");
     const auto& index = std::get<std::vector<std::int32_t>>(frames.values);
-    if (index[tick_] < 0) return "none had come yet";
+    if (index[tick_] < 0) return "none had arrived yet";
     std::size_t since = tick_, next = tick_ + 1;
     while (since > 0 && index[since - 1] == index[tick_]) --since;
     while (next < index.size() && index[next] == index[tick_]) ++next;
@@ -145,11 +145,11 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
     break;
   }
   found.time_s = time_of(baseline, found.tick);
-  const PartingPlace place(baseline, candidate, columns, found.first_difference);
-  std::tie(found.situation, found.observation) = place.situation();
+  const PartingTick parting(baseline, candidate, columns, found.first_difference);
+  std::tie(found.situation, found.observation) = parting.situation();
   found.cause = configuration.empty() ? found.situation : Cause::configuration;
   found.explanation = configuration.empty() ? found.observation : joined(configuration);
-  found.frame = place.frame_text();
+  found.frame = parting.frame_text();
   found.first_row = found.first_difference > 0 ? found.first_difference - 1 : 0;
   for (const ColumnComparison& column : columns) {
     if (column.rows <= found.first_difference) continue;

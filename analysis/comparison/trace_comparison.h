@@ -15,7 +15,7 @@ namespace remote_touch {
 enum class Cause {
   configuration,  // the experiments are not the same
   input,          // the renderer's inputs differ: time, HIP, a frame (points, time of capture), or the truth
-  frame_update,   // inputs are the same, and a frame came in with this tick, or one run did not take it
+  frame_update,   // inputs are the same, and a frame arrived in this tick, or one run did not take it
   state_transition,  // no frame came, and the proxy's state differs, or changed with this tick
   drift              // none of these: within a steady state
 };

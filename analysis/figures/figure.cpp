@@ -69,7 +69,7 @@ Claim claim_at_least(std::string figure, std::string claim, std::string paper, d
 Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
                     double high, std::string unit) {
   Claim made = claim_of(std::move(figure), std::move(claim), std::move(paper), measured,
-                        "as known here: from " + text(low) + " to " + text(high), std::move(unit),
+                        "expected here: from " + text(low) + " to " + text(high), std::move(unit),
                         measured >= low && measured <= high);
   if (made.verdict == Verdict::pass) made.verdict = Verdict::differs;
   return made;

@@ -16,25 +16,25 @@ double fraction(int events, int of) {
 }  // namespace
 
 SegmentationScore& SegmentationScore::operator+=(const SegmentationScore& other) {
-  right += other.right, missed += other.missed, wrong += other.wrong;
+  found += other.found, missed += other.missed, wrong += other.wrong;
   of_class_without_depth += other.of_class_without_depth;
   return *this;
 }
 
 double SegmentationScore::recall() const {
-  return fraction(right, right + missed);
+  return fraction(found, found + missed);
 }
 double SegmentationScore::precision() const {
-  return fraction(right, picked());
+  return fraction(found, picked());
 }
 double SegmentationScore::depth_fraction() const {
-  return fraction(right + missed, right + missed + of_class_without_depth);
+  return fraction(found + missed, found + missed + of_class_without_depth);
 }
 std::pair<double, double> SegmentationScore::recall_interval() const {
-  return wilson_interval(right, right + missed);
+  return wilson_interval(found, found + missed);
 }
 std::pair<double, double> SegmentationScore::precision_interval() const {
-  return wilson_interval(right, picked());
+  return wilson_interval(found, picked());
 }
 
 SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
@@ -46,7 +46,7 @@ SegmentationScore score_segmentation(const std::vector<char>& picked, const std:
     if (!has_depth[i])
       score.of_class_without_depth += of_class[i] ? 1 : 0;
     else if (of_class[i])
-      ++(picked[i] ? score.right : score.missed);
+      ++(picked[i] ? score.found : score.missed);
     else if (picked[i])
       ++score.wrong;
   }

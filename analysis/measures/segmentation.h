@@ -9,14 +9,14 @@ namespace remote_touch {
 
 // Counts of pixels with depth; those without cannot be points of a fixture and are counted separately.
 struct SegmentationScore {
-  int right = 0;   // pixels of the class that are selected
+  int found = 0;   // pixels of the class that are selected
   int missed = 0;  // pixels of the class that are not selected
   int wrong = 0;   // selected pixels of another class
   int of_class_without_depth = 0;
 
   SegmentationScore& operator+=(const SegmentationScore& other);
 
-  int picked() const { return right + wrong; }
+  int picked() const { return found + wrong; }
   // Fractions; NaN if the denominator is 0: no pixel of the class, or none selected.
   double recall() const;          // selected fraction of the pixels of the class with depth
   double precision() const;       // fraction of the selected pixels that are of the class

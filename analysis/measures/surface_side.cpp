@@ -9,23 +9,23 @@ namespace remote_touch {
 bool SurfaceSide::add(double signed_distance_m) {
   is_known_ = !std::isnan(signed_distance_m);
   if (!is_known_) {
-    has_gap_ = true;
+    was_unknown_ = true;
     return false;
   }
   if (signed_distance_m >= -held_depth_m_) {
-    side_ = Side::front, has_gap_ = false;
+    side_ = Side::front, was_unknown_ = false;
     return false;
   }
   if (side_ == Side::back) return false;
-  const bool pops_through = side_ == Side::front && !has_gap_;
-  passed_ = has_gap_ ? kNoValue : (pops_through ? 1 : 0);
+  const bool pops_through = side_ == Side::front && !was_unknown_;
+  result_if_behind_ = was_unknown_ ? kNoValue : (pops_through ? 1 : 0);
   side_ = Side::back;
   return pops_through;
 }
 
 double SurfaceSide::popped_through() const {
   if (!is_known_) return kNoValue;
-  return side_ == Side::back ? passed_ : 0;
+  return side_ == Side::back ? result_if_behind_ : 0;
 }
 
 }  // namespace remote_touch

@@ -28,10 +28,10 @@ class SurfaceSide {
   enum class Side { unseen, front, back };
 
   double held_depth_m_;
-  Side side_ = Side::unseen;  // side in the last tick with a known distance
-  bool is_known_ = false;     // true if the distance in the last tick is known
-  bool has_gap_ = false;      // true: unknown distance since the proxy was last in front, or since the start
-  double passed_ = 0;         // if the proxy is behind: 1, 0 or NaN as above
+  Side side_ = Side::unseen;     // side in the last tick with a known distance
+  bool is_known_ = false;        // true if the distance in the last tick is known
+  bool was_unknown_ = false;     // true: it was unknown since the proxy was last in front, or since the start
+  double result_if_behind_ = 0;  // 1, 0 or NaN as above
 };
 
 }  // namespace remote_touch

@@ -73,7 +73,7 @@ void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::v
   const double high = (std::isnan(a.high) ? a.mean : a.high) + slack;
   if (b.mean >= low && b.mean <= high) return;
   if (std::isnan(b.mean))
-    list.push_back(sentence(now.place, "%s has no number, stored %.6g", what.c_str(), a.mean));
+    list.push_back(sentence(now.place, "%s is NaN, stored %.6g", what.c_str(), a.mean));
   else
     list.push_back(sentence(now.place, "%s is %.6g, stored %.6g (%.6g to %.6g)", what.c_str(), b.mean, a.mean,
                             low, high));

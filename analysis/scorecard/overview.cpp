@@ -18,8 +18,9 @@ MeanDifference mean_over_scenes(const std::vector<double>& fractions) {
 }
 
 // Others that are better by more than chance; of several the first in the order.
-void add_shown(const SceneScore& scene, const std::string& what, const std::string& units,
-               const Ranking& ranking, const Scorecard& card, std::size_t own, std::vector<Weakness>& list) {
+void add_significant(const SceneScore& scene, const std::string& what, const std::string& units,
+                     const Ranking& ranking, const Scorecard& card, std::size_t own,
+                     std::vector<Weakness>& list) {
   if (ranking.against.empty()) return;
   Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].mean, 0, 0, true};
   for (const std::size_t c : ranking.order) {
@@ -44,14 +45,16 @@ Weakness more_often(const SceneScore& scene, const char* what, const Scorecard& 
   return found;
 }
 
-void add_not_shown(const SceneScore& scene, const Scorecard& card, std::size_t own,
-                   std::vector<Weakness>& list) {
+void add_not_significant(const SceneScore& scene, const Scorecard& card, std::size_t own,
+                         std::vector<Weakness>& list) {
   Weakness noisy =
       more_often(scene, "success", card, own, [&](std::size_t c) { return scene.success[c].noisy.fraction; });
   const auto& against = scene.ranking.against;
-  const auto is_shown = [&](std::size_t c) { return !against.empty() && against[c][own].shows_better(); };
+  const auto is_significant = [&](std::size_t c) {
+    return !against.empty() && against[c][own].shows_better();
+  };
   for (std::size_t c = 0; c < card.methods.size(); ++c) {
-    if (is_shown(c)) noisy.ahead = 0;  // it is in the list already
+    if (is_significant(c)) noisy.ahead = 0;  // it is in the list already
     if (card.methods[c] == noisy.other && !against.empty()) noisy.p = against[c][own].p;
   }
   if (noisy.ahead > 0) list.push_back(noisy);
@@ -96,11 +99,11 @@ std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& metho
   const auto own = static_cast<std::size_t>(found - card.methods.begin());
   std::vector<Weakness> list;
   for (const SceneScore& scene : card.scenes) {
-    add_shown(scene, "success", "1", scene.ranking, card, own, list);
+    add_significant(scene, "success", "1", scene.ranking, card, own, list);
     for (const JudgedMeasure& measure : scene.measures)
-      add_shown(scene, measure.name, measure.units, measure.ranking, card, own, list);
+      add_significant(scene, measure.name, measure.units, measure.ranking, card, own, list);
   }
-  for (const SceneScore& scene : card.scenes) add_not_shown(scene, card, own, list);
+  for (const SceneScore& scene : card.scenes) add_not_significant(scene, card, own, list);
   return list;
 }
 
@@ -134,7 +137,7 @@ Table behind_table(const Scorecard& card) {
   std::vector<std::int32_t> ahead, shown;
   for (const Weakness& one : weaknesses(card, kOwnMethod)) {
     scene.push_back(one.scene), what.push_back(one.what), units.push_back(one.units);
-    other.push_back(one.other), ahead.push_back(one.ahead), shown.push_back(one.is_shown);
+    other.push_back(one.other), ahead.push_back(one.ahead), shown.push_back(one.is_significant);
     own.push_back(one.own_mean), better.push_back(one.other_mean), p.push_back(one.p);
   }
   Table table{"behind", std::string("where ") + kOwnMethod + " is behind another method"};

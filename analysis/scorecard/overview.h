@@ -33,8 +33,8 @@ struct Weakness {
   std::string other;               // the first of those that are ahead of it
   int ahead = 0;                   // number of methods that are ahead
   double own_mean = 0, other_mean = 0;
-  double p = 0;           // corrected for all comparisons of the card; NaN: not tested, as runs without noise
-  bool is_shown = false;  // true if the difference is more than chance
+  double p = 0;  // corrected for all comparisons of the card; NaN: not tested, as runs without noise
+  bool is_significant = false;  // true if the difference is more than chance
 };
 // Returns everything in which others are better than the method by more than chance, then the scenes in which
 // others succeed more often, but not by more than chance, or without noise. Both parts are in the order of

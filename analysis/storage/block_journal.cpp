@@ -78,13 +78,13 @@ bool is_journal(const std::filesystem::path& file) {
 void require_no_journal(const std::filesystem::path& file) {
   if (is_journal(file))
     throw InputError(file.string(), "is an unfinished recording: expected a file that " +
-                                        way_to_recover(file) + " makes of it");
+                                        way_to_recover(file) + " makes from it");
   std::error_code unreachable;
   const std::filesystem::path journal = file.string() + kEnding;
   if (!std::filesystem::exists(file, unreachable) && is_journal(journal))
     throw InputError(file.string(),
                      "no such file, but its unfinished recording is there: expected a file that " +
-                         way_to_recover(journal) + " makes of it");
+                         way_to_recover(journal) + " makes from it");
 }
 
 void require_no_journal_beside(const std::filesystem::path& target) {
@@ -187,7 +187,7 @@ JournalReader::JournalReader(const std::filesystem::path& file) : file_(file) {
     throw InputError(file.string(), "no such file: expected a recording");
   if (!is_journal(file)) {
     const bool has_one = is_journal(file.string() + kEnding);
-    throw InputError(file.string(), "is no unfinished recording: expected " +
+    throw InputError(file.string(), "is not an unfinished recording: expected " +
                                         (has_one ? file.string() : std::string("FILE")) + kEnding +
                                         ", which remote-touch live --record leaves when it is interrupted");
   }

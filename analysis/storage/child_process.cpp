@@ -80,7 +80,7 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
   }
   if (WIFEXITED(status)) return {};
   if (WTERMSIG(status) == SIGXCPU) return "it takes more than " + std::to_string(limits.processor_s) + " s";
-  return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + ", perhaps without memory";
+  return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + ", perhaps out of memory";
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
   ::close(ends[0]);
   if (child < 0) throw std::runtime_error(std::strerror(error));
   if (const std::string end = end_of(child, limits); !end.empty()) throw std::runtime_error(end);
-  if (answered.empty()) throw std::runtime_error("its reader gave no answer, perhaps without memory");
+  if (answered.empty()) throw std::runtime_error("its reader gave no answer, perhaps out of memory");
   const char kind = answered.front();
   answered.erase(0, 1);
   if (kind == kNoMemory)

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 [[noreturn]] void no_answer() {
-  throw std::runtime_error("its reader gave half an answer");
+  throw std::runtime_error("its reader sent an incomplete answer");
 }
 
 // The kinds of values in the order of their variant.

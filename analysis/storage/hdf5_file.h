@@ -26,7 +26,7 @@ class Hdf5Work {
   static bool is_on() { return count_ > 0; }
   static int messages() { return is_silent_ ? -1 : static_cast<int>(messages_); }
   // Sets that file descriptor, while the library's own messages are sent elsewhere.
-  static void move_messages(int descriptor) { messages_ = descriptor; }
+  static void set_messages(int descriptor) { messages_ = descriptor; }
   // Switches the messages off in a child process that reads for its parent: the parent reports how it ended.
   static void silence() { is_silent_ = true; }
 

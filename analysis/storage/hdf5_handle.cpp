@@ -52,11 +52,11 @@ void begin() {
   // memory, that work may hang or crash.
   H5dont_atexit();
   const int shown = ::dup(STDERR_FILENO), nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (shown >= 0) Hdf5Work::move_messages(shown);
+  if (shown >= 0) Hdf5Work::set_messages(shown);
   if (shown >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
   const bool is_silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   if (shown >= 0 && nowhere >= 0) ::dup2(shown, STDERR_FILENO);
-  Hdf5Work::move_messages(STDERR_FILENO);
+  Hdf5Work::set_messages(STDERR_FILENO);
   if (shown >= 0) ::close(shown);
   if (nowhere >= 0) ::close(nowhere);
   if (!is_silent) throw std::bad_alloc();

@@ -24,7 +24,7 @@ std::string labels_of(const std::vector<FixtureValues>& fixtures) {
   std::string text;
   for (const FixtureValues& fixture : fixtures)
     if (!fixture.label.empty()) text += (text.empty() ? ": \"" : ", \"") + fixture.label + "\"";
-  return text.empty() ? ", and none has one" : text;
+  return text.empty() ? ", but no fixture has a label" : text;
 }
 
 // Returns the first step that acts on the fixture, or steps.end().
@@ -59,7 +59,7 @@ std::string validate(const std::vector<FixtureValues>& fixtures, const std::vect
     if (fixtures[i].role != FixtureRole::guidance || is_named(steps, fixtures[i].label)) continue;
     if (++unnamed > 1)
       return "fixtures." + std::to_string(i) +
-             ".role = guidance: expected once where no step of a sequence activates or releases it";
+             ".role = guidance: expected at most once among fixtures that no step of a sequence activates or releases";
   }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].fixture.empty()) continue;

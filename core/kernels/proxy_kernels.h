@@ -15,11 +15,11 @@ struct ProxyRegions {
 
 // Local statistics of the points around a proxy position. r_n = |P - x| - r_f, (5.5).
 struct ContactQuery {
-  double nearest;        // smallest r_n; infinite without points
-  double normal_sum[3];  // (4.1): sum of (P - x)/|P - x| psi(r_n), not normalised
-  double weight_sum;     // sum of psi(r_n), points with a stiffness only
-  double stiffness_sum;  // (5.8): sum of k_s psi(r_n)
-  double touching;       // number of points with r_n <= r2
+  double nearest;         // smallest r_n; infinite without points
+  double normal_sum[3];   // (4.1): sum of (P - x)/|P - x| psi(r_n), not normalised
+  double weight_sum;      // sum of psi(r_n), points with a stiffness only
+  double stiffness_sum;   // (5.8): sum of k_s psi(r_n)
+  double touching_count;  // number of points with r_n <= r2
 };
 
 struct ProxyKernels {

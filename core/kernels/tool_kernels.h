@@ -116,12 +116,12 @@ struct TouchLimits {
 
 // The touched points of a cloud. The lists have capacity for kLanes more than there are points.
 struct TouchedSummary {
-  double nearest;          // distance of a point, m; infinite if none is within reach
-  std::size_t points;      // number of touched points
-  bool is_inside;          // one of them is in an interior voxel
-  std::uint64_t* cluster;  // cell_number() of all of them, each at least once
-  std::size_t clusters;    // length of that list
-  std::uint32_t* unclear;  // points that this query cannot decide
+  double nearest;           // distance of a point, m; infinite if none is within reach
+  std::size_t point_count;  // number of touched points
+  bool is_inside;           // one of them is in an interior voxel
+  std::uint64_t* cluster;   // cell_number() of all of them, each at least once
+  std::size_t clusters;     // length of that list
+  std::uint32_t* unclear;   // points that this query cannot decide
   std::size_t unclear_count;
 };
 

@@ -37,7 +37,7 @@ class Summary {
   void add(Flags touched, Flags cluster) {
     const Packing all(touched);
     if (all.count() == 0) return;
-    out_.points += all.count();
+    out_.point_count += all.count();
     const Packing others(touched & (cluster != last_cluster_));  // neighbours mostly follow each other
     if (others.count() == 0) return;
     others.put((Doubles)cluster, reinterpret_cast<double*>(out_.cluster + out_.clusters));
@@ -61,7 +61,7 @@ void touched_points(const PointColumns& points, const std::uint32_t* groups, std
                     double fraction, double clusters_per_m, const PosedField& f, const CellTable& voxels,
                     const TouchLimits& limits, double* nearest, bool is_new, TouchedSummary& out) {
   constexpr double kInfinite = __builtin_inf();
-  out.points = out.clusters = out.unclear_count = 0;
+  out.point_count = out.clusters = out.unclear_count = 0;
   Summary summary(out);
   Doubles least_of_all = all(kInfinite);
   Flags inside{};

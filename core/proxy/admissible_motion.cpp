@@ -39,8 +39,8 @@ Vec3 less(const Vec3& v, const Vec3& by) {
 
 // Finds the normal of the touching region that s goes against most. Returns false if there is none. The
 // regions are not stored, because a proxy may touch very many.
-bool max_obstacles(const PointsView& points, const Vec3& p_W, double r2, const Vec3& s, double slack,
-                   Vec3& normal) {
+bool find_most_violated_normal(const PointsView& points, const Vec3& p_W, double r2, const Vec3& s,
+                               double slack, Vec3& normal) {
   double min = -slack;
   bool found = false;
   for (std::size_t i = 0; i < points.padded_count; ++i) {
@@ -129,7 +129,7 @@ Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u,
   Barriers barriers;
   Vec3 s = u, normal = Vec3::Zero();
   for (int round = 0; round < kMaxRounds; ++round) {
-    if (!max_obstacles(points, p_W, r2, s, slack, normal)) return s;
+    if (!find_most_violated_normal(points, p_W, r2, s, slack, normal)) return s;
     barriers.add(normal);
     s = projection.onto(barriers);
     if (s.isZero(0)) return s;  // held from all sides

@@ -100,7 +100,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   if (!placed_) proxy_W_ = hip_W, placed_ = true;
   if (order_.newest() >= 0) {
     out.steps = move(hip_W);
-    if (near_.has_regions()) out.steps += close(hip_W);
+    if (near_.has_regions()) out.steps += leave_regions(hip_W);
     report(hip_W, out);
     out.force_N = render_force(hip_W, time_s, out);
     out.status = order_.status(out.status);
@@ -172,7 +172,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
 // and so may the budget of steps. Not in the dissertation. First up to max_exit_steps more steps of (5.11)
 // are made. If the proxy is still entrenched, it returns to its last position outside all regions. If a frame
 // has made that position invalid, it leaves along a straight line. Returns the number of steps.
-int ProxyRenderer::close(const Vec3& hip_W) {
+int ProxyRenderer::leave_regions(const Vec3& hip_W) {
   if (p_.max_exit_steps == 0) return 0;
   int steps = 0;
   for (; steps < p_.max_exit_steps && local_query().state == ContactState::entrenched; ++steps) {
@@ -225,7 +225,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   // reliable.
   out.nearest_distance_m =
       here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(here.query.touching);
+  out.contact_count = static_cast<int>(here.query.touching_count);
   const Vec3 u = hip_W - proxy_W_;
   if (here.state == ContactState::contact && takes_regions(here))
     out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);

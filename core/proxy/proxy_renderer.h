@@ -57,7 +57,7 @@ class ProxyRenderer final : public Renderer {
   };
   const LocalQuery& local_query();
   int move(const Vec3& hip_W);
-  int close(const Vec3& hip_W);
+  int leave_regions(const Vec3& hip_W);
   bool takes_regions(const LocalQuery& here);
   Vec3 next_step(const LocalQuery& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);

@@ -152,7 +152,7 @@ void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, Rende
   const ContactQuery query = kernels_.proxy.contact_query(points, proxy_W_.data(),
                                                           {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
   out.nearest_distance_m = query.nearest <= R ? query.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(query.touching);
+  out.contact_count = static_cast<int>(query.touching_count);
   out.steps = steps_;
   const Vec3 u = hip_W - proxy_W_;
   if (is_inside(here.sample)) {

@@ -47,7 +47,7 @@ void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   const ContactQuery query = kernels_.proxy.contact_query(points, hip_W.data(), regions);
   normal_W_ = unit_normal(query, normal_W_);
   out.nearest_distance_m = query.nearest <= p_.r3_m ? query.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(query.touching);
+  out.contact_count = static_cast<int>(query.touching_count);
   out.steps = 1;
   out.converged = true;
   const double depth = p_.contact_radius_m - query.nearest;

@@ -165,7 +165,7 @@ void SurfelRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   const ContactQuery query = kernels_.proxy.contact_query(
       points, proxy_W_.data(), {0, radius_m_, radius_m_, grid, p_.stiffness_N_per_m});
   if (query.nearest <= radius_m_) out.nearest_distance_m = query.nearest;
-  out.contact_count = static_cast<int>(query.touching);
+  out.contact_count = static_cast<int>(query.touching_count);
   if (!is_held_) return;
   out.state = depth_m_ > 0 ? ContactState::entrenched : ContactState::contact;
   out.force_N = stiffness_of(query) * (proxy_W_ - hip_W);

@@ -35,32 +35,32 @@ struct ActiveRows {
         const Packed<N> more = q.transposed_times(outside);
         inside.add(1, more), outside.add(-1, q.times(more));
       }
-      const Packed<N> fraction = inverse.times(inside);  // coefficient in unit_row of each row that holds y
+      const Packed<N> coefficient = inverse.times(inside);  // in unit_row, of each row that holds y
       const double squared = outside.dot(outside);
       const bool is_free = squared > kParallelSquared;
       double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
                             : std::numeric_limits<double>::infinity();
       int leaves = -1;
       for (int j = 0; j < count; ++j)
-        if (fraction[j] > kRounding && multiplier[j] < step * fraction[j])
-          step = multiplier[j] / fraction[j], leaves = j;
+        if (coefficient[j] > kRounding && multiplier[j] < step * coefficient[j])
+          step = multiplier[j] / coefficient[j], leaves = j;
       if (!(step < std::numeric_limits<double>::infinity())) return false;
       if (is_free) y.add(step, outside);
-      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * fraction[j]);
+      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * coefficient[j]);
       its_multiplier += step;
       if (leaves < 0) {
-        append(row, its_multiplier, outside, fraction, 1 / std::sqrt(squared));
+        append(row, its_multiplier, outside, coefficient, 1 / std::sqrt(squared));
         return true;
       }
       remove(leaves);
     }
   }
 
-  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& fraction,
+  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& coefficient,
               double scale) {
     number[count] = row, multiplier[count] = its_multiplier;
     q.column[count].add(scale, outside);
-    inverse.column[count].add(-scale, fraction);
+    inverse.column[count].add(-scale, coefficient);
     inverse.column[count].set(count, scale);
     ++count;
   }

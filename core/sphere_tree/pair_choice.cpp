@@ -49,10 +49,10 @@ void PairChoice::rate() {
     if (is_deep(chosen_[first].gap_m)) continue;
     double max_squared = 0;
     for (std::size_t i = first; i < rated_; ++i) {
-      const double rise_height_m = pair.gap_m - chosen_[i].gap_m,
+      const double gap_difference_m = pair.gap_m - chosen_[i].gap_m,
                    apart_squared = (pair.n_W - chosen_[i].n_W).squaredNorm();
       if (apart_squared > 0)
-        max_squared = std::max(max_squared, rise_height_m * rise_height_m / apart_squared);
+        max_squared = std::max(max_squared, gap_difference_m * gap_difference_m / apart_squared);
     }
     pair.motion_m = std::max(pair.gap_m, max_squared > 0 ? std::sqrt(max_squared) : pair.gap_m);
   }

@@ -102,7 +102,7 @@ RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N
       weights += weight;
       weighted += weight * (std::isnan(stiffness) ? own_stiffness_N_per_m : stiffness);
     }
-    touch.max_tool_leaves += touch.leaf_pairs > before ? 1 : 0;
+    touch.touching_leaf_count += touch.leaf_pairs > before ? 1 : 0;
   }
   if (touch.nearest_distance_m > look_ahead_m_) touch.nearest_distance_m = kInfinite;
   if (weights > 0) touch.stiffness_N_per_m = weighted / weights;

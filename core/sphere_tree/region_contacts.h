@@ -15,10 +15,10 @@ namespace remote_touch {
 
 // Contact of a tool with regions at a pose.
 struct RegionTouch {
-  double nearest_distance_m;  // smallest gap, negative inside; infinite if none is within the look-ahead
-  int leaf_pairs = 0;         // number of pairs with gaps of kTouch_m or less
-  int max_tool_leaves = 0;    // number of tool leaves that have such a pair
-  double stiffness_N_per_m;   // mean of k_s over these pairs, weighted by depth; the tool's own without any
+  double nearest_distance_m;    // smallest gap, negative inside; infinite if none is within the look-ahead
+  int leaf_pairs = 0;           // number of pairs with gaps of kTouch_m or less
+  int touching_leaf_count = 0;  // number of tool leaves that have such a pair
+  double stiffness_N_per_m;     // mean of k_s over these pairs, weighted by depth; the tool's own without any
 };
 
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless

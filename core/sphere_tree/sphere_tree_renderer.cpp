@@ -102,7 +102,7 @@ RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
   out.state = state_of(touch.nearest_distance_m);
   out.nearest_distance_m = touch.nearest_distance_m;
   out.contact_count = touch.leaf_pairs;
-  out.tool->contact_clusters = touch.max_tool_leaves;
+  out.tool->contact_clusters = touch.touching_leaf_count;
   out.tool->tool_penetration_m = std::max(0.0, -touch.nearest_distance_m);
   out.status = order_.status(out.status);
   return out;

@@ -103,7 +103,7 @@ SphereTree tree_of(std::vector<Sphere> leaves) {
 }
 
 // Returns the largest distance of a sample of the surface outside all leaves.
-double max_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
+double max_surface_outside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
   double max_distance = 0;
 #pragma omp parallel for reduction(max : max_distance)
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -123,8 +123,8 @@ double max_outside_m(const VoxelTool& tool, const TriangleTree& triangles, std::
     int face = 0;
     for (int i = 0; i < kPlacesOfLeaf; ++i) {
       const double z = 1 - (2 * i + 1.0) / kPlacesOfLeaf, around = std::sqrt(1 - z * z);
-      const Vec3 path_length(around * std::cos(turn * i), around * std::sin(turn * i), z);
-      const Vec3 place = leaves[leaf].centre + leaves[leaf].radius_m * path_length;
+      const Vec3 direction(around * std::cos(turn * i), around * std::sin(turn * i), z);
+      const Vec3 place = leaves[leaf].centre + leaves[leaf].radius_m * direction;
       if (sample_field(tool, place).distance_m <= 0) continue;
       const TriangleTree::Nearest nearest = triangles.nearest(place, face);
       face = nearest.face;
@@ -140,7 +140,7 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   const TriangleTree triangles(tool.mesh);
   std::vector<Sphere> balls = inscribed_balls(tool, triangles);
   if (balls.empty())
-    throw InputError("tool", "no place of its grid is inside: expected a smaller renderer.tool_voxel_m");
+    throw InputError("tool", "no point of its grid is inside: expected a smaller renderer.tool_voxel_m");
   const double spacing_m =
       std::sqrt(2 * surface_area_m2(tool.mesh) / (kSamples + kSamplesOfLeaf * max_leaves));
   const SphereCover cover(thinned(surface_samples(tool.mesh, spacing_m), spacing_m), std::move(balls),
@@ -151,10 +151,10 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   // Some of the surface between the covered positions is still outside the leaves.
   const double finer_m = kDenser * spacing_m;
   const std::vector<Vec3> dense = thinned(surface_samples(tool.mesh, finer_m), 0.5 * finer_m);
-  const double remaining_m = std::max(0.0, max_inside_m(dense, leaves));
+  const double remaining_m = std::max(0.0, max_surface_outside_m(dense, leaves));
   for (Sphere& leaf : leaves) leaf.radius_m += remaining_m;
   made.inflation_m += remaining_m;
-  made.inside_m = std::max(0.0, max_inside_m(dense, leaves));
+  made.surface_outside_m = std::max(0.0, max_surface_outside_m(dense, leaves));
   made.outside_m = max_outside_m(tool, triangles, leaves);
   made.spheres = tree_of(std::move(leaves));
   return made;
@@ -167,7 +167,7 @@ std::string text(const ToolSpheres& made) {
     return std::to_string(hundredths / 100) + "." + part.substr(1);
   };
   return std::to_string(made.spheres.leaves().size()) + " spheres, at most " + mm(made.outside_m) +
-         " mm outside the mesh; its surface is at most " + mm(made.inside_m) + " mm outside them";
+         " mm outside the mesh; its surface is at most " + mm(made.surface_outside_m) + " mm outside them";
 }
 
 }  // namespace remote_touch

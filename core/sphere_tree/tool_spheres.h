@@ -14,9 +14,9 @@ struct ToolSpheres {
   SphereTree spheres;  // tree in the tool frame
   double inflation_m = 0;
   // Deviation of the union of the leaves from the mesh, measured on dense samples. outside_m: largest
-  // distance of a leaf outside the mesh, at most inflation_m. inside_m: largest distance of the surface
-  // outside all leaves, which enlarging the leaves brought to 0 on these samples.
-  double outside_m = 0, inside_m = 0;
+  // distance of a leaf outside the mesh, at most inflation_m. surface_outside_m: largest distance of the
+  // surface outside all leaves, which enlarging the leaves brought to 0 on these samples.
+  double outside_m = 0, surface_outside_m = 0;
 };
 std::string text(const ToolSpheres& spheres);
 

@@ -12,7 +12,7 @@ static_assert(SphereTree::kBranching <= 32, "the topmost nodes are the bits of a
 constexpr double kRoundingOfSums = 1 + 1e-12;  // factor on sums: no region within the margin is skipped
 
 // True if some region below a node may be within the margin. The test needs no root, and no extra branch for
-// NaN: spheres with NaN are never near.
+// NaN: a sphere with NaN is never near, because cwiseMax() keeps a NaN on its left.
 bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
   const SphereBox& box = node.box;
   const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRoundingOfSums;

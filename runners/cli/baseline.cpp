@@ -38,7 +38,7 @@ std::vector<Baseline> chosen(const Manifest& manifest, const BaselineCheckReques
   for (const std::string& name : request.names) {
     const Baseline* baseline = manifest.find(name);
     if (!baseline)
-      throw InputError("baseline " + name, "there is none in " + request.folder + "/manifest.json");
+      throw InputError("baseline " + name, "does not exist in " + request.folder + "/manifest.json");
     list.push_back(*baseline);
   }
   return request.names.empty() ? manifest.baselines : list;

@@ -56,8 +56,8 @@ constexpr const char* kExitCodesOfCompare = R"(Exit code:
   0  same: every number is equal, or within its tolerance; with --paired also within the margins
   1  REGRESSED: a measure got worse, or runs of a sweep failed that had not
   2  they cannot be compared; with --paired also: too few runs to decide
-  4  CHANGED: different, and no measure is shown to be worse: an improvement, too, and whatever has no
-     direction, as figures and hashes)";
+  4  CHANGED: different, and no measure is shown to be worse; improvements belong here, and results without
+     a direction, such as figures and hashes)";
 
 void add_compare(Subcommands& commands) {
   auto [command, compare] = commands.add("compare", "compare two results", command_compare);

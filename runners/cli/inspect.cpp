@@ -149,7 +149,7 @@ void print_unfinished(const std::string& file) {
   const UnfinishedSession session = read_unfinished(file);
   std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
               session.ticks, session.frames, session.is_growing ? "; it is being recorded" : "");
-  if (session.is_whole) std::puts("  note         the recording has ended, but its file was not made");
+  if (session.has_end) std::puts("  note         the recording has ended, but its file was not made");
   if (session.left_out_bytes > 0)
     std::printf("  note         the last %" PRIu64
                 " bytes are left out, from the first damaged or incomplete block on\n",

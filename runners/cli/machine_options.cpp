@@ -38,9 +38,9 @@ void add_live(Subcommands& commands) {
       "--report", live->report,
       "write timing and counts to this HDF5 file (a figure for scripts/plot); also on SIGUSR1");
   auto [recover, kept] = commands.add(
-      "recover", "make a recording of the file that an interrupted live session has left", command_recover);
+      "recover", "make a recording from the file that an interrupted live session has left", command_recover);
   recover
-      ->add_option("file", kept->file, "FILE.unfinished, which live --record FILE leaves; it stays as it is")
+      ->add_option("file", kept->file, "FILE.unfinished, which live --record FILE leaves; it is not changed")
       ->required();
   recover->add_option("-o,--output", kept->output, "the HDF5 file to write")->required();
   commands.add("devices", "list sensors, haptic devices and OpenCL devices: what was found, or why not",

@@ -44,7 +44,7 @@ void require(const CommandLine& line, const std::string& output, const std::vect
     return force || !holds_something(file) || is_ours(file);
   };
   if (!may_replace(output))
-    throw InputError(output, std::string("is there already and is no ") + kind +
+    throw InputError(output, std::string("exists already and is not ") + kind +
                                  " of this program: expected another file, or --force");
   require_writable(output);
   set_replacement_rule(output, may_replace);
@@ -66,17 +66,17 @@ FileLock lock_output(const CommandLine& line, const std::string& output,
 
 void require_result(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs) {
-  require(line, output, inputs, has_result_header, "result");
+  require(line, output, inputs, has_result_header, "a result");
 }
 
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
-  require(line, output, inputs, begins_with(opening), "report");
+  require(line, output, inputs, begins_with(opening), "a report");
 }
 
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
-  require(line, output, inputs, begins_with(opening), "export of such a result");
+  require(line, output, inputs, begins_with(opening), "an export of such a result");
 }
 
 void replace_only_results(const std::string& output) {

@@ -12,7 +12,7 @@ int command_recover(const CommandLine& line, const RecoverRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.file});
   const UnfinishedSession made = recover_session(request.file, request.output);
   std::printf("%s: %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(request.output).c_str(),
-              made.ticks, made.frames, made.is_whole ? "" : "; the recording was interrupted");
+              made.ticks, made.frames, made.has_end ? "" : "; the recording was interrupted");
   if (made.left_out_bytes > 0)
     std::printf("  note: the last %" PRIu64
                 " bytes of %s are left out, from the first damaged or incomplete block on\n",

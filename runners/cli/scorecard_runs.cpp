@@ -86,7 +86,7 @@ int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
 }
 
 int report_interrupted(const std::string& folder) {
-  std::fprintf(stderr, "%s: interrupted; finished runs are kept in %s, and the same command goes on\n",
+  std::fprintf(stderr, "%s: interrupted; finished runs are kept in %s, and the same command continues\n",
                program_identity().name.c_str(), folder.c_str());
   return kInterrupted;
 }

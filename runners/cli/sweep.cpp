@@ -115,7 +115,8 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     });
     if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
   } catch (const Interrupted&) {
-    std::fprintf(stderr, "%s: interrupted; %zu finished runs are kept in %s, and the same command goes on\n",
+    std::fprintf(stderr,
+                 "%s: interrupted; %zu finished runs are kept in %s, and the same command continues\n",
                  program_identity().name.c_str(), session.result().runs_in(RunState::done).size(),
                  printable(file).c_str());
     return kInterrupted;

@@ -136,7 +136,7 @@ std::vector<RendererEntry> built_in_renderers() {
           "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
       renderer_entry<OracleProxyRenderer, OracleProxyParameters>(
           "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
-          "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
+          "3-DOF oracle, simulations only: the proxy of chapter 4, given the true velocity of the surface"),
       renderer_entry<GodObjectRenderer, GodObjectParameters>(
           "god-object", DegreesOfFreedom::three, ContactModel::mesh,
           "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995",

@@ -103,10 +103,11 @@ void check_view(const std::string& path, const Vec3& view, const Vec3& by_defaul
   if (!sensor || view != by_default) return;
   const Vec3 looks_W = sensor->linear().col(2);
   if (view.normalized().dot(looks_W) < kMinCosine)
-    throw InputError(path + " = " + text(view),
-                     "the points of this recording are no image: expected the direction in which its sensor "
-                     "looks, " +
-                         text(looks_W) + " in the axes of a camera");
+    throw InputError(
+        path + " = " + text(view),
+        "the points of this recording are not an image: expected the direction in which its sensor "
+        "looks, " +
+            text(looks_W) + " in the axes of a camera");
 }
 
 // The plane of a target faces the sensor, which is at the origin where there is no image.
@@ -115,7 +116,7 @@ void check_plane(const ExperimentConfiguration& configuration, const Scenario& s
   const std::optional<RigidTransform> sensor = scenario.without_faults().sensor_pose();
   if (!sensor || !sensor->translation().isZero(0))
     throw InputError("guidance.orientation = \"plane\"",
-                     "needs to know where the sensor is, and the frames are no images: "
+                     "needs to know where the sensor is, and the frames are not images: "
                      "expected depth images, or orientation = fixed");
 }
 

@@ -35,7 +35,7 @@ std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
 void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) const {
   if (depth) {
     if (!cloud.image)
-      throw InputError("depth_pipeline", "this scenario's frames are no depth images: expected none");
+      throw InputError("depth_pipeline", "this scenario's frames are not depth images: expected none");
     const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
     if (steps && depth->process_all(cloud, *steps)) {
       frame.points = make_search(std::move(cloud));

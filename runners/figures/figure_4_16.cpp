@@ -181,8 +181,8 @@ Figure figure_4_16_recorded(const FigureContext& context) {
                 "lifts off over holes and depth edges. The truth is the measurement itself: a plane "
                 "through the pixels around the proxy. The proxy also slides across the row, along y, so "
                 "in this projection it can lie beside the row's points. Moving camera: the HIP keeps 1 "
-                "cm behind the newest frame's surface at one pixel, and lifts off while that pixel looks "
-                "at a hole or an edge."};
+                "cm behind the newest frame's surface at one pixel, and lifts off while that pixel sees "
+                "a hole or an edge."};
   add_scan(figure, context, "fig4.16-recorded", "still", "box and organ model, camera at rest");
   place_in_column(figure, 0, 0);
   const std::size_t boxes = figure.panels.size();

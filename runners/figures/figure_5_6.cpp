@@ -52,7 +52,7 @@ double first_x(const Crossing& c, Condition&& holds) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::size_t max_force(const Crossing& c) {
+std::size_t row_of_max_force(const Crossing& c) {
   return static_cast<std::size_t>(std::max_element(c.force.begin(), c.force.end()) - c.force.begin());
 }
 
@@ -176,7 +176,7 @@ Figure figure_5_6(const FigureContext& context) {
     figure.panels[i].place = std::pair(static_cast<double>(row), static_cast<double>(column));
   }
 
-  const std::size_t peak = max_force(at_zero), peak_below = max_force(below);
+  const std::size_t peak = row_of_max_force(at_zero), peak_below = row_of_max_force(below);
   const auto on_fixture = [&](std::size_t i) {
     return at_zero.proxy_y[i] >= 0.99 * (kRegionRadius_m + kContactRadius_m);
   };

@@ -237,10 +237,10 @@ Figure figure_5_8(const FigureContext& context) {
       "A fixture that grows on a beating organ, simulated depth camera",
       "Simulated: a depth camera (30 Hz) looks down on three ellipsoids that beat 75 times a minute, in "
       "place of the recorded pig's heart, and the HIP rests just inside. r_f is 0 for 5 s, grows to 0.02 "
-      "m in 5 s and stays. Distances are of the proxy's centre to the true surface: as it is in that very "
-      "tick, or as it was when the frame in use was captured. The renderer knows the second; in the first "
-      "the organ has moved on for up to a frame. r_f is the one that came with the frame in use. Curves "
-      "show every fifth tick, measures take all, from 1 s on.",
+      "m in 5 s and then stays constant. Distances are from the proxy's centre to the true surface: as it "
+      "is in that tick, or as it was when the frame in use was captured. The renderer knows only the "
+      "second; since then the organ has moved for up to one frame interval. r_f is that of the frame in "
+      "use. Curves show every fifth tick; measures use all ticks, from 1 s on.",
       {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
        path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
        deviation_table(clean, noisy)},

@@ -218,16 +218,16 @@ Figure figure_5_8_recorded(const FigureContext& context) {
   Figure figure{
       "5.8-recorded", "A fixture that grows on a recorded organ model",
       "The protocol of Fig 5.8 on depth images of a rigid organ model; the device is simulated: the HIP "
-      "stays 3 mm behind the surface that one pixel sees, and lifts off while that pixel looks at a hole "
-      "or an edge. z away from the camera. Left: camera at rest, five frames played to and fro, so what "
-      "moves is the sensor's noise. Then: camera moved by hand, which the paper did not try; and the "
-      "same with r_f = 0.02 m from the start. Each frame is shown by its last tick. Two truths, both of "
-      "them the newest measurement: the nearest of all its points, which cannot tell the side, and a "
-      "plane through the pixels around the one that sees the proxy, which tells the side but is unknown "
+      "stays 3 mm behind the surface that one pixel sees, and lifts off while that pixel sees a hole or an "
+      "edge. z points away from the camera. Left: camera at rest, five frames played to and fro, so only "
+      "the sensor's noise moves. Then: camera moved by hand, which the paper did not try; and the same "
+      "with r_f = 0.02 m from the start. Each frame is shown by its last tick. There are two truths, both "
+      "from the newest measurement. The nearest of all its points does not show on which side the proxy "
+      "is. A plane through the pixels around the one that sees the proxy shows the side, but is unknown "
       "at edges. The proxy pops through where the measured surface jumps past its centre within a frame: "
       "from then on r_f keeps it away on the wrong side, deeper as r_f grows. The table violations counts "
-      "this. A fixture that is there before the jump is wider than any of them, and the proxy stays "
-      "outside. Right: the tracked sheet, which is not in the dissertation, under the fixture that grows."};
+      "these cases. A fixture that exists before the jump is wider than any jump, and the proxy stays "
+      "outside. Right: the tracked sheet, which is not in the dissertation, under the growing fixture."};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     figure.tables.push_back(frame_table(runs[i]));
     add_panels(figure, runs[i], static_cast<int>(i));

@@ -42,7 +42,7 @@ double tool_deg(const Trace& trace, std::size_t i) {
 }
 
 // Returns the first tick in which the device has turned farthest.
-std::size_t plateau(const Trace& trace) {
+std::size_t plateau_tick(const Trace& trace) {
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (device_deg(trace, i) > device_deg(trace, farthest)) farthest = i;
@@ -103,7 +103,7 @@ Table summary_table(const std::vector<BoxRun>& runs) {
   for (const BoxRun& run : runs) {
     const Trace& t = run.trace;
     tools.push_back(run.tool), rules.push_back(run.rule);
-    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau(t)), double(max(t.contact_count)),
+    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau_tick(t)), double(max(t.contact_count)),
                     double(max(t.active_constraints)), double(max(t.contact_clusters)),
                     *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()),
                     max_force_N(t),
@@ -169,7 +169,7 @@ Claim stop_claim(const std::string& name, const std::string& what, const BoxRun&
   const auto [early, late] = plateau_slack_mm(run.rule);
   const double stops_deg = second_number("chapter_6", place + "/stop_angle_deg"),
                deg_per_mm = second_number("chapter_6", place + "/deg_per_mm");
-  return claim_between(name, what, "-", tool_deg(run.trace, plateau(run.trace)),
+  return claim_between(name, what, "-", tool_deg(run.trace, plateau_tick(run.trace)),
                        stops_deg - early * deg_per_mm, stops_deg + late * deg_per_mm, "deg");
 }
 
@@ -294,7 +294,7 @@ void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& ru
   figure.tables.push_back(cloud_table("box_cloud", "the box", cloud, all));
   figure.tables.push_back(vertex_table("box_vertices", tool->mesh));
   figure.tables.push_back(triangle_table("box_triangles", tool->mesh));
-  figure.tables.push_back(pose_table("box_poses", run.trace, {plateau(run.trace)}));
+  figure.tables.push_back(pose_table("box_poses", run.trace, {plateau_tick(run.trace)}));
   Scene above{{0, 0.40, 0.0}, {0, 0, 0}, {0, 0, -1}, 0.135, 0.8, tool_in_cloud("box", 0, 0.0018)};
   Scene beside = above;
   beside.eye = {0.16, 0.26, 0.30}, beside.up = {0, 1, 0}, beside.target = {0, -0.004, 0};
@@ -314,8 +314,7 @@ Figure figure_6_3(const FigureContext& context) {
       "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as constraints with "
       "their distance, ahead of the tool. Right: the tool's voxels as printed. The picture is of the left "
       "run at 30 deg: the tool filled, the device transparent. The number of points that touch depends on "
-      "how close they lie (tables runs and spacings, last row); the constraints that hold the tool are never "
-      "more than 6."};
+      "their spacing (tables runs and spacings, last row); the tool is never held by more than 6 constraints."};
   const std::size_t step = kSpacings_mm.size(), of_husky = step * kRules.size();
   for (std::size_t r = 0; r < kRules.size(); ++r) {
     const BoxRun& run = runs[r * step];

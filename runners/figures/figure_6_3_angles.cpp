@@ -125,8 +125,8 @@ Figure figure_6_3_angles(const FigureContext& context) {
       "6.3-angles", "A tool turned in a box, over angle, spacing and rule",
       "The experiment of Fig 6.3 with the device turned by 5 to 50 deg, for points 1 to 3 mm apart and both "
       "contact rules; simulated. The tool follows until its sides touch the walls, and then stays at one "
-      "angle, however far the device goes on: the torque grows with what is left. The voxels rule sees "
-      "points only, so its stop depends on their spacing; look-ahead takes each point for a disk."};
+      "angle, however far the device turns: the torque grows with the remaining angle. The voxels rule "
+      "uses points only, so its stop depends on their spacing; look-ahead treats each point as a disk."};
   for (const Turning& run : runs) figure.tables.push_back(turning_table(run));
   figure.panels = {panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
                    panel(runs, "Torque", "torque", "torque (N m)"),

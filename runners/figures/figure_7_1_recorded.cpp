@@ -185,14 +185,15 @@ Figure figure_7_1_recorded(const FigureContext& context) {
   Figure figure{
       "7.1-recorded", "Fixtures by colour on a recorded desk",
       "Two rules of hue, saturation and lightness on colour images whose depth is registered, up to 1 m "
-      "away. Left: what the camera saw. Right: the same darker, black where there is no depth, with "
+      "away. Left: the camera's image. Right: the same, darker, black where there is no depth, with "
       "the points of the forbidden region in red, of the guidance target in yellow, and boxes that "
-      "were drawn by eye around both objects. The dragon's mask is its own but for shaded places, "
-      "and its mean is a target that hardly moves. The organ is caught but for the shade between "
-      "stomach and colon and, in frame 52, highlights that are too pale for the rule; about an "
-      "eighth of its mask is something else of its hue: prints on the cube, wood, a hand, shade on "
-      "the dragon. A forbidden region errs towards too much that way; a target found like this "
-      "would be off. A box tells what is certainly wrong, not what is missed."};
+      "were drawn by eye around both objects. The dragon's mask covers the dragon except shaded "
+      "parts, and its mean is a target that hardly moves. The organ's mask covers the organ except "
+      "the shade between stomach and colon and, in frame 52, highlights that are too pale for the "
+      "rule; about an eighth of the mask is other things of the same hue: prints on the cube, wood, "
+      "a hand, shade on the dragon. So the forbidden region is too large rather than too small; a "
+      "target found with such a mask would be wrong. A box shows which points are certainly wrong, "
+      "not which are missed."};
   std::vector<MaskNumbers> numbers[2];
   int row = 0;
   for (const SegmentedFrame& shown : kSegmentedFrames) {

@@ -110,11 +110,11 @@ Figure figure_7_5(const FigureContext& context) {
       {{"five", "Five motors", "fig7.5"}, {"six", "Six motors", "fig7.5", {"device.torque_x=true"}}});
   Figure figure{
       "7.5", "Guidance to one valve, a forbidden region around the other",
-      "The simulated operator pushes towards the left valve, presses the button at 3 s and lets go "
+      "The simulated operator pushes towards the left valve, presses the button at 3 s and relaxes "
       "within 0.3 s. The spring to the goal in front of the right valve, the mean of the yellow points, "
-      "jumps to its clamp and takes the hand there. Left: a device without a motor about its roll axis, "
-      "as in the paper: the torque about it is asked for and not exerted, so it stays. Right: the same "
-      "with all six. Everything is simulated."};
+      "jumps to its clamp and pulls the hand there. Left: a device without a motor about its roll axis, "
+      "as in the paper: the torque about it is commanded but not exerted, so the angle about it remains. "
+      "Right: the same with all six motors. Everything is simulated."};
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     figure.tables.push_back(task_table(tasks[i]));
     figure.tables.push_back(sequence_table(tasks[i]));

@@ -58,8 +58,8 @@ Figure figure_7_5_guidance(const FigureContext& context) {
       "7.5-guidance",
       "Where guidance leads the hand",
       "The task of Fig 7.5 with guidance of 50 to 300 N/m, frames at 10 Hz, a device with six motors and "
-      "one without torque about x; simulated. The operator lets go at 3.3 s. The position is reached in both "
-      "cases. Without the motor an angle stays that no stiffness of guidance can take away.",
+      "one without torque about x; simulated. The operator has relaxed at 3.3 s. The position is reached in "
+      "both cases. Without the motor an error of the angle remains at every stiffness of guidance.",
       {led_table(six), led_table(five)},
       {led_panel("Distance from the goal", "error", "distance (mm)", list),
        led_panel("Angle to the goal", "angle", "angle (deg)", list)}};

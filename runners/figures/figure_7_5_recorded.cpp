@@ -126,9 +126,10 @@ Figure figure_7_5_recorded(const FigureContext& context) {
   const ValveTask& task = tasks[0];
   Figure figure{
       "7.5-recorded", "Forbidden and guiding colours in recorded images",
-      "Five frames of a camera at rest, played to and fro at 10 Hz. What is organ-coloured has regions "
-      "of 2 cm, what is yellow tells the goal. A simulated operator pushes a valve key towards the organ, "
-      "presses the button at 3 s and lets go. Hand, device and tool are simulated; the images are real."};
+      "Five frames of a camera at rest, played to and fro at 10 Hz. Points with the organ's colour have "
+      "regions of 2 cm; yellow points define the goal. A simulated operator pushes a valve key towards the "
+      "organ, presses the button at 3 s and relaxes. Hand, device and tool are simulated; the images are "
+      "real."};
   figure.tables.push_back(task_table(task));
   figure.tables.push_back(sequence_table(task));
   Panel force{"Force", "time (s)", "force (N)", false, {}, {}, {}, std::pair(0.0, 0.0)};

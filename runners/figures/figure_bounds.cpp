@@ -149,7 +149,7 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
                     numbers(normal_error, "printed").back() / numbers(normal_error, "refitted").back(), 2,
                     3.5, "1"),
       of_map(claim_at_least(
-          "bounds", "pop-throughs that (4.17) foresees at their update", "exact if all were known",
+          "bounds", "pop-throughs that (4.17) predicts at their update", "exact if all were known",
           criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "fraction")),
       of_map(claim_at_least(
           "bounds", "updates without pop-through at which (4.17) holds", "exact if all were known",

@@ -228,10 +228,10 @@ Figure figure_latency(const FigureContext& context) {
       "Fixtures from late frames",
       "A surface with r_f = 0.02 m rises evenly against a pressing HIP, and frames arrive late; "
       "simulated. Depth: how far the slave's contact point, sent to the proxy, is inside the region "
-      "of the surface where it is at that moment. It is the way that the surface makes in the delay "
-      "and one frame interval; the correction (4.3) does not change that. At 20 mm the surface "
-      "itself is reached. Dashed: the slave is sent ahead of the proxy by the velocity estimate "
-      "times the age of the frame, which is not in the dissertation; once the estimate has settled.",
+      "of the surface at its position at that moment. The depth is the distance that the surface moves "
+      "in the delay and one frame interval; the correction (4.3) does not change that. At 20 mm the "
+      "slave reaches the surface itself. Dashed, after the estimate has settled: the slave is sent ahead "
+      "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation.",
       {map, tissue_table(), jitter, drops, heart},
       panels()};
   // A proxy of r_f + r_c sinks so far between points 1.5 mm apart, in the middle of four, and rests within
@@ -243,7 +243,7 @@ Figure figure_latency(const FigureContext& context) {
                     "violation against speed x (latency + frame interval), where that is below r_f", "-",
                     max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
                     kThirdOfTick_mm + kSinks_mm, "mm"),
-      claim_at_least("latency", "cells in which the same rule tells whether the slave reaches the surface",
+      claim_at_least("latency", "cells in which the same rule predicts whether the slave reaches the surface",
                      "-", fraction_known(map), 0.99, "fraction"),
       claim_at_most("latency", "violation with the slave sent ahead, settled, where it was below r_f", "-",
                     max_error(map, 20, [&](std::size_t i) { return settled[i]; }), kSinks_mm, "mm"),

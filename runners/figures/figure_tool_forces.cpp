@@ -141,26 +141,26 @@ Deviation deviation(const Vectors& rendered, const Vectors& exact, double small)
 // Results of one run.
 struct PressResult {
   Deviation force, torque;
-  double stray_torque_Nm = 0;  // mean of |torque - exact torque|
+  double torque_error_Nm = 0;  // mean of |torque - exact torque|
   std::vector<double> angle_deg, torque_Nm, exact_torque_Nm;
 };
 PressResult result_of(const ModelPress& press, const Trace& trace) {
   constexpr double kSmallForce_N = 0.5, kSmallTorque_Nm = 0.005;
   Vectors force, torque;
   PressResult result;
-  double stray = 0;
+  double error_Nm = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const DeviceState device{trace.hip_position_m[i], trace.hip_orientation[i]};
     const Wrench exact = press.wrench(device);
     force.push_back(exact.force_N), torque.push_back(exact.torque_Nm);
-    stray += (trace.torque_Nm[i] - exact.torque_Nm).norm();
+    error_Nm += (trace.torque_Nm[i] - exact.torque_Nm).norm();
     result.angle_deg.push_back(rotation_vector(device.orientation_W).y() / kRadiansPerDegree);
     result.torque_Nm.push_back(-trace.torque_Nm[i].y());
     result.exact_torque_Nm.push_back(-exact.torque_Nm.y());
   }
   result.force = deviation(trace.force_N, force, kSmallForce_N);
   result.torque = deviation(trace.torque_Nm, torque, kSmallTorque_Nm);
-  result.stray_torque_Nm = stray / static_cast<double>(trace.length());
+  result.torque_error_Nm = error_Nm / static_cast<double>(trace.length());
   return result;
 }
 
@@ -204,7 +204,7 @@ Table deviation_table(const std::string& name, const std::string& title, const s
     add("torque_direction", "deg", "mean angle to the exact torque, where there is one",
         [](const auto& r) { return r.torque.direction_deg; });
     add("stray_torque", "N m", "mean of |torque - exact torque|",
-        [](const auto& r) { return r.stray_torque_Nm; });
+        [](const auto& r) { return r.torque_error_Nm; });
   }
   return table;
 }

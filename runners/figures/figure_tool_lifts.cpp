@@ -97,8 +97,8 @@ Table noise_limits(const FigureContext& context) {
 Claim claim_bounded(const Table& table, Carrier rule, Carrier upper, const std::string& claim) {
   const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
   return claim_at_most(kLiftFigure, claim + ": number of settings where not", paper,
-                       rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
-                                  column_of(rule) + "_bound", column_of(upper) + "_bound"),
+                       count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
+                                        column_of(rule) + "_bound", column_of(upper) + "_bound"),
                        0, "1");
 }
 

@@ -201,7 +201,8 @@ Claim claim_bounded(const std::vector<Table>& tables, Carrier rule, const std::s
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
-    apart += rows_apart(table, column + "_carried", column + "_lost", column + "_least", column + "_most");
+    apart +=
+        count_rows_apart(table, column + "_carried", column + "_lost", column + "_least", column + "_most");
   return claim_at_most(kShapeFigure, claim + ": number of settings where not", paper, apart, 0, "1");
 }
 
@@ -211,8 +212,8 @@ Claim claim_bounded_noise(const std::vector<Table>& tables, Carrier rule, const 
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
-    apart +=
-        rows_apart(table, column + "_carried", column + "_all_lost", column + "_least", column + "_most");
+    apart += count_rows_apart(table, column + "_carried", column + "_all_lost", column + "_least",
+                              column + "_most");
   return claim_at_most(kShapeFigure,
                        "noise, " + label + ": half are lost at the derived speed: settings of 12 where not",
                        "-", apart, 2, "1");

@@ -79,7 +79,7 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
     const auto [recall_low, recall_high] = s.recall_interval();
     const auto [precision_low, precision_high] = s.precision_interval();
     rows.push_back({level.turbidity_per_m, s.recall(), recall_low, recall_high, s.precision(), precision_low,
-                    precision_high, s.depth_fraction(), s.right / double{kFrames}, s.missed / double{kFrames},
+                    precision_high, s.depth_fraction(), s.found / double{kFrames}, s.missed / double{kFrames},
                     s.wrong / double{kFrames}, s.of_class_without_depth / double{kFrames}});
   }
   return table_of(kNames[k],
@@ -191,14 +191,14 @@ Figure figure_turbidity(const FigureContext& context) {
           "A simulated camera looks at a red and a yellow valve, 0.9 m away in water whose every channel is "
           "attenuated, red most of all, and veiled. Above: what it sees, cut out around the valves, and what "
           "the rules of hue pick of it: red and yellow where they are right, magenta where a valve is missed, "
-          "white where something else is picked, black where there is no depth, so no point. Below: recall and "
-          "precision among the pixels with depth, and how many have one; the precision of 0 that yellow ends with "
-          "is of less than a pixel in a frame. Most of a valve is too narrow for the depth camera, which sees "
-          "nothing within ") +
+          "white where something else is picked, black where there is no depth and therefore no point. Below: "
+          "recall and precision among the pixels with depth, and the fraction of pixels with depth; the precision "
+          "of 0 at the end of yellow's curve is of less than a pixel in a frame. Most of a valve is too narrow for "
+          "the depth camera, which sees nothing within ") +
           std::to_string(ValveTank::Settings{}.camera.hole_px) +
           " px of an edge. The water is a model with chosen "
-          "rates, so the turbidity at which a hue is lost is that model's; which is lost first, and how, is "
-          "what it shows."};
+          "rates, so the turbidity at which a hue is lost holds for that model only. The figure shows which hue "
+          "is lost first, and how."};
   for (std::size_t k = 0; k < 2; ++k) figure.tables.push_back(score_table(levels, k));
   add_pictures(figure, levels);
   figure.panels.push_back(fraction_panel("Recall", "recall", 0));

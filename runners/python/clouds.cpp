@@ -221,7 +221,7 @@ int checked_frame(const Scenario& scenario, int frame) {
 }
 
 void bind_scene(py::module_& module) {
-  py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "A scenario that can be asked.")
+  py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "A scenario that answers queries.")
       .def(py::init(&make_scene), py::arg("name"), py::arg("settings"), py::arg("key"))
       .def_property_readonly("frame_rate_hz", [](const PythonScene& s) { return (*s).frame_rate_hz(); })
       .def_property_readonly("frame_count", [](const PythonScene& s) { return (*s).frame_count(); })

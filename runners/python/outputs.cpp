@@ -22,7 +22,7 @@ OutputFile::OutputFile(const std::string& file, bool force, const std::string& s
   if (is_journal(file))
     throw InputError(file, "is an unfinished recording and is never overwritten: expected another file");
   if (holds_something && !force && !has_result_header(file))
-    throw InputError(file, "is there already and is no result: expected another file, or force=True");
+    throw InputError(file, "exists already and is not a result: expected another file, or force=True");
   require_writable(file);
   lock_.emplace(file);
 }

@@ -154,7 +154,7 @@ std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector
   for (const std::string& wanted : names) {
     const auto [name, json] = found(stored, wanted, kind);
     if (!taken.insert(name).second)
-      throw InputError(std::string(kind) + " " + name, "comes twice: expected once");
+      throw InputError(std::string(kind) + " " + name, "appears twice: expected once");
     items.push_back(read(name, json));
   }
   if (!names.empty()) return items;
@@ -247,7 +247,8 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   const std::string label = "scene " + name + " with " + method.name;
   Json run = parse_json(experiment, label);
   if (run.contains("renderer"))
-    throw InputError("scene " + name + ": experiment.renderer", "set: expected none, methods bring it");
+    throw InputError("scene " + name + ": experiment.renderer",
+                     "set: expected none, because methods define it");
   if (run.contains("seed"))
     throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);

@@ -62,7 +62,7 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
 
 // Returns the methods or scenes with these names or from these JSON files, in their order; no names: all of
 // data/. A method or scene of a file is named after the file, without folder and ending. Throws InputError
-// for a name that is unknown, with those that are allowed, or that comes twice.
+// for a name that is unknown, with those that are allowed, or that appears twice.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names);
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
 

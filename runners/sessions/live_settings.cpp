@@ -15,7 +15,7 @@ Parameters parameters(LiveSettings& s) {
       {"camera_position_m", &s.camera_position_m, -100, 100,
        "position of the camera, added to the one that its source reports"},
       {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
-       "rotation vector (axis times angle) of the camera, added likewise"},
+       "rotation vector (axis times angle) of the camera, added in the same way"},
   };
 }
 

@@ -10,7 +10,7 @@ constexpr double kMaxRampDown_s = 0.01;
 std::string too_slow(const char* slew, const char* max, double value, double min) {
   if (value >= min) return {};
   return std::string(slew) + " = " + std::to_string(value) + ": expected " + max +
-         " / 0.01 s = " + std::to_string(min) + " or more, so that the device is let go in that time";
+         " / 0.01 s = " + std::to_string(min) + " or more, so that the maximum can fall to 0 in that time";
 }
 
 }  // namespace

@@ -220,7 +220,7 @@ void SessionReader::require_order() const {
         (is_taken && (taken_[i] <= last_taken || taken_[i] >= frames)))
       file_.damaged("its ticks are out of order");
     if (!(buttons_[i] >= 0 && buttons_[i] <= std::numeric_limits<std::uint32_t>::max()))
-      file_.damaged("/ticks/buttons has values that no buttons make");
+      file_.damaged("/ticks/buttons has values that are not button states");
     if (is_taken) last_taken = taken_[i];
   }
   for (std::size_t i = 0; i < frame_count(); ++i)
@@ -257,7 +257,7 @@ void SessionReader::read_view() try {
       view_.X_WC.matrix()(row, column) = json.at("X_WC").at(static_cast<std::size_t>(4 * row + column));
   if (!view_.X_WC.matrix().allFinite() || !view_.X_WC.linear().isUnitary(1e-6) ||
       view_.X_WC.linear().determinant() < 0)
-    file_.damaged("X_WC is no pose");
+    file_.damaged("X_WC is not a pose");
 } catch (const nlohmann::json::exception&) {
   file_.damaged("its attributes view and config");
 }

@@ -154,7 +154,7 @@ class SessionBlocks {
  private:
   // Returns false if the content does not fit its kind, or contradicts the blocks before.
   bool take(const JournalBlock& block, SessionWriter* writer, bool checks_images) {
-    if (found_.is_whole) return false;
+    if (found_.has_end) return false;
     switch (static_cast<SessionBlock>(block.kind)) {
       case SessionBlock::ticks:
         return take_ticks(block.content, writer);
@@ -211,8 +211,8 @@ class SessionBlocks {
 
   bool take_end(const std::string& content) {
     Unpacker unpacker(content);
-    found_.is_whole = unpack(unpacker, found_.ending) && unpacker.done();
-    return found_.is_whole;
+    found_.has_end = unpack(unpacker, found_.ending) && unpacker.done();
+    return found_.has_end;
   }
 
   JournalReader reader_;
@@ -225,7 +225,7 @@ class SessionBlocks {
 
 // Returns the attributes of the file that are known only at the end.
 TextAttributes ending_of(const UnfinishedSession& session) {
-  if (session.is_whole) return session.ending;
+  if (session.has_end) return session.ending;
   return {{"ended", kInterruptedRecording},
           {"notes", "the recording was interrupted after " + std::to_string(session.ticks) + " ticks and " +
                         std::to_string(session.frames) + " frames"}};
@@ -244,7 +244,7 @@ UnfinishedSession make(const std::filesystem::path& journal, const std::filesyst
   SessionBlocks blocks(journal);
   SessionWriter writer(target, blocks.layout(), blocks.attributes());
   const UnfinishedSession made = blocks.read_all(&writer, !is_ours);
-  if (is_ours && !made.is_whole)  // the disk has lost something
+  if (is_ours && !made.has_end)  // the disk has lost something
     throw InputError(journal.string(),
                      "damaged (a block is not as it was written): expected a disk that works");
   writer.finish(ending_of(made));

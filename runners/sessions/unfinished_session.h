@@ -16,7 +16,7 @@ struct UnfinishedSession {
   TextAttributes attributes;  // attributes of the session, without those known only at its end
   std::uint64_t ticks = 0, frames = 0, changes = 0;
   std::int64_t last_tick = -1;       // its number; -1: there are none
-  bool is_whole = false;             // the recording has ended, and only the session file was not made
+  bool has_end = false;              // the last block is there: only the session file was not made
   TextAttributes ending;             // attributes known at that end: `ended`, the reason, and others
   std::uint64_t left_out_bytes = 0;  // number of bytes after the last whole block
   bool is_growing = false;           // its program was recording when the journal was opened

@@ -135,7 +135,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
       const auto renamed = new_name(name.is_string() ? name.get<std::string>() : "", names);
       refuse(name.dump() + " is unknown" + (renamed ? ", did you mean " + *renamed : ""));
     }
-    if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " comes twice");
+    if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " appears twice");
     chosen.push_back(*measure);
   }
   return chosen;

@@ -108,7 +108,7 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
     const std::string name = text_of(value);
     if (name.empty()) throw InputError(label + ".values", value.dump() + " is empty: expected names");
     if (!names.insert(name).second || (is_double(value) && !numbers.insert(value.get<double>()).second))
-      throw InputError(label + ".values", value.dump() + " comes twice: expected once");
+      throw InputError(label + ".values", value.dump() + " appears twice: expected once");
   }
   const Json definition = {{"parameter", parameter}, {"values", values}};
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};

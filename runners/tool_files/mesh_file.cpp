@@ -93,7 +93,7 @@ void add_mesh(const aiMesh& from, Welded& welded, TriangleMesh& mesh) {
     std::vector<int> polygon;
     for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
       if (face.mIndices[corner] >= index.size())
-        throw std::runtime_error("a face has a vertex that is not there");
+        throw std::runtime_error("a face refers to a vertex that does not exist");
       polygon.push_back(index[face.mIndices[corner]]);
     }
     if (polygon.size() == 3)
@@ -157,7 +157,7 @@ TriangleMesh mesh_by_assimp(const std::string& file) {
   Assimp::Importer importer;
   const aiScene* scene = scene_of(file, importer);
   if (scene != nullptr && ending_of(file) == ".stl" && facets.found())
-    throw std::runtime_error("a facet has not three vertices");
+    throw std::runtime_error("a facet does not have three vertices");
   if (scene == nullptr) {
     const std::string error = importer.GetErrorString();
     throw std::runtime_error(error == "std::bad_alloc" ? "it claims more than fits into memory" : error);
@@ -185,7 +185,8 @@ TriangleMesh mesh_in_child(const std::filesystem::path& file, const RunInChild& 
   TriangleMesh mesh;
   Unpacker unpack(bytes);
   unpack.list(mesh.vertices), unpack.list(mesh.triangles);
-  if (!unpack.done() || !has_its_vertices(mesh)) throw std::runtime_error("its reader gave half an answer");
+  if (!unpack.done() || !has_its_vertices(mesh))
+    throw std::runtime_error("its reader sent an incomplete answer");
   return mesh;
 }
 

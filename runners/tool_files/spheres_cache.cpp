@@ -44,7 +44,7 @@ bool grow(const FlatTree& flat, SphereTree& tree) {
 template <class Direction, class Tree, class Spheres>
 void visit(Direction& pack, Tree& tree, Spheres& spheres) {
   pack.list(tree.leaves), pack.list(tree.counts);
-  pack.value(spheres.inflation_m), pack.value(spheres.outside_m), pack.value(spheres.inside_m);
+  pack.value(spheres.inflation_m), pack.value(spheres.outside_m), pack.value(spheres.surface_outside_m);
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ class Solids {
     expect("outer"), expect("loop");
     plain_ += "facet normal 0 0 0\nouter loop\n";
     for (int i = 0; i < 3; ++i) {
-      if (next_is("endloop")) refuse_line(text_, word_at_, "a facet has not three vertices");
+      if (next_is("endloop")) refuse_line(text_, word_at_, "a facet does not have three vertices");
       read_vertex();
     }
-    if (next_is("vertex")) refuse_line(text_, word_at_, "a facet has not three vertices");
+    if (next_is("vertex")) refuse_line(text_, word_at_, "a facet does not have three vertices");
     expect("endloop"), expect("endfacet");
     plain_ += "endloop\nendfacet\n";
   }

@@ -51,7 +51,7 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
   const NearestObject object = choose_pixel(image);
   const double surface_m = seen(0).supported_m;
   if (std::isnan(surface_m)) refuse_pixel(image);
-  if (!object.pixels.empty()) find_missed_object(object, image.measured());
+  if (!object.pixels.empty()) note_missed_object(object, image.measured());
   if (!(settings.clearance_m < surface_m && -settings.depth_m < surface_m))
     throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
                                                             millimetres(surface_m) +
@@ -120,7 +120,7 @@ void ImagePress::refuse_pixel(BridgeableImage& image) const {
 
 // Sets missed_object_ if a pixel that was chosen from the image presses something other than the nearest
 // object.
-void ImagePress::find_missed_object(const NearestObject& object, const DepthImage& measured) {
+void ImagePress::note_missed_object(const NearestObject& object, const DepthImage& measured) {
   const int pixel = row_ * image_.camera.width + column_;
   const std::string pressed = pixel_text(row_, column_) + " is pressed, but ";
   if (object.is_whole_scene) {

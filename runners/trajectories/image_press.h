@@ -61,7 +61,7 @@ class ImagePress final : public Trajectory {
   Support support() const { return {settings_.edge_jump_m, settings_.margin_m}; }
   NearestObject choose_pixel(BridgeableImage& image);
   bool has_support(const DepthImage& image, int pixel) const;
-  void find_missed_object(const NearestObject& object, const DepthImage& measured);
+  void note_missed_object(const NearestObject& object, const DepthImage& measured);
   [[noreturn]] void refuse_pixel(BridgeableImage& image) const;
   double travelled_m(double time_s) const;
   double lifted_depth(double planned_m, const Seen& newest) const;

@@ -60,7 +60,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s)
         "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
   scan_ = find_scan_row(first.depth, camera, request_of(s));
   if (scan_.patches.empty()) refuse_row(first.depth, camera);
-  if (s.row < 0) find_missed_object(first.depth, camera);
+  if (s.row < 0) note_missed_object(first.depth, camera);
   plan_path(first.depth, first.layout);
 }
 
@@ -85,7 +85,7 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
 
 // Sets missed_object_ if a row that was chosen from the image touches only other things than the nearest
 // object or, if there is no large object, if a small object is nearer than everything that it touches.
-void ImageScan::find_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
+void ImageScan::note_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
   const std::string row = "row " + std::to_string(scan_.row);
   if (!scan_.is_on_object) {
     missed_object_ =

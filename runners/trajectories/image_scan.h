@@ -46,7 +46,7 @@ class ImageScan final : public Trajectory {
 
  private:
   [[noreturn]] void refuse_row(const DepthImage& image, const CameraIntrinsics& camera) const;
-  void find_missed_object(const DepthImage& image, const CameraIntrinsics& camera);
+  void note_missed_object(const DepthImage& image, const CameraIntrinsics& camera);
   void plan_path(const DepthImage& image, const ImageLayout& layout);
 
   const Settings settings_;

@@ -21,7 +21,7 @@ constexpr double kRotation = 6.283185307179586;
 
 // Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
 // allowed speed.
-double slowest_rate(const RandomWalk::Settings& s) {
+double rate_of_first_sine(const RandomWalk::Settings& s) {
   double of_all = 0;
   for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];
   const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
@@ -43,13 +43,13 @@ Parameters parameters(RandomWalk::Settings& s) {
 
 std::string validate(const RandomWalk::Settings& s) {
   if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: expected above 0 along one axis or more";
-  return slowest_rate(s) * s.duration_s < 1e5
+  return rate_of_first_sine(s) * s.duration_s < 1e5
              ? ""
              : "extent_m is too small for speed_m_per_s and duration_s: expected fewer than 15000 oscillations";
 }
 
 RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
-    : settings_(settings), rate_(slowest_rate(settings)) {
+    : settings_(settings), rate_(rate_of_first_sine(settings)) {
   const NoiseStream stream = noise_stream({settings.seed}, NoiseUse::motion, 0);
   for (std::size_t axis = 0; axis < 6; ++axis) {
     const auto random = uniforms(stream, static_cast<std::uint32_t>(axis));

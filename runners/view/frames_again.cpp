@@ -32,7 +32,7 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
   if (!recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos)
     throw InputError(
         name,
-        "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
+        "is of a live run, without its frames: expected the trace that `remote-touch run` makes from its recording");
   Experiment experiment = read_configuration(trace, name, [&] {
     return Experiment::from_json(parse_json(stored_configuration(attribute(trace, "config")), name));
   });

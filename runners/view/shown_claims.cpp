@@ -22,7 +22,7 @@ std::string figure_of(const TextAttributes& run) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
-  throw InputError(file.string(), "is no list of claims: expected the claims.json of remote-touch figure");
+  throw InputError(file.string(), "is not a list of claims: expected the claims.json of remote-touch figure");
 }
 
 Json shown(const Json& claim, const std::filesystem::path& file) {

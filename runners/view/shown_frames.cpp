@@ -74,13 +74,13 @@ class FrameViewer {
     now.index = frame.index, now.captured_s = frame.captured_s;
     now.measured = points.measured, now.in_box = points.in_box, now.others = points.others;
     now.rank = std::move(points.rank);
-    now.positions = numbers_of(cloud, points.numbers, scale_);
-    now.colours = colours_of(cloud, points.numbers);
-    now.fixture_radius_m = radii_of(cloud, points.numbers);
+    now.positions = numbers_of(cloud, points.indices, scale_);
+    now.colours = colours_of(cloud, points.indices);
+    now.fixture_radius_m = radii_of(cloud, points.indices);
     for (const auto& of_tick : touching) {
       for (const std::uint32_t i : of_tick)
         now.touching.push_back(static_cast<std::uint32_t>(
-            std::lower_bound(points.numbers.begin(), points.numbers.end(), i) - points.numbers.begin()));
+            std::lower_bound(points.indices.begin(), points.indices.end(), i) - points.indices.begin()));
       now.touching_end.push_back(static_cast<std::uint32_t>(now.touching.size()));
     }
   }
@@ -111,11 +111,11 @@ PointScale point_scale(const BoundingBox& box_W) {
   return {box_W.min() - outside, (box_W.sizes().maxCoeff() + 2 * kOutside_m) / kMaxNumber};
 }
 
-ShownFrame thinned(const ShownFrame& frame, std::size_t max_others) {
+ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others) {
   ShownFrame some;
   some.index = frame.index, some.captured_s = frame.captured_s;
   some.measured = frame.measured, some.in_box = frame.in_box, some.others = frame.others;
-  const std::uint32_t limit = rank_limit(frame.others, max_others);
+  const std::uint32_t limit = rank_limit(frame.others, wanted_others);
   std::vector<std::uint32_t> place(frame.rank.size());
   for (std::size_t i = 0; i < frame.rank.size(); ++i) {
     place[i] = static_cast<std::uint32_t>(some.rank.size());

@@ -44,8 +44,8 @@ struct ShownFrame {
   std::vector<std::uint32_t> touching, touching_end;
 };
 
-// Returns the frame with about max_others of its other points, or with all of them if it has fewer.
-ShownFrame thinned(const ShownFrame& frame, std::size_t max_others);
+// Returns the frame with about wanted_others of its other points, or with all of them if it has fewer.
+ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others);
 
 struct ShownFrames {
   std::vector<ShownFrame> frames;

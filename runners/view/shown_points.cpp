@@ -25,10 +25,10 @@ std::vector<Vec3> thinned_path(std::span<const Vec3> path_W, double side_m) {
 
 }  // namespace
 
-std::uint32_t rank_limit(std::size_t others, std::size_t max_others) {
+std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others) {
   constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-  if (others <= max_others) return kAll;
-  return static_cast<std::uint32_t>(static_cast<double>(max_others) / static_cast<double>(others) * kAll);
+  if (others <= wanted_others) return kAll;
+  return static_cast<std::uint32_t>(static_cast<double>(wanted_others) / static_cast<double>(others) * kAll);
 }
 
 ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
@@ -45,22 +45,22 @@ ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t>
     const bool in_box = rule.box_W.contains(p);
     shown.in_box += in_box ? 1 : 0;
     if (std::binary_search(always.begin(), always.end(), i)) {
-      shown.numbers.push_back(static_cast<std::uint32_t>(i));
+      shown.indices.push_back(static_cast<std::uint32_t>(i));
       continue;
     }
     if (!in_box) continue;
     const bool is_near = rule.near_m > 0 && std::any_of(path.begin(), path.end(), [&](const Vec3& proxy) {
                            return (p - proxy).squaredNorm() <= squared;
                          });
-    (is_near ? shown.numbers : others).push_back(static_cast<std::uint32_t>(i));
+    (is_near ? shown.indices : others).push_back(static_cast<std::uint32_t>(i));
   }
   shown.others = others.size();
-  const std::uint32_t limit = rank_limit(others.size(), rule.max_others);
-  const std::vector<std::uint32_t> near = shown.numbers;
+  const std::uint32_t limit = rank_limit(others.size(), rule.wanted_others);
+  const std::vector<std::uint32_t> near = shown.indices;
   for (const std::uint32_t i : others)
-    if (rank_of(i) < limit) shown.numbers.push_back(i);
-  std::sort(shown.numbers.begin(), shown.numbers.end());
-  for (const std::uint32_t i : shown.numbers)
+    if (rank_of(i) < limit) shown.indices.push_back(i);
+  std::sort(shown.indices.begin(), shown.indices.end());
+  for (const std::uint32_t i : shown.indices)
     shown.rank.push_back(std::binary_search(near.begin(), near.end(), i) ? 0 : rank_of(i));
   return shown;
 }

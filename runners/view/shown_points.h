@@ -12,13 +12,13 @@
 namespace remote_touch {
 
 struct ShownPointsRule {
-  BoundingBox box_W;           // points outside are left out
-  double near_m = 0;           // all points in the box this near to a position of the proxy are shown
-  std::size_t max_others = 0;  // about the maximum number of other points in the box that are shown
+  BoundingBox box_W;              // points outside are left out
+  double near_m = 0;              // all points in the box this near to a position of the proxy are shown
+  std::size_t wanted_others = 0;  // about so many other points in the box are shown, or all if fewer
 };
 
 struct ShownPoints {
-  std::vector<std::uint32_t> numbers;  // indices of the points in the cloud, ascending
+  std::vector<std::uint32_t> indices;  // those of the points in the cloud, ascending
   // Rank of each point: 0 for those that touch and those near the proxy. Other points are left out from the
   // largest rank on.
   std::vector<std::uint32_t> rank;
@@ -26,7 +26,7 @@ struct ShownPoints {
 };
 
 // Returns the rank below which the other points are shown.
-std::uint32_t rank_limit(std::size_t others, std::size_t max_others);
+std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others);
 
 // always: indices of points that are shown wherever they are, ascending. Other points are thinned by their
 // indices, so that a page shows the same pixels of an image in every frame.

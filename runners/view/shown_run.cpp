@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kRoom_m = 0.03;
 constexpr const char* kOtherFrames =
-    "Not the frames of the run: this program makes others from its configuration than the one that ran it.";
+    "These are not the frames of the run: from its configuration this program makes other frames than the program that ran it.";
 constexpr const char* kOtherRadii =
     "The contact radius changes during this run: the proxy and the touching points are drawn with that of the start.";
 
@@ -175,16 +175,16 @@ struct ShownRun::State {
       list.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}});
     return list;
   }
-  void add_frames(Json& run, PackedArrays& numbers, std::size_t max_others) {
+  void add_frames(Json& run, PackedArrays& numbers, std::size_t wanted_others) {
     const PointScale scale = point_scale(shown_box_W);
     run["corner_m"] = json_of(scale.low_W), run["step_m"] = scale.step_m;
     run["low_m"] = json_of(Vec3(shown_box_W.min())), run["high_m"] = json_of(Vec3(shown_box_W.max()));
     if (made.frames.empty()) {
-      const ShownPointsRule rule{shown_box_W, std::max(r2_m, 1.5 * contact_radius_m), max_others};
+      const ShownPointsRule rule{shown_box_W, std::max(r2_m, 1.5 * contact_radius_m), wanted_others};
       made = shown_frames(experiment, path, rule, kernels, stop);
     }
     std::vector<ShownFrame> some;
-    for (const ShownFrame& frame : made.frames) some.push_back(thinned(frame, max_others));
+    for (const ShownFrame& frame : made.frames) some.push_back(thinned(frame, wanted_others));
     Json list = Json::array();
     for (const ShownFrame& frame : some) list.push_back(frame_json(frame, numbers));
     run["frames"] = std::move(list);
@@ -261,11 +261,11 @@ void ShownRun::mark_divergence_from(const ShownRun& other) {
                               comparison.divergence->explanation};
 }
 
-Json ShownRun::json(PackedArrays& numbers, std::size_t max_others) {
+Json ShownRun::json(PackedArrays& numbers, std::size_t wanted_others) {
   Json run = state_->description();
   run["columns"] = columns_json(*state_->source.columns, numbers);
   run["events"] = state_->events();
-  state_->add_frames(run, numbers, max_others);
+  state_->add_frames(run, numbers, wanted_others);
   state_->add_truth(run, numbers);
   if (state_->tool) run["tool"] = json_of(*state_->tool, numbers);
   return run;

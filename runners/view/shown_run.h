@@ -42,9 +42,9 @@ class ShownRun {
   // Adds the first tick with any difference from another run to the events.
   void mark_divergence_from(const ShownRun& other);
 
-  // The first call makes the frames of the run again; later calls leave out points. max_others: see
+  // The first call makes the frames of the run again; later calls leave out points. wanted_others: see
   // ShownPointsRule; for each frame, and no more than in the first call.
-  Json json(PackedArrays& numbers, std::size_t max_others);
+  Json json(PackedArrays& numbers, std::size_t wanted_others);
   // A line about the points that the last json() contained.
   const std::string& shown() const;
   // Remark for the reader, valid after json(); empty: none.

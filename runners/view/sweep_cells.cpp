@@ -69,8 +69,8 @@ std::vector<std::size_t> extremes(const SweepResult& result, const std::vector<d
 
 }  // namespace
 
-std::vector<std::size_t> runs_near_limit(const SweepResult& result, const std::vector<double>& measure,
-                                         double threshold, std::size_t max) {
+std::vector<std::size_t> default_runs(const SweepResult& result, const std::vector<double>& measure,
+                                      double threshold, std::size_t max) {
   const FailedCells failed(result, measure, threshold);
   std::vector<std::size_t> at_limit, any;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
@@ -78,7 +78,7 @@ std::vector<std::size_t> runs_near_limit(const SweepResult& result, const std::v
     any.push_back(failed.failed_run(cell));
     if (failed.at_limit(cell)) at_limit.push_back(failed.failed_run(cell));
   }
-  if (any.empty()) return extremes(result, measure);
+  if (any.empty()) return spread(extremes(result, measure), max);
   return spread(at_limit.empty() ? any : at_limit, max);
 }
 

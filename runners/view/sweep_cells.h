@@ -13,7 +13,7 @@ namespace remote_touch {
 // failed and that has a neighbour in which most did not. A neighbour is the next cell along an axis that has
 // finished runs. If no cell has such a neighbour, any cells with a failed run are used. If no run failed,
 // returns the runs with the smallest and the largest value. Empty only if no run is done.
-std::vector<std::size_t> runs_near_limit(const SweepResult& result, const std::vector<double>& measure,
-                                         double threshold, std::size_t max);
+std::vector<std::size_t> default_runs(const SweepResult& result, const std::vector<double>& measure,
+                                      double threshold, std::size_t max);
 
 }  // namespace remote_touch

@@ -73,7 +73,7 @@ std::size_t run_of_cell(const SweepResult& result, const std::string& text, cons
 std::vector<std::size_t> runs_to_show(const SweepResult& result, const std::vector<std::string>& cells,
                                       const Judged& judged) {
   if (cells.empty())
-    return runs_near_limit(result, result.measure(judged.measure), judged.threshold, kRunsOfSweepPage);
+    return default_runs(result, result.measure(judged.measure), judged.threshold, kRunsOfSweepPage);
   std::vector<std::size_t> runs;
   for (const std::string& text : cells) runs.push_back(run_of_cell(result, text, judged));
   std::sort(runs.begin(), runs.end());
@@ -121,7 +121,7 @@ std::unique_ptr<ShownRun> run_again(const StoredSweep& stored, const Sweep& swee
   add_report(source.attributes, report);
   if (!measures_are_stored(stored, sweep, run, trace))
     source.note =
-        "Not the run that is stored: its measures differ. Another version of the program made the sweep.";
+        "This is not the stored run: its measures differ. Another version of the program made the sweep.";
   return std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop);
 }
 

@@ -77,7 +77,7 @@ Parameters parameters(SensorFaults& s) {
       {"outlier_probability", &s.outlier_probability, 0, 1,
        "probability that a point is an outlier anywhere along the viewing direction"},
       {"max_outlier_distance_m", &s.max_outlier_distance_m, 0, 100,
-       "maximum distance of an outlier from its true place, uniformly distributed"},
+       "maximum distance of an outlier from its true position, uniformly distributed"},
       {"quantisation_m", &s.quantisation_m, 0, 1, "depth is rounded to multiples of this; 0: not rounded"},
       {"hole_fraction", &s.hole_fraction, 0, 1,
        "fraction of the points that are lost in round holes, which are elsewhere in each frame"},

@@ -41,7 +41,7 @@ void drop_beyond(double max_depth_m, PointCloud& cloud) {
 }  // namespace
 
 BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
-    : path_(path.string()), bag_(open_bag(path, tells_of_depth_camera)) {
+    : path_(path.string()), bag_(open_bag(path, is_wanted_topic)) {
   topic_ = topic_of_frames(path_, *bag_, choice.topic);
   remark_ = bag_->remark();
   order_frames();

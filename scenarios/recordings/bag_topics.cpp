@@ -56,7 +56,7 @@ std::string encoding_of(const BagFile& bag, std::size_t t) {
 // Colour images have the same type as depth images.
 bool has_frames(const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
-  if (!tells_of_depth_camera(topic) || !has_messages(bag, t)) return false;
+  if (!is_wanted_topic(topic) || !has_messages(bag, t)) return false;
   if (topic.type == kCloudType) return true;
   if (topic.type == kCompressedType) return parts_of_name(topic.name).back() == "compressedDepth";
   return topic.type == kImageType && is_depth_encoding(encoding_of(bag, t));
@@ -109,7 +109,7 @@ bool is_tf_static(const BagTopic& topic) {
          (topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage");
 }
 
-bool tells_of_depth_camera(const BagTopic& topic) {
+bool is_wanted_topic(const BagTopic& topic) {
   const std::string& type = topic.type;
   const bool is_unit = type == "std_msgs/Float32" && topic.name.find("Depth") != std::string::npos;
   const bool is_known = type == kCloudType || type == kImageType || type == kCompressedType ||
@@ -126,7 +126,7 @@ std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const s
                          listed(bag, of_frames));
   const auto named = topics_that(bag, [&](std::size_t t) {
     const std::string& type = bag.topics()[t].type;
-    return bag.topics()[t].name == name && tells_of_depth_camera(bag.topics()[t]) && has_messages(bag, t) &&
+    return bag.topics()[t].name == name && is_wanted_topic(bag.topics()[t]) && has_messages(bag, t) &&
            (type == kCloudType || type == kImageType || type == kCompressedType);
   });
   if (named.size() == 1) return named.front();

@@ -18,7 +18,7 @@ bool is_readable(const BagTopic& topic);  // plain CDR, or ROS 1
 WireFormat wire_format(const BagTopic& topic);
 // True for the topics whose messages are read: frames, cameras, fixed transforms, units of depth. Messages of
 // other topics are not read.
-bool tells_of_depth_camera(const BagTopic& topic);
+bool is_wanted_topic(const BagTopic& topic);
 bool is_tf_static(const BagTopic& topic);
 
 // Returns the topic of that name, or, if the name is empty, the only topic that has frames. Throws InputError

@@ -16,7 +16,7 @@ namespace {
 
 void require_target(const fs::path& file) {
   if (fs::is_symlink(file) && !fs::exists(file))
-    throw InputError(file.string(), "is a link to a file that is not there: expected a file");
+    throw InputError(file.string(), "is a link to a file that does not exist: expected a file");
 }
 
 // All numbers in a name, without zeros in front: 2 and 7 of img_2_0007.png.

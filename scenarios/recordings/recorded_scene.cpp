@@ -88,10 +88,10 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
   require_points();
   recording_.camera = layout_->camera.value_or(CameraIntrinsics{});
   if (!layout_->camera && settings_.max_depth_m != Settings{}.max_depth_m)
-    throw InputError(
-        settings_.path,
-        "its points are no image of a camera and have no depth: expected scenario.max_depth_m = " +
-            std::to_string(Settings{}.max_depth_m) + ", the default, which does not apply to them");
+    throw InputError(settings_.path,
+                     "its points form no camera image and have no depth: expected scenario.max_depth_m = " +
+                         std::to_string(Settings{}.max_depth_m) +
+                         ", the default, which does not apply to them");
 }
 
 // Throws InputError if the first frame has no usable point. The cause is a mistake: another unit, another

@@ -199,10 +199,10 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (fs::exists(path) && is_bag(path)) return index_bag(path, choice);
   for (const auto& [name, value] :
        {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
-    if (!value.empty()) refuse(path, "is no bag of ROS: expected scenario." + std::string(name) + " = \"\"");
-  if (choice.depth_unit_m != 0) refuse(path, "is no bag of ROS: expected scenario.depth_unit_m = 0");
+    if (!value.empty()) refuse(path, "is not a ROS bag: expected scenario." + std::string(name) + " = \"\"");
+  if (choice.depth_unit_m != 0) refuse(path, "is not a ROS bag: expected scenario.depth_unit_m = 0");
   if (choice.images != BagChoice::Images::by_name)
-    refuse(path, "is no bag of ROS: expected scenario.images = by_name");
+    refuse(path, "is not a ROS bag: expected scenario.images = by_name");
   if (fs::is_regular_file(path) && has_ending(path, ".pcd")) return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
@@ -213,8 +213,8 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
   if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
   refuse(path,
-         "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or "
-         "metadata.yaml with a bag of ROS 2");
+         "is not a recording: expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or "
+         "metadata.yaml with a ROS 2 bag");
 }
 
 // Pixel (u, v) must be point v * width + u in depth, colour and camera alike.

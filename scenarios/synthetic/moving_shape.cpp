@@ -98,8 +98,8 @@ NoiseStream MovingShape::noise(int frame) const {
 }
 
 bool MovingShape::is_a_level_grid() const {
-  return settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 && motion_.is_a_lift_alone() &&
-         !settings_.normals;
+  return settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 &&
+         motion_.moves_vertically_only() && !settings_.normals;
 }
 
 std::shared_ptr<const NeighbourSearch> MovingShape::points(int frame) const {

@@ -69,7 +69,7 @@ bool ShapeMotion::ever_rests() const {
   return settings_.slide_velocity_m_per_s == 0 && !shakes && !rocks;
 }
 
-bool ShapeMotion::is_a_lift_alone() const {
+bool ShapeMotion::moves_vertically_only() const {
   return settings_.tilt_deg == 0 && settings_.rock_deg == 0 && settings_.slide_velocity_m_per_s == 0;
 }
 

@@ -49,7 +49,7 @@ class ShapeMotion {
   // The phases of the lift, then one phase for all other motion, which never ends.
   std::vector<Phase> phases() const;
   bool ever_rests() const;
-  bool is_a_lift_alone() const;  // neither rotated nor moved along x
+  bool moves_vertically_only() const;  // neither rotated nor moved along x
 
  private:
   ShapePose moved(double lift_m, double time_s) const;

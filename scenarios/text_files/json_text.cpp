@@ -24,7 +24,7 @@ class Watch {
     if (event == Json::parse_event_t::object_end) keys_.pop_back();
     if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
       throw InputError(label_,
-                       "the key " + shown(parsed) + " comes twice in one object: expected each key once");
+                       "the key " + shown(parsed) + " appears twice in one object: expected each key once");
   }
 
  private:

@@ -36,7 +36,7 @@ class CameraDouble {
 
     // Frame n, from 1 on, comes n periods after the start.
     std::function<double(int)> stamp_s = [](int number) { return 5 + number / 30.0; };
-    std::function<int(int)> counted = [](int number) { return number; };  // frame number it reports
+    std::function<int(int)> reported_number = [](int number) { return number; };
     std::function<bool(int)> has_depth = [](int) { return true; };
     int silent_after = 0, lost_after = 0;  // number of frames before it; 0: never
     int row_gap_bytes = 0, missing_bytes = 0, missing_rows = 0;

@@ -330,7 +330,7 @@ double rs2_get_frame_timestamp(const void* frame, void** error) {
 }
 unsigned long long rs2_get_frame_number(const void* frame, void** error) {
   if (!begins("rs2_get_frame_number", "frame", frame, error)) return 0;
-  return static_cast<unsigned long long>(camera.state.counted(number_in(frame)));
+  return static_cast<unsigned long long>(camera.state.reported_number(number_in(frame)));
 }
 
 #ifndef REMOTE_TOUCH_OLD_REALSENSE

@@ -69,7 +69,7 @@ std::vector<HaplyCommand> haply_commands(const std::string& message) {
 }
 
 Vec3 given_force_N(const HaplyWorld& world, const HaplyCommand& command) {
-  return (command.key == world.force_key ? world.gate : 0) * command.force_N + world.other_N;
+  return (command.key == world.force_key ? world.force_factor : 0) * command.force_N + world.other_N;
 }
 
 std::string haply_inventory(const HaplyWorld& world, const Vec3& given_N) {

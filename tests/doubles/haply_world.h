@@ -20,7 +20,7 @@ struct HaplyWorld {
   std::string basis = "XYZ";
   std::string force_key = "vector";  // the key that it knows; it ignores others, as it does unknown keys
   bool reports_force = true;
-  double gate = 1;              // share of the commanded force that it gives
+  double force_factor = 1;      // it gives so many times the commanded force
   Vec3 other_N = Vec3::Zero();  // force that other programs command
   std::string answer;           // sent instead of a state
   std::string inventory;        // sent instead of the inventory

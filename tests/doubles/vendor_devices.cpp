@@ -36,8 +36,8 @@ const VendorDevice kForceDimension{.name = "force_dimension",
                                    .drives_itself = false,
                                    .has_motors_on_to_read = false,
                                    .error = 7,
-                                   .sent_error = 7,
-                                   .gone_error = 2};
+                                   .fault_code = 7,
+                                   .unplugged_code = 2};
 
 const VendorDevice kOpenHaptics{.name = "open_haptics",
                                 .uri = "touch:",
@@ -53,8 +53,8 @@ const VendorDevice kOpenHaptics{.name = "open_haptics",
                                 .drives_itself = true,
                                 .has_motors_on_to_read = false,
                                 .error = 0x0201,
-                                .sent_error = 0x0201,
-                                .gone_error = 0x0302};
+                                .fault_code = 0x0201,
+                                .unplugged_code = 0x0302};
 
 const VendorDevice kEntact{.name = "entact",
                            .uri = "entact:",
@@ -70,8 +70,8 @@ const VendorDevice kEntact{.name = "entact",
                            .drives_itself = false,
                            .has_motors_on_to_read = true,
                            .error = 1,
-                           .sent_error = -1,
-                           .gone_error = -1};
+                           .fault_code = -1,
+                           .unplugged_code = -1};
 
 void PrintTo(const VendorDevice* vendor, std::ostream* out) {
   *out << vendor->name;

@@ -24,8 +24,8 @@ struct VendorDevice {
   Eigen::Matrix3d axes;  // maps our axes to the vendor's
   double length_per_m, torque_per_Nm;
   bool has_buttons, drives_itself, has_motors_on_to_read;
-  int error, sent_error;  // one of the vendor's codes, and the code in the fault
-  int gone_error;         // code of an unplugged device
+  int error, fault_code;  // one of the vendor's codes, and the code in the fault
+  int unplugged_code;     // that of a fault of an unplugged device
 };
 
 // gtest prints it in the names of tests.

@@ -8,7 +8,7 @@
 namespace remote_touch::fuzz::child_answer {
 namespace {
 
-// "half an answer" is what the reader of the file says then, in its own words.
+// "an incomplete answer" is what the reader of the file says then, in its own words.
 template <class Unpack>
 void read_as(const std::string& bytes, Unpack unpack) {
   try {

@@ -45,7 +45,7 @@ TEST(LastingChild, ReadsOnInOneProcess) {
   EXPECT_EQ(child.repeated(), 0);
 }
 
-TEST(LastingChild, TellsOfEachEndWhatAChildOfItsOwnTells) {
+TEST(LastingChild, ReportsEachEndAsAChildOfItsOwnDoes) {
   LastingChild child;
   const std::string long_text(1'000'000, 'x');  // more than a pipe takes at once
   for (const std::string& question :

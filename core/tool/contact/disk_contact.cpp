@@ -90,7 +90,7 @@ double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& 
 }
 
 // Returns the unit direction in which the tool leaves the position soonest; +y if the field is flat there.
-Vec3 exit_distance(const FieldSample& at, double steep) {
+Vec3 exit_direction(const FieldSample& at, double steep) {
   return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
 }
 
@@ -117,14 +117,15 @@ ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const D
     const double flush = side_of_flush(tool, disk, nearest);
     if (flush != 0) side = flush, as_plane = true;
   }
-  const Vec3 out = as_plane ? Vec3(side * disk.n_T) : exit_distance(nearest.at, nearest.at.gradient_T.norm());
+  const Vec3 out =
+      as_plane ? Vec3(side * disk.n_T) : exit_direction(nearest.at, nearest.at.gradient_T.norm());
   return {nearest.p_T, out, -nearest.at.distance_m, side};
 }
 
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
   const double steep = disk.at.gradient_T.norm();
   const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
-  return {disk.p_T, exit_distance(disk.at, steep), -lower_bound_m, side};
+  return {disk.p_T, exit_direction(disk.at, steep), -lower_bound_m, side};
 }
 
 }  // namespace remote_touch

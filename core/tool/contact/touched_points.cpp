@@ -29,7 +29,7 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
                               groups.nearest_m, groups.is_new, sum);
   groups_.on_measured();
   Touched all;
-  all.points = static_cast<int>(sum.points);
+  all.points = static_cast<int>(sum.point_count);
   all.nearest_distance_m = sum.nearest;
   if (all.points > 0) all.state = sum.is_inside ? ContactState::entrenched : ContactState::contact;
   cluster_count_ = sum.clusters, unclear_count_ = sum.unclear_count;

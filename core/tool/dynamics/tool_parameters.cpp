@@ -19,7 +19,7 @@ Parameters parameters(ToolParameters& p) {
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
        "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead and continuous"},
       {"merged_disk_m", &p.merged_disk_m, 0, 0.005,
-       "where points are less than 0.6 mm apart, one disk stands for the points of a cube of this size that cover a plane; parts of the tool smaller than the cube may get into the surface between the middles of disks; 0: none; for contact_rule = look-ahead and continuous, which still asks every point whether it stops a motion"},
+       "where points are less than 0.6 mm apart, one disk replaces the points of a cube of this size that cover a plane; parts of the tool smaller than the cube may get into the surface between the middles of disks; 0: none; for contact_rule = look-ahead and continuous, which still checks for every point whether it stops a motion"},
       {"frame_reach_m", &p.frame_reach_m, 0, 0.05,
        "for contact_rule = continuous: how far a surface that holds the tool may move in a frame; the tool is moved out by up to this, and back until a point stops it; a small detections_per_tick shortens it; 0: not moved out"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},

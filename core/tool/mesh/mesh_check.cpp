@@ -103,7 +103,7 @@ std::string text(const MeshCheck& check) {
   };
   if (check.triangles == 0) return "no triangles";
   add(check.bad_vertices, "vertices that are not finite");
-  add(check.bad_indices, "triangles with a corner that is no vertex");
+  add(check.bad_indices, "triangles with a corner that is not a vertex");
   if (!faults.empty()) return faults;
   add(check.boundary_edges, "boundary edges");
   add(check.non_manifold_edges, "non-manifold edges");

@@ -16,7 +16,7 @@ struct MeshCheck {
   int inconsistent_edges = 0;    // edges of two triangles that run along them in the same direction
   int degenerate_triangles = 0;  // triangles with a corner twice, or without area
   int bad_vertices = 0;          // vertices that are not finite
-  int bad_indices = 0;           // triangles with a corner that is no vertex
+  int bad_indices = 0;           // triangles with a corner that is not a vertex
   double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
 
   bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }

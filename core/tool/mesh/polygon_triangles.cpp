@@ -109,7 +109,7 @@ std::optional<Triangles> ears(const std::vector<Vec2>& at) {
 
 // True if the areas of the triangles sum up to that of the polygon. All of them are positive, so an error of
 // one cannot cancel that of another.
-bool have_area(const Triangles& triangles, const std::vector<Vec2>& at) {
+bool have_area_of_polygon(const Triangles& triangles, const std::vector<Vec2>& at) {
   double whole = 0, sum = 0;
   for (std::size_t i = 2; i < at.size(); ++i) whole += turn(at[0], at[i - 1], at[i]);
   for (const auto& [a, b, c] : triangles) sum += std::abs(turn(at[a], at[b], at[c]));
@@ -124,7 +124,7 @@ std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vect
   if (has_fan(at)) return fan(corners.size());
   if (!is_simple(at)) return {};
   std::optional<Triangles> triangles = ears(at);
-  if (triangles && !have_area(*triangles, at)) return {};
+  if (triangles && !have_area_of_polygon(*triangles, at)) return {};
   return triangles;
 }
 

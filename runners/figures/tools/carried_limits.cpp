@@ -26,8 +26,8 @@ CarrySweep::Limit CarrySweep::limit(std::size_t setting, Carrier rule) const {
   return limit;
 }
 
-double rows_apart(const Table& table, const std::string& carried, const std::string& lost,
-                  const std::string& low, const std::string& high) {
+double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
+                        const std::string& low, const std::string& high) {
   const auto &from = numbers(table, carried), &to = numbers(table, lost), &least = numbers(table, low),
              &most = numbers(table, high);
   double apart = 0;

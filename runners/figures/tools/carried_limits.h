@@ -53,8 +53,8 @@ class CarrySweep {
 
 // Number of rows in which a limit is not between two columns: a run is lost below `low`, or carried above
 // `high`.
-double rows_apart(const Table& table, const std::string& carried, const std::string& lost,
-                  const std::string& low, const std::string& high);
+double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
+                        const std::string& low, const std::string& high);
 
 // Panel over the first column of a table: derived limits (columns *_bound) are dashed, and strengths up to
 // which every run is carried (columns *_carried) are dots.

@@ -21,7 +21,7 @@ void BrowserDevice::run(DeviceCycle& cycle) {
 
 // x'' = w^2 (wanted - x) - 2 w x', the velocity first: stable for steps far below 1 / w.
 void BrowserDevice::follow(double interval_s) {
-  constexpr double w = kStiffness_per_s;
+  constexpr double w = kNaturalFrequency_rad_per_s;
   velocity_m_per_s_ +=
       interval_s * (w * w * (wanted_.position_W - now_.position_W) - 2 * w * velocity_m_per_s_);
   const double speed = velocity_m_per_s_.norm();
@@ -32,8 +32,8 @@ void BrowserDevice::follow(double interval_s) {
 void BrowserDevice::turn(double interval_s) {
   const double left = now_.orientation_W.angularDistance(wanted_.orientation_W);
   if (left < 1e-9) return;
-  const double angle =
-      std::min({left, 0.5 * kStiffness_per_s * interval_s * left, kMaxTurning_rad_per_s * interval_s});
+  const double angle = std::min(
+      {left, 0.5 * kNaturalFrequency_rad_per_s * interval_s * left, kMaxTurning_rad_per_s * interval_s});
   now_.orientation_W = now_.orientation_W.slerp(angle / left, wanted_.orientation_W).normalized();
 }
 

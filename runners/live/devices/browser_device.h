@@ -27,7 +27,7 @@ using HandPoses = TripleBuffer<HandPose>;
 
 class BrowserDevice final : public HapticDevice {
  public:
-  static constexpr double kStiffness_per_s = 60;  // natural frequency of the spring
+  static constexpr double kNaturalFrequency_rad_per_s = 60;  // of the spring
   static constexpr double kMaxSpeed_m_per_s = 1;  // a third of what the safety gate allows by default
   static constexpr double kMaxTurning_rad_per_s = 6;
 

@@ -39,7 +39,7 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
     if (equals == std::string::npos || equals + 1 == setting.size())
       throw refusal("the setting " + key + " has no value; write " + key + "=VALUE");
     if (!settings_.emplace(key, setting.substr(equals + 1)).second)
-      throw refusal("the setting " + key + " is there twice: expected once");
+      throw refusal("the setting " + key + " is given twice: expected once");
   }
 }
 

@@ -104,9 +104,10 @@ void Entact::connect(std::string address, const std::string& subject) {
                             : eapi_.connect_device(handles.data(), 0, address.data()) == Eapi::kOk;
   handle_ = handles[0];
   if (!is_found || handle_ == nullptr)
-    throw InputError(subject,
-                     "no device answers: expected one that is powered, in this network and in no other "
-                     "program's hands");
+    throw InputError(
+        subject,
+        "no device answers: expected one that is powered, in this network and not used by another "
+        "program");
   eapi_.set_mode(handle_, Eapi::disabled);
 }
 
@@ -187,7 +188,7 @@ Availability entact_availability() {
   try {
     const Eapi eapi;
     availability.found = true;
-    availability.detail = eapi.library.file() + ": devices are looked for when one is opened";
+    availability.detail = eapi.library.file() + ": a device is detected only when one is opened";
   } catch (const InputError& error) {
     availability.detail = error.what();
   }

@@ -67,7 +67,7 @@ Dhd::Dhd() : library(kDhdLibrary) {
 
 constexpr std::array<KnownFault, 5> kDhdFaults{{
     {2, "Force Dimension: the device does not communicate"},
-    {5, "Force Dimension: the device is gone"},
+    {5, "Force Dimension: the device is no longer found"},
     {7, "Force Dimension: the device did not answer in time"},
     {12, "Force Dimension: the device is not ready"},
     {20, "Force Dimension: another program has the device"},

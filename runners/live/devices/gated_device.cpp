@@ -25,13 +25,13 @@ DeviceFault GatedDevice::read(DeviceReading& reading) noexcept {
   in_vendor_ = true;
   DeviceFault fault = sense(reading);
   leave_vendor();
-  if (!fault && !is_finite(reading)) fault = {"the device tells of a state that is no number", 0};
+  if (!fault && !is_finite(reading)) fault = {"the device reports a state that is not finite", 0};
   return fault;
 }
 
 DeviceFault GatedDevice::write(const Wrench& wrench) noexcept {
   if (!wrench.force_N.allFinite() || !wrench.torque_Nm.allFinite())
-    return {"the force for the device is no number", 0};
+    return {"the force or torque for the device is not finite", 0};
   in_vendor_ = true;
   const DeviceFault fault = exert_if_on(wrench);
   leave_vendor();

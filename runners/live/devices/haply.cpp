@@ -21,14 +21,14 @@ constexpr double kStateLasts_s = 20e-3;  // if the last command is older, the st
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
 
-constexpr DeviceFault kNoState{"the Haply service sent something that is no state"};
+constexpr DeviceFault kNoState{"the Haply service sent a message that is not a state"};
 constexpr DeviceFault kDeviceGone{"the Inverse3 is no longer in the states of the service"};
 constexpr DeviceFault kHandleGone{"the handle is no longer in the states of the service"};
-constexpr DeviceFault kNoOrientation{"the handle sent an orientation that is none"};
-constexpr DeviceFault kNoForce{"a force that is no number"};
-constexpr DeviceFault kTryValues{"the service does not give the force that it is sent; try force=values"};
-constexpr DeviceFault kTryVector{"the service does not give the force that it is sent; try force=vector"};
-constexpr DeviceFault kOtherForce{"the service gives a force that it was not sent"};
+constexpr DeviceFault kNoOrientation{"the handle sent an orientation that is not a unit quaternion"};
+constexpr DeviceFault kNoForce{"the commanded force is not finite"};
+constexpr DeviceFault kTryValues{"the service does not apply the force that it is sent; try force=values"};
+constexpr DeviceFault kTryVector{"the service does not apply the force that it is sent; try force=vector"};
+constexpr DeviceFault kOtherForce{"the service applies a force that it was not sent"};
 
 // The service has y away from the user and z up.
 Vec3 from_service(const Vec3& v) {
@@ -87,20 +87,21 @@ Opened open_service(const DeviceAddress& address, const Clock& clock, double tim
   std::string_view text;
   const DeviceFault fault = opened.link->receive(text, deadline_s);
   if (fault)
-    throw address.refusal(std::string(fault.what) + ", it owes an inventory; is this the Inverse service?");
+    throw address.refusal(std::string(fault.what) +
+                          ", but an inventory was expected; is this the Inverse service?");
   HaplyMessage inventory;
   const std::string device = address.word("device", ""), handle = address.word("handle", "");
   if (!read_haply_message(text, device, handle, inventory))
-    throw address.refusal("what the service sent is no inventory; is this the Inverse service?");
+    throw address.refusal(
+        "the first message of the service is not an inventory; is this the Inverse service?");
   if (!inventory.device)
-    throw address.refusal("the service knows no Inverse3" + (device.empty() ? "" : " \"" + device + "\"") +
+    throw address.refusal("the service lists no Inverse3" + (device.empty() ? "" : " \"" + device + "\"") +
                           "; plug it in and wait until the service lists it");
   if (!handle.empty() && !inventory.handle)
-    throw address.refusal("the service knows no handle \"" + handle +
-                          "\"; pair it or leave the setting away");
+    throw address.refusal("the service lists no handle \"" + handle + "\"; pair it or omit the setting");
   const std::string_view basis = inventory.device->basis;
   if (!basis.empty() && basis != "XYZ")
-    throw address.refusal("the service was told to turn its axes to " + std::string(basis) +
+    throw address.refusal("the service is set to the basis " + std::string(basis) +
                           "; set the basis of this program back to XYZ");
   opened.device_id = inventory.device->id;
   if (inventory.handle) opened.handle_id = inventory.handle->id;
@@ -156,7 +157,7 @@ class Haply final : public HapticDevice {
   };
 
   DeviceFault send(const Vec3& force_N, double deadline_s) noexcept;
-  DeviceFault drain(std::string_view& text, double deadline_s) noexcept;
+  DeviceFault receive_due_answer(std::string_view& text, double deadline_s) noexcept;
   DeviceFault newest(std::string_view& text, double deadline_s) noexcept;
   DeviceFault read_within(DeviceReading& reading, double time_s) noexcept;
 
@@ -182,7 +183,8 @@ DeviceFault Haply::send(const Vec3& force_N, double deadline_s) noexcept {
   return {};
 }
 
-DeviceFault Haply::drain(std::string_view& text, double deadline_s) noexcept {
+// Receives the answer that is due, if one is.
+DeviceFault Haply::receive_due_answer(std::string_view& text, double deadline_s) noexcept {
   if (!is_answer_due_) return {};
   const DeviceFault fault = opened_.link->receive(text, deadline_s);
   if (!fault) is_answer_due_ = false;
@@ -193,10 +195,10 @@ DeviceFault Haply::drain(std::string_view& text, double deadline_s) noexcept {
 // sends a command with zero force and returns the answer to that.
 DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
   const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
-  if (const DeviceFault fault = drain(text, deadline_s)) return fault;
+  if (const DeviceFault fault = receive_due_answer(text, deadline_s)) return fault;
   if (!is_old) return {};
   if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
-  return drain(text, deadline_s);
+  return receive_due_answer(text, deadline_s);
 }
 
 DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
@@ -227,7 +229,7 @@ DeviceFault Haply::write(const Wrench& wrench) noexcept {
   // The answer that is due is read first: with two commands in progress the answers would stay one behind. If
   // it is missing, no command is sent, and the device idles.
   std::string_view late;
-  if (const DeviceFault fault = drain(late, deadline_s)) return fault;
+  if (const DeviceFault fault = receive_due_answer(late, deadline_s)) return fault;
   const DeviceFault fault = send(is_force ? to_service(wrench.force_N) : Vec3::Zero(), deadline_s);
   return is_force ? fault : kNoForce;
 }
@@ -243,7 +245,7 @@ void Haply::release() noexcept {
     const double deadline_s = clock().now_s() + kLastAnswerWithin_s;
     // Waits for the answers: a connection that is closed with unread bytes can lose the command.
     std::string_view text;
-    if (!send(Vec3::Zero(), deadline_s) && !drain(text, deadline_s) && is_older_due)
+    if (!send(Vec3::Zero(), deadline_s) && !receive_due_answer(text, deadline_s) && is_older_due)
       opened_.link->receive(text, deadline_s);
   }
   opened_.link->cut();

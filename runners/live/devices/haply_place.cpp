@@ -10,7 +10,7 @@ HaplyPlace haply_place(const DeviceAddress& address) {
   if (rest.empty()) return place;
   const std::string scheme = "ws://";
   if (rest.compare(0, scheme.size(), scheme) != 0)
-    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
+    throw address.refusal("is not an address of the Haply service; write ws://HOST:PORT");
   rest.erase(0, scheme.size());
   const std::size_t slash = rest.find('/');
   if (slash != std::string::npos) place.target = rest.substr(slash);
@@ -22,7 +22,7 @@ HaplyPlace haply_place(const DeviceAddress& address) {
   }
   if (rest.size() > 2 && rest.front() == '[' && rest.back() == ']') rest = rest.substr(1, rest.size() - 2);
   if (rest.empty() || place.port.empty())
-    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
+    throw address.refusal("is not an address of the Haply service; write ws://HOST:PORT");
   place.host = rest;
   return place;
 }

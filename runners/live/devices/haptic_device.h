@@ -20,7 +20,7 @@ struct DeviceFault {
   explicit operator bool() const { return what != nullptr; }
 };
 
-inline constexpr DeviceFault kReleased{"the device was let go"};
+inline constexpr DeviceFault kReleased{"the device was released"};
 
 struct DeviceReading {
   Vec3 position_m = Vec3::Zero();

@@ -20,6 +20,6 @@ inline DeviceFault fault_of(std::span<const KnownFault> known, int code, const c
   return {what, code};
 }
 
-inline constexpr DeviceFault kNoRotation{"the device tells of a turn that is no rotation", 0};
+inline constexpr DeviceFault kNoRotation{"the device reports an orientation that is not a rotation", 0};
 
 }  // namespace remote_touch

@@ -56,8 +56,8 @@ class OpenHaptics : public GatedDevice {
   DeviceTraits traits_;
 
   // Members used only by the thread of the ticks.
-  DeviceFault frame_fault_;    // fault at the end of the frame before, or at the beginning of this one
-  bool has_reported_ = false;  // true if a force was written in this frame
+  DeviceFault frame_fault_;   // fault at the end of the frame before, or at the beginning of this one
+  bool has_written_ = false;  // true if a force was written in this frame
 
   DeviceFault scheduler_fault_;  // set only while no callback can be in progress
   DeviceCycle* cycle_ = nullptr;
@@ -151,7 +151,7 @@ DeviceFault OpenHaptics::exert(const Wrench& wrench) noexcept {
     const Vec3 torque_mNm = wrench.torque_Nm * kMNmPerNm;
     hd_.set_doublev(HdLibrary::current_torque, torque_mNm.data());
   }
-  has_reported_ = true;
+  has_written_ = true;
   return newest_error("OpenHaptics: the force cannot be set");
 }
 
@@ -168,9 +168,9 @@ void OpenHaptics::switch_off() noexcept {
 bool OpenHaptics::frame(DeviceCycle& cycle) noexcept {
   hd_.begin_frame(device_);
   if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) frame_fault_ = fault;
-  has_reported_ = false;
+  has_written_ = false;
   const bool continues = cycle.tick();
-  if (!has_reported_ || is_released() || !continues) exert({});
+  if (!has_written_ || is_released() || !continues) exert({});
   hd_.end_frame(device_);
   frame_fault_ = newest_error("OpenHaptics: the force cannot be set");
   return continues;
@@ -231,7 +231,7 @@ Availability open_haptics_availability() {
   try {
     const HdLibrary hd;
     availability.found = true;
-    availability.detail = hd.library.file() + ": it tells of a device when one is opened";
+    availability.detail = hd.library.file() + ": a device is detected only when one is opened";
   } catch (const InputError& error) {
     availability.detail = error.what();
   }

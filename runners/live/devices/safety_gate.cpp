@@ -46,12 +46,12 @@ DeviceFault SafetyGate::trouble(const DeviceReading& reading, const DeviceFault&
   if (fault) return fault;
   if (!reading.position_m.allFinite() || !reading.orientation.coeffs().allFinite() ||
       !reading.velocity_m_per_s.allFinite() || !reading.angular_velocity_rad_per_s.allFinite())
-    return {"the device told a number that is none"};
+    return {"the device reported a number that is not finite"};
   if (reading.velocity_m_per_s.norm() > limits_.max_speed_m_per_s) return {"the hand is too fast"};
   if (reading.angular_velocity_rad_per_s.norm() > limits_.max_angular_speed_rad_per_s)
     return {"the handle turns too fast"};
   if (!command.force_N.allFinite() || !command.torque_Nm.allFinite())
-    return {"the command is a number that is none"};
+    return {"the commanded force or torque is not finite"};
   return {};
 }
 

@@ -20,7 +20,7 @@ constexpr double kMaxStep_s = 0.1;  // longest step of one reading: no jump of t
 constexpr int kMaxFrames = 256;     // most frames in one reading; the daemon sends some hundred a second
 
 constexpr DeviceFault kGone{"spacenavd has closed the connection"};
-constexpr DeviceFault kNoFrame{"what the socket sends is not what spacenavd sends"};
+constexpr DeviceFault kNoFrame{"the socket sends data that are not spacenavd's messages"};
 
 // The daemon sends frames of an event and its numbers. Other events report changes of mice and settings.
 enum Event : std::int32_t { kMotion = 0, kPress = 1, kRelease = 2, kLastEvent = 15 };
@@ -52,8 +52,8 @@ class Spacenav final : public HapticDevice {
  public:
   Spacenav(const DeviceAddress& address, Clock& clock)
       : HapticDevice(clock),
-        speed_(address.number("speed", 5e-4, 1e-6, 0.1)),
-        angular_velocity_(address.number("turning", 3e-3, 1e-6, 1)),
+        speed_per_count_(address.number("speed", 5e-4, 1e-6, 0.1)),
+        turning_per_count_(address.number("turning", 3e-3, 1e-6, 1)),
         box_m_(address.number("box", 0.15, 1e-3, 10)),
         socket_(connect(address, clock)),
         moved_s_(clock.now_s()) {
@@ -84,7 +84,8 @@ class Spacenav final : public HapticDevice {
   DeviceFault take(const Frame& frame, double now_s) noexcept;
   void move(double step_s) noexcept;
 
-  const double speed_, angular_velocity_, box_m_;  // m/s and rad/s for each count of deflection; m
+  const double speed_per_count_, turning_per_count_;  // m/s and rad/s
+  const double box_m_;
   DeadlineSocket socket_;
   DeviceTraits traits_;
   DeviceFault fault_;
@@ -129,8 +130,8 @@ DeviceFault Spacenav::take(const Frame& frame, double now_s) noexcept {
 
 void Spacenav::move(double step_s) noexcept {
   const Vec3 flip(1, 1, -1);
-  const Vec3 along = speed_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
-  const Vec3 about = angular_velocity_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
+  const Vec3 along = speed_per_count_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
+  const Vec3 about = turning_per_count_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
   const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
   // The velocity is that of the clamped position: its component towards a face of the box is zero there,
   // although the mouse is pushed.

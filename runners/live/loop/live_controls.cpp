@@ -41,10 +41,10 @@ std::string LiveControls::change(const ParameterChanges& changes) try {
     values[static_cast<std::size_t>(change.parameter)] = change.value;
   }
   ParameterChanges* const slot = asked_.next_slot();
-  if (slot == nullptr) return "the haptic loop has not yet made the changes before";
+  if (slot == nullptr) return "the haptic loop has not yet applied the earlier changes";
   const Experiment changed = checked(values);
   if (has_stiffness_limit_ && changed.max_stiffness_N_per_m() > max_stiffness_N_per_m_)
-    return "with this device no greater stiffness than the run began with";
+    return "this device allows no greater stiffness than at the start of the run";
   if (shown_ && is_of_scenario(changes)) shown_->replace(changed.build_scenario(kernels_));
   *slot = changes;
   asked_.push();

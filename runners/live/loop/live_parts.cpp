@@ -192,7 +192,7 @@ std::string LiveParts::why_over() const {
   if (loop_failed_) return "the device's loop failed";
   if (camera_->has_refused()) return camera_->ended();
   if (const std::string why = logger_->failure(); !why.empty()) return why;
-  if (clock_.now_ns() >= ends_ns_) return "its duration is over";
+  if (clock_.now_ns() >= ends_ns_) return "its duration has elapsed";
   // The adapter has left its loop although tick() did not return false.
   if (loop_ended_) return kLoopEnded;
   return {};
@@ -221,10 +221,11 @@ void LiveParts::report_force_scale() const {
 
 std::string LiveParts::camera_trouble() const {
   if (camera_->has_refused()) return {};  // the run ends and then reports the reason
-  const char* const held = camera_->has_sent() ? "the last cloud stays" : "there is nothing to touch";
+  const char* const held =
+      camera_->has_sent() ? "the last cloud is still rendered" : "there is nothing to touch";
   if (const std::string why = camera_->ended(); !why.empty()) return "no more frames (" + why + "): " + held;
   if (clock_.now_s() - camera_->newest_s() <= LiveLog::kStaleFrame_s) return {};
-  return std::string(camera_->has_sent() ? "no frame for 0.2 s: " : "no frame has come yet: ") + held;
+  return std::string(camera_->has_sent() ? "no frame for 0.2 s: " : "no frame has arrived yet: ") + held;
 }
 
 std::string LiveParts::force_trouble() const {
@@ -245,9 +246,9 @@ void LiveParts::report_changes() {
   else if (hangs_since_ns_ < 0)
     hangs_since_ns_ = clock_.now_ns();
   if (const LiveTrouble now = trouble(); now != reported_) {
-    if (now.camera != reported_.camera) report_line(now.camera.empty() ? "frames come" : now.camera);
+    if (now.camera != reported_.camera) report_line(now.camera.empty() ? "frames arrive" : now.camera);
     if (now.force != reported_.force)
-      report_line(now.force.empty() ? "armed again: the force begins when the hand is free"
+      report_line(now.force.empty() ? "re-armed: the force begins when the hand is free"
                                     : "force is off: " + now.force);
     reported_ = now;
     if (options_.on_trouble) options_.on_trouble(now);

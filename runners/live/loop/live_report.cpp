@@ -93,27 +93,27 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
   const double handled =
       std::max(1, camera.received - camera.reversed - camera.incomplete - camera.unrecorded);
   LiveReport report;
-  report.times = {times_of("step, the frame taken included", "step", log.step_s),
+  report.times = {times_of("step, including the new frame", "step", log.step_s),
                   times_of("from tick to tick", "interval", log.interval_s),
                   times_of("frame: sensor's stamp to force", "latency", log.latency_s),
-                  times_of("frame: ready to taken", "waited", log.waited_s)};
+                  times_of("frame: from ready to used", "waited", log.waited_s)};
   report.counts = {{"ticks", ticks},
                    {"missed deadlines", number(log.missed_ticks)},
                    {"missed deadlines, percent", missed_percent(log, ticks)},
                    {"ticks that ended before the tool came to rest", number(log.exhausted_ticks)},
                    {"ticks without force: gate waiting or latched", number(log.zero_force_ticks)},
                    {"ticks on a cloud older than 0.2 s", number(log.stale_ticks)},
-                   {"stalls, the device let go", number(counts.stalls)},
+                   {"stalls, device released", number(counts.stalls)},
                    {"rows lost", number(counts.rows_lost)},
                    {"frames received", number(camera.received)},
                    {"processing of a frame, mean us", 1e6 * camera.processing_s / handled},
                    {"longest pause between frames, ms", 1e3 * camera.max_pause_s},
-                   {"frames passed over: not sent, or replaced too soon", number(camera.passed_over)},
+                   {"frames skipped: not sent, or replaced unprocessed", number(camera.passed_over)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
-                   {"frames overtaken before the haptic loop took them", number(camera.overtaken)},
+                   {"frames replaced before the haptic loop used them", number(camera.overtaken)},
                    {"frames dropped for the recorder", number(camera.unrecorded)},
-                   {"frames taken in the wrong order", number(log.reversed_frames)},
+                   {"frames used in the wrong order", number(log.reversed_frames)},
                    {"largest force written, N", log.max_force_N}};
   report.piece_s = log.pieces.begin_s(), report.max_interval_s = log.pieces.greatest();
   return report;

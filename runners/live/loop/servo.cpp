@@ -112,7 +112,7 @@ void Servo::one_tick() {
   if (!heartbeat_.beat(begin_ns)) {
     gate_.restart();
     if (has_failed() || !links_.device.rearm())
-      note({"the haptic loop hung, and the device was let go"}, true);
+      note({"the haptic loop hung, and the device was released"}, true);
   }
   row_.since_last_tick_s =
       last_number_ < 0 ? 0 : static_cast<float>(1e-9 * static_cast<double>(begin_ns - last_tick_ns_));

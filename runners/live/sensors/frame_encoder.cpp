@@ -98,7 +98,7 @@ std::string FrameEncoder::image_problem(const PointCloud& cloud) const {
   if (!cloud.image) return {};
   if (((cloud.image->X_WC.matrix() - view_.X_WC.matrix()).array().abs() <= kSamePose).all()) return {};
   const RigidTransform moved = X_CW_ * cloud.image->X_WC;
-  return "was seen from another place (" + number(moved.translation().norm()) + " m and " +
+  return "was captured from another pose (" + number(moved.translation().norm()) + " m and " +
          number(Eigen::AngleAxisd(moved.linear()).angle() / kRadiansPerDegree) +
          " deg from the first frame): expected a camera at rest, because a live run has one pose for all frames";
 }

@@ -176,7 +176,7 @@ void FreenectCamera::choose_modes() {
     depth_of_shift_ = depth_of_shifts();
   }
   if (!depth || depth->bytes != 2 * depth->width * depth->height)
-    throw InputError(name_, "the library knows no depth of 640 x 480 pixels in 16 bits");
+    throw InputError(name_, "the library has no depth mode of 640 x 480 pixels in 16 bits");
   if (freenect_set_depth_mode(device_.get(), *depth) < 0)
     throw InputError(name_, "the camera refuses its depth mode");
   depth_mode_ = *depth;

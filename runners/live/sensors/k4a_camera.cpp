@@ -162,7 +162,7 @@ void K4aCamera::find_by_serial(const std::string& serial, std::uint32_t count) {
 void K4aCamera::calibrate() {
   if (k4a_.device_get_calibration(device_.get(), address_.mode.depth, k4a::colour_off, &calibration_) !=
       k4a::succeeded)
-    refuse("does not tell its calibration" + reason());
+    refuse("does not report its calibration" + reason());
   undistortion_.emplace(address_.name, address_.mode.width, address_.mode.height, lens());
   view_.camera = undistortion_->camera();
   view_.metres_per_unit = 0.001;
@@ -253,7 +253,7 @@ bool K4aCamera::take(k4a::Capture capture, double arrived_s, SensorFrame& frame)
   if (k4a_.image_get_format(image.get()) != k4a::depth16 || !copy_depth(rows, view_.camera, seen_)) {
     fail("a frame is " + std::to_string(rows.width) + " x " + std::to_string(rows.height) + " pixels in " +
          std::to_string(rows.bytes) + " bytes of format " +
-         std::to_string(k4a_.image_get_format(image.get())) + "; wanted those of the camera's mode");
+         std::to_string(k4a_.image_get_format(image.get())) + ": expected those of the camera's mode");
     return false;
   }
   undistortion_->apply(seen_, frame.depth);

@@ -63,12 +63,6 @@ std::optional<openni::VideoMode> best_colour_mode(const openni::VideoStream& str
       [&](const openni::VideoMode& mode) { return -std::abs(mode.getFps() - depth.getFps()); });
 }
 
-// Switches mirroring off. Returns true if the image is still mirrored, as that of a recording may be.
-bool stays_mirrored(openni::VideoStream& stream) {
-  stream.setMirroringEnabled(false);
-  return stream.getMirroringEnabled();
-}
-
 PixelRows rows_of(const openni::VideoFrameRef& frame, bool is_mirrored) {
   return {
       frame.getData(),   static_cast<std::size_t>(std::max(frame.getDataSize(), 0)),      frame.getWidth(),
@@ -170,10 +164,11 @@ void Openni2Camera::open_depth() {
   mode_ = depth_.getVideoMode();
   view_.metres_per_unit = metres_per_unit(mode_.getPixelFormat());
   if (view_.metres_per_unit == 0) refuse("depth is in no unit of length: expected 1 mm or 0.1 mm");
-  depth_is_mirrored_ = stays_mirrored(depth_);
+  depth_.setMirroringEnabled(false);
+  depth_is_mirrored_ = depth_.getMirroringEnabled();  // a recording may stay mirrored
   if (!device_.isFile()) return;
   frame_count_ = device_.getPlaybackControl()->getNumberOfFrames(depth_);
-  if (frame_count_ <= 0) refuse("is no whole recording of depth: expected one whose recorder was closed");
+  if (frame_count_ <= 0) refuse("is not a complete depth recording: expected one whose recorder was closed");
 }
 
 // Opens colour if depth can be registered to it. Returns false if colour cannot be used.
@@ -186,7 +181,8 @@ bool Openni2Camera::open_colour() {
   const std::optional<openni::VideoMode> mode = best_colour_mode(colour_, mode_);
   if (mode && colour_.setVideoMode(*mode) == openni::STATUS_OK &&
       device_.setImageRegistrationMode(registered) == openni::STATUS_OK) {
-    colour_is_mirrored_ = stays_mirrored(colour_);
+    colour_.setMirroringEnabled(false);
+    colour_is_mirrored_ = colour_.getMirroringEnabled();
     if (colour_.start() == openni::STATUS_OK) return true;
     device_.setImageRegistrationMode(openni::IMAGE_REGISTRATION_OFF);
   }
@@ -197,9 +193,9 @@ bool Openni2Camera::open_colour() {
 void Openni2Camera::describe(const openni::VideoStream& seen_by) {
   const double across = seen_by.getHorizontalFieldOfView(), down = seen_by.getVerticalFieldOfView();
   if (!(across > 0 && across < M_PI && down > 0 && down < M_PI))
-    refuse("tells no field of view: where its pixels look is not known");
+    refuse("reports no field of view: the rays of its pixels are unknown");
   const int width = mode_.getResolutionX(), height = mode_.getResolutionY();
-  if (width <= 0 || height <= 0) refuse("tells no image size");
+  if (width <= 0 || height <= 0) refuse("reports no image size");
   // The field of view ends at the outer edges of the pixels, half a pixel beyond their centres.
   view_.camera = {width,
                   height,
@@ -221,7 +217,7 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
     const double part_ms = std::clamp(std::ceil(1e3 * remaining_s), 0.0, 50.0);
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
     if (status == openni::STATUS_OK) return take(frame);
-    if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + error_text() + ")");
+    if (status != openni::STATUS_TIME_OUT) return fail("waiting for a frame failed (" + error_text() + ")");
     if (frame_count_ > 0 && host_.now_s() - last_sign_s_ > kMaxPause_s) return fail_of_damage();
     if (remaining_s <= 0) return SensorState::waiting;
   }
@@ -239,7 +235,7 @@ SensorState Openni2Camera::take(SensorFrame& frame) {
   if (!copy_depth(rows_of(taken, depth_is_mirrored_), view_.camera, frame.depth))
     return fail("frame " + std::to_string(number) + " is " + std::to_string(taken.getWidth()) + " x " +
                 std::to_string(taken.getHeight()) + " pixels in " + std::to_string(taken.getDataSize()) +
-                " bytes; wanted those of the camera's mode");
+                " bytes: expected those of the camera's mode");
   frame.number = last_number_ = number;
   frame.captured_s = clock_.captured_s(1e-6 * static_cast<double>(taken.getTimestamp()), arrived_s);
   if (!copy_colour(taken.getTimestamp(), frame)) return fail("a colour frame has another size than its mode");
@@ -264,8 +260,8 @@ SensorState Openni2Camera::fail(const std::string& reason) {
 }
 
 SensorState Openni2Camera::fail_of_damage() {
-  return fail("plays no further than frame " + std::to_string(last_number_) + " of " +
-              std::to_string(frame_count_) + ": expected a recording without damage");
+  return fail("cannot be played beyond frame " + std::to_string(last_number_) + " of " +
+              std::to_string(frame_count_) + ": expected an undamaged recording");
 }
 
 // Handles a recording that starts again from its first frame. The player does so at the end; a player that is

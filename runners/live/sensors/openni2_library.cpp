@@ -28,7 +28,7 @@ std::string error_text() {
   for (char& c : text)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text.empty() ? "no reason told" : text;
+  return text.empty() ? "no reason given" : text;
 }
 
 std::string driver_folder() {

@@ -18,8 +18,8 @@ namespace {
 constexpr int kRealSenseWidth = 640, kRealSenseHeight = 480, kRealSenseRate_hz = 30;
 constexpr int kAnyIndex = -1;
 constexpr double kPoll_s = 1e-3;
-constexpr double kLookAfter_s = 0.1;  // the connection is checked after this time without a frame
-constexpr int kMaxList = 64;          // most cameras, sensors, streams or frames that are read
+constexpr double kCheckAfter_s = 0.1;  // the connection is checked after this time without a frame
+constexpr int kMaxList = 64;           // most cameras, sensors, streams or frames that are read
 
 // The library with its context.
 struct RealSense {
@@ -41,14 +41,14 @@ std::vector<std::string> RealSense::serials() const {
   const int count = call("cameras cannot be counted", rs2.get_device_count, list.get());
   std::vector<std::string> found;
   for (int i = 0; i < std::min(count, kMaxList); ++i)
-    found.push_back(info(call.held("a camera is not known", rs2.create_device, list.get(), i).get(),
+    found.push_back(info(call.held("a camera cannot be queried", rs2.create_device, list.get(), i).get(),
                          rs2::info_serial_number));
   return found;
 }
 
 std::string RealSense::info(const rs2::Device* device, rs2::CameraInfo what) const {
-  if (call("tells nothing of itself", rs2.supports_device_info, device, what) == 0) return "unknown";
-  const char* text = call("tells nothing of itself", rs2.get_device_info, device, what);
+  if (call("does not report its properties", rs2.supports_device_info, device, what) == 0) return "unknown";
+  const char* text = call("does not report its properties", rs2.get_device_info, device, what);
   return text != nullptr ? text : "unknown";
 }
 
@@ -88,7 +88,7 @@ class RealSenseCamera final : public DepthSource {
   rs2::Held<rs2::Frame> depth_of(rs2::Held<rs2::Frame> frames) const;
   bool take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame);
   PixelRows rows_of(const rs2::Frame* depth) const;
-  void expect_camera();
+  void check_connection();
 
   Clock& host_;
   const std::string name_;
@@ -109,18 +109,18 @@ class RealSenseCamera final : public DepthSource {
   FrameNumbers numbers_;
   std::optional<double> stamp_s_;   // time stamp of the frame before
   unsigned long long counted_ = 0;  // the camera's number of the frame before
-  double looked_s_ = 0;
+  double connected_s_ = 0;          // when the camera was last known to be connected
   std::vector<std::uint16_t> seen_;
   std::string failure_;
 };
 
 RealSenseCamera::RealSenseCamera(const std::string& address, Clock& host)
     : host_(host), name_(address.empty() ? "realsense" : "realsense:" + address), real_sense_(name_) {
-  config_ = call_.held("depth cannot be asked for", rs2_.create_config);
+  config_ = call_.held("depth cannot be requested", rs2_.create_config);
   choose(address);
   start();
   describe(depth_intrinsics());
-  looked_s_ = host_.now_s();
+  connected_s_ = host_.now_s();
 }
 
 void RealSenseCamera::choose(const std::string& serial) {
@@ -134,61 +134,64 @@ void RealSenseCamera::choose(const std::string& serial) {
 }
 
 void RealSenseCamera::start() {
-  call_("depth cannot be asked for", rs2_.config_enable_stream, config_.get(), rs2::stream_depth, kAnyIndex,
+  call_("depth cannot be requested", rs2_.config_enable_stream, config_.get(), rs2::stream_depth, kAnyIndex,
         kRealSenseWidth, kRealSenseHeight, rs2::format_z16, kRealSenseRate_hz);
-  hub_ = call_.held("unplugging cannot be noticed", rs2_.create_device_hub, real_sense_.context.get());
+  hub_ = call_.held("disconnection cannot be detected", rs2_.create_device_hub, real_sense_.context.get());
   pipeline_ = call_.held("depth does not start", rs2_.create_pipeline, real_sense_.context.get());
   profile_ =
       call_.held("depth of 640 x 480 pixels at 30 Hz does not start; another program may be using the camera",
                  rs2_.pipeline_start_with_config, pipeline_.get(), config_.get());
   running_.reset(pipeline_.get());
-  device_ = call_.held("tells nothing of itself", rs2_.pipeline_profile_get_device, profile_.get());
+  device_ = call_.held("does not report its properties", rs2_.pipeline_profile_get_device, profile_.get());
 }
 
 bool RealSenseCamera::is_depth(const rs2::Stream* stream) const {
   rs2::StreamKind kind{};
   rs2::Format format{};
   int index = 0, id = 0, rate_hz = 0;
-  call_("a stream tells nothing of itself", rs2_.get_stream_profile_data, stream, &kind, &format, &index, &id,
-        &rate_hz);
+  call_("a stream does not report its format", rs2_.get_stream_profile_data, stream, &kind, &format, &index,
+        &id, &rate_hz);
   return kind == rs2::stream_depth && format == rs2::format_z16;
 }
 
 rs2::Intrinsics RealSenseCamera::depth_intrinsics() const {
-  const auto streams = call_.held("tells no streams", rs2_.pipeline_profile_get_streams, profile_.get());
-  const int count = call_("tells no streams", rs2_.get_stream_profiles_count, streams.get());
+  const auto streams =
+      call_.held("does not list its streams", rs2_.pipeline_profile_get_streams, profile_.get());
+  const int count = call_("does not list its streams", rs2_.get_stream_profiles_count, streams.get());
   for (int i = 0; i < std::min(count, kMaxList); ++i) {
-    const rs2::Stream* stream = call_("tells no streams", rs2_.get_stream_profile, streams.get(), i);
+    const rs2::Stream* stream = call_("does not list its streams", rs2_.get_stream_profile, streams.get(), i);
     if (stream == nullptr || !is_depth(stream)) continue;
     rs2::Intrinsics intrinsics{};
-    call_("does not tell where its pixels look", rs2_.get_video_stream_intrinsics, stream, &intrinsics);
+    call_("does not report its intrinsics", rs2_.get_video_stream_intrinsics, stream, &intrinsics);
     return intrinsics;
   }
   call_.refuse("sends no depth in 16 bits");
 }
 
 double RealSenseCamera::depth_scale() const {
-  const auto sensors = call_.held("tells no sensors", rs2_.query_sensors, device_.get());
-  const int count = call_("tells no sensors", rs2_.get_sensors_count, sensors.get());
+  const auto sensors = call_.held("does not list its sensors", rs2_.query_sensors, device_.get());
+  const int count = call_("does not list its sensors", rs2_.get_sensors_count, sensors.get());
   for (int i = 0; i < std::min(count, kMaxList); ++i) {
-    const auto sensor = call_.held("tells no sensors", rs2_.create_sensor, sensors.get(), i);
-    if (call_("tells no sensors", rs2_.is_sensor_extendable_to, sensor.get(), rs2::is_depth_sensor) == 0)
+    const auto sensor = call_.held("does not list its sensors", rs2_.create_sensor, sensors.get(), i);
+    if (call_("does not list its sensors", rs2_.is_sensor_extendable_to, sensor.get(),
+              rs2::is_depth_sensor) == 0)
       continue;
-    return static_cast<double>(call_("does not tell its unit", rs2_.get_depth_scale, sensor.get()));
+    return static_cast<double>(call_("does not report its depth unit", rs2_.get_depth_scale, sensor.get()));
   }
-  call_.refuse("has no sensor of depth");
+  call_.refuse("has no depth sensor");
 }
 
 void RealSenseCamera::describe(const rs2::Intrinsics& intrinsics) {
   view_.metres_per_unit = depth_scale();
   view_.frame_rate_hz = kRealSenseRate_hz;
   if (!(view_.metres_per_unit > 0 && view_.metres_per_unit <= 1))
-    call_.refuse("tells depth in units of " + std::to_string(view_.metres_per_unit) +
+    call_.refuse("reports depth in units of " + std::to_string(view_.metres_per_unit) +
                  " m: expected more than 0, 1 at most");
   const bool is_camera = intrinsics.width > 0 && intrinsics.height > 0 && intrinsics.fx > 0 &&
                          intrinsics.fy > 0 && std::isfinite(intrinsics.fx) && std::isfinite(intrinsics.fy) &&
                          std::isfinite(intrinsics.ppx) && std::isfinite(intrinsics.ppy);
-  if (!is_camera) call_.refuse("does not tell where its pixels look: its focal length is not above 0");
+  if (!is_camera)
+    call_.refuse("reports no usable intrinsics: expected finite numbers and a focal length above 0");
   view_.camera = {intrinsics.width, intrinsics.height, intrinsics.fx,
                   intrinsics.fy,    intrinsics.ppx,    intrinsics.ppy};
   if (!rs2::has_distortion(intrinsics)) return;
@@ -203,7 +206,7 @@ SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
     double arrived_s = 0;
     const rs2::Held<rs2::Frame> depth = newest_depth(arrived_s);
     if (depth && take(depth.get(), arrived_s, frame)) return SensorState::frame;
-    expect_camera();
+    check_connection();
     const double remaining_s = give_up_s - host_.now_s();
     if (remaining_s <= 0) return SensorState::waiting;
     host_.sleep_s(std::clamp(remaining_s, 0.1 * kPoll_s, kPoll_s));
@@ -213,11 +216,12 @@ SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
   return SensorState::failed;
 }
 
-// Checks every kLookAfter_s that the camera is still connected, as long as no frame comes.
-void RealSenseCamera::expect_camera() {
-  if (host_.now_s() - looked_s_ < kLookAfter_s) return;
-  looked_s_ = host_.now_s();
-  if (call_("is not known to be there", rs2_.device_hub_is_device_connected, hub_.get(), device_.get()) == 0)
+// Checks every kCheckAfter_s that the camera is still connected, as long as no frame comes.
+void RealSenseCamera::check_connection() {
+  if (host_.now_s() - connected_s_ < kCheckAfter_s) return;
+  connected_s_ = host_.now_s();
+  if (call_("cannot be checked for disconnection", rs2_.device_hub_is_device_connected, hub_.get(),
+            device_.get()) == 0)
     call_.refuse("was disconnected");
 }
 
@@ -269,12 +273,12 @@ bool RealSenseCamera::take(const rs2::Frame* depth, double arrived_s, SensorFram
   const double stamp_s = 1e-3 * call_(problem, rs2_.get_frame_timestamp, depth);
   const unsigned long long counted = call_(problem, rs2_.get_frame_number, depth);
   if (!std::isfinite(stamp_s)) call_.refuse("a frame has no time stamp");
-  looked_s_ = arrived_s;
+  connected_s_ = arrived_s;
   if (stamp_s_ && stamp_s == *stamp_s_ && counted == counted_) return false;
   const PixelRows rows = rows_of(depth);
   if (!copy_depth(rows, view_.camera, seen_))
     call_.refuse("a frame is " + std::to_string(rows.width) + " x " + std::to_string(rows.height) +
-                 " pixels in " + std::to_string(rows.bytes) + " bytes; wanted those of the camera's mode");
+                 " pixels in " + std::to_string(rows.bytes) + " bytes: expected those of the camera's mode");
   if (undistortion_)
     undistortion_->apply(seen_, frame.depth);
   else

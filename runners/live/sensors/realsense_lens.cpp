@@ -15,7 +15,8 @@ bool has_distortion(const Intrinsics& intrinsics) {
 
 Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics) {
   if (rs2.project_point_to_pixel == nullptr || rs2.deproject_pixel_to_point == nullptr)
-    throw InputError(name, "has a lens that distorts: expected librealsense 2.46 or newer, which tells how");
+    throw InputError(name,
+                     "has a lens with distortion: expected librealsense 2.46 or newer, which can compute it");
   if (intrinsics.model != brown_conrady && intrinsics.model != inverse_brown_conrady)
     throw InputError(name, "has a lens of model " + std::to_string(intrinsics.model) +
                                ": expected one of Brown and Conrady, whose pixels have known rays");

@@ -88,7 +88,7 @@ RealSenseLibrary::RealSenseLibrary() : library(realsense_place()) {
   library.find("rs2_get_error_message", get_error_message);
   library.find("rs2_get_failed_function", get_failed_function);
   library.find("rs2_free_error", free_error);
-  version = Calls(*this, library.file())("does not tell its version", get_api_version);
+  version = Calls(*this, library.file())("does not report its version", get_api_version);
   if (version / 10000 != kMajor)
     throw InputError(library.file(), "is version " + version_text() + " of its interface: expected " +
                                          std::to_string(kMajor) + ".x");
@@ -107,7 +107,7 @@ std::string RealSenseLibrary::text_of(Error* error) const {
   std::string text = function != nullptr ? function : "";
   if (message != nullptr) text += (text.empty() ? "" : ": ") + std::string(message);
   free_error(error);
-  return text.empty() ? "no reason told" : text;
+  return text.empty() ? "no reason given" : text;
 }
 
 void Calls::refuse(const std::string& problem) const {

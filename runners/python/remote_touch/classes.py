@@ -133,7 +133,7 @@ def name_of(cls):
 
 
 def scene(name, *, key=None, **settings):
-    """A scenario of the catalog with settings, to be asked for clouds and distances: rt.scene("moving-lift")."""
+    """A scenario of the catalog with settings, to be queried for clouds and distances: rt.scene("moving-lift")."""
     from remote_touch.calls import _json, _native
     if key is not None and not isinstance(key, _core.NoiseKey):
         raise InputError(f"key = {key!r}: expected an rt.NoiseKey")

@@ -85,7 +85,7 @@ Baseline definition(const Blessing& blessing, const Manifest& manifest) {
   const bool is_new = !blessing.run.empty() || !blessing.sweep.empty();
   if (!stored && !is_new)
     throw InputError("baseline " + blessing.name,
-                     "there is none: expected --run EXPERIMENT or --sweep SWEEP to begin one");
+                     "does not exist: expected --run EXPERIMENT or --sweep SWEEP to create it");
   if (!is_new && !blessing.overrides.empty())
     throw InputError("--set",
                      "without --run or --sweep: expected with them, for a baseline of something else");

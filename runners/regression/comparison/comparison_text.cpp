@@ -27,8 +27,7 @@ void print_columns(const TraceComparison& comparison, std::FILE* out) {
                      ? 0.0
                      : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows),
                  tolerance_text(column.tolerance).c_str());
-    if (column.not_numbers > 0)
-      std::fprintf(out, "; %zu rows: no number against a number", column.not_numbers);
+    if (column.not_numbers > 0) std::fprintf(out, "; %zu rows: NaN against a number", column.not_numbers);
     if (!column.problem.empty()) std::fprintf(out, "; %s", column.problem.c_str());
     std::fputs(column.is_same() ? "\n" : "  DIFFERS\n", out);
   }
@@ -58,8 +57,10 @@ void print_divergence(const Divergence& found, std::FILE* out) {
   std::fprintf(out, "first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
                found.quantity.c_str(), found.deviation);
   if (found.first_difference != found.tick)
-    std::fprintf(out, "  within the tolerances the runs part at tick %zu; what follows is there\n",
-                 found.first_difference);
+    std::fprintf(
+        out,
+        "  the runs first differ at tick %zu, within the tolerances; the lines below describe that tick\n",
+        found.first_difference);
   std::fprintf(out, "  cause   %s: %s\n", name_of(found.cause), found.explanation.c_str());
   if (found.cause != found.situation)
     std::fprintf(out, "  there   %s: %s\n", name_of(found.situation), found.observation.c_str());

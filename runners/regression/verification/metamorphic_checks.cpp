@@ -19,7 +19,7 @@ using RendererFactory = Factory<Renderer, double, const Kernels&>;
 using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
-    "touch", "the renderer pushes back in most ticks, or at least in some where it is one that lets go"};
+    "touch", "the renderer pushes back in most ticks, or at least in some if it is one that loses contact"};
 // Share of the ticks. Direct rendering lets the HIP through, a mesh that moves leaves it behind, and who
 // knows no regions meets only the points in their middle: these push back only in the moments before.
 double min_touch(ContactModel contact_model) {
@@ -114,7 +114,7 @@ CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double 
     if (++count.deviations.front().max > allowed && count.first_violation < 0)
       count.first_violation = static_cast<int>(tick);
   }
-  return {kTouch.name, kTouch.meaning, scene.name, "the other checks say little without touch", count, {}};
+  return {kTouch.name, kTouch.meaning, scene.name, "the other checks mean little without touch", count, {}};
 }
 
 // Returns a remark if a HIP that is 1e-13 m further on violates the tolerance as early as the failed check.
@@ -127,8 +127,8 @@ std::string remark_on(const CheckResult& failed, const Subject& subject, const M
   for (Vec3& hip : moved.hip_W) hip.array() += kSmall_m;
   const int tick = compare(outputs, subject.play(moved), tolerance, false).first_violation;
   if (tick < 0 || tick > failed.comparison.first_violation) return {};
-  return "undecided: a HIP 1e-13 m further on is answered as differently from tick " + std::to_string(tick) +
-         " on";
+  return "undecided: moving the HIP by 1e-13 m changes the answers as much, from tick " +
+         std::to_string(tick) + " on";
 }
 
 std::span<const MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_freedom) {

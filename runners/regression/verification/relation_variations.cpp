@@ -86,19 +86,19 @@ bool other_instructions(Variation& run) {
 
 bool search_all_points(Variation& run) {
   if (needs_its_images(run)) return false;
-  search_by_grid(run, 0);
+  replace_search(run, 0);
   return true;
 }
 
 bool use_other_grid(Variation& run) {
   if (needs_its_images(run)) return false;
-  search_by_grid(run, 2.7 * run.scene.cell_m);
+  replace_search(run, 2.7 * run.scene.cell_m);
   return true;
 }
 
 bool shuffle(Variation& run) {
   if (run.order_matters || needs_its_images(run)) return false;
-  search_by_grid(run, 0);
+  replace_search(run, 0);
   reorder(run, [](int size) {
     std::vector<int> order(static_cast<std::size_t>(size));
     std::iota(order.begin(), order.end(), 0);
@@ -111,7 +111,7 @@ bool shuffle(Variation& run) {
 
 bool add_missing(Variation& run) {
   if (run.order_matters || needs_its_images(run)) return false;
-  search_by_grid(run, run.scene.cell_m);
+  replace_search(run, run.scene.cell_m);
   reorder(run, [](int size) {
     std::vector<int> order{-1};
     for (int i = 0; i < size; ++i) {
@@ -133,7 +133,7 @@ bool add_far(Variation& run) {
     const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
     if (i != 13) points.push_back(middle + distance * Vec3(x, y, z));
   }
-  search_by_grid(run, run.scene.cell_m);
+  replace_search(run, run.scene.cell_m);
   add_points(run, points);
   return true;
 }

@@ -103,7 +103,7 @@ Eigen::Quaterniond mirrored(const Eigen::Quaterniond& q, int axis) {
 
 void mirror(Variation& variation, int axis) {
   const auto flip = [axis](Vec3& v) { v[axis] = -v[axis]; };
-  search_by_grid(variation, variation.scene.cell_m);
+  replace_search(variation, variation.scene.cell_m);
   for (Vec3& hip : variation.scene.hip_W) flip(hip);
   for (Eigen::Quaterniond& device : variation.scene.device_WH) device = mirrored(device, axis);
   for (CloudView& view : variation.scene.views) {
@@ -118,7 +118,7 @@ void mirror(Variation& variation, int axis) {
   }
 }
 
-void search_by_grid(Variation& variation, double cell_m) {
+void replace_search(Variation& variation, double cell_m) {
   variation.scene.cell_m = cell_m;
   for (CloudView& view : variation.scene.views) {
     view.cloud.grid_columns = view.cloud.columns();

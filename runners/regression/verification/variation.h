@@ -39,12 +39,13 @@ void move_rigidly(Variation& variation, const RigidTransform& motion);
 // the cloud is then searched by a grid.
 void mirror(Variation& variation, int axis);
 
-// Replaces the search. An organised cloud keeps only the number of columns of its layout. cell_m = 0: brute
-// force.
-void search_by_grid(Variation& variation, double cell_m);
+// Replaces the search by that of a grid, or by brute force for cell_m = 0. An organised cloud keeps only the
+// number of columns of its layout.
+void replace_search(Variation& variation, double cell_m);
 
 // Rebuilds every cloud from the points with the numbers order[0], order[1], ...; -1 stands for a point that
-// was not measured. pre: the points are searched by a grid; they are no longer organised.
+// was not measured. pre: no cloud is an image, see replace_search(). The points are no
+// longer organised.
 void reorder(Variation& variation, const std::function<std::vector<int>(int size)>& order);
 
 // Adds points to every cloud, with the columns that it has: r_f = 0, and the cloud's first stiffness.

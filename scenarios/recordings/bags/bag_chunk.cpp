@@ -79,7 +79,7 @@ void BagChunk::check() {
       crc_so_far_ = add_to_crc(crc_so_far_, piece.data(), piece.size());
     }
   }
-  if (place_.crc != 0 && place_.crc != crc_so_far_) refuse("is damaged: its CRC is another than stated");
+  if (place_.crc != 0 && place_.crc != crc_so_far_) refuse("is damaged: its CRC differs from the stated one");
   checked_ = true;
 }
 

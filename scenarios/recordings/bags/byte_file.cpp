@@ -21,7 +21,7 @@ ByteFile::ByteFile(const std::filesystem::path& file) : name_(file.string()) {
   }
   if (!S_ISREG(status.st_mode)) {
     ::close(descriptor_);
-    throw InputError(name_, "is no file: expected a bag");
+    throw InputError(name_, "is not a file: expected a bag");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }

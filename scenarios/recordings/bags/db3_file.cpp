@@ -76,7 +76,8 @@ void Db3File::open(const std::filesystem::path& file) {
   std::error_code none;
   const std::uintmax_t journal = std::filesystem::file_size(name_ + "-wal", none);
   if (!none && journal > 0)
-    throw InputError(name_ + "-wal", "holds what was not yet written to the bag: expected a closed bag");
+    throw InputError(name_ + "-wal",
+                     "holds data that were not yet written to the bag: expected a closed bag");
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
   if (sqlite3_open_v2(immutable_uri(file).c_str(), &database_, flags, nullptr) != SQLITE_OK) {
     if (!database_) throw std::bad_alloc();

@@ -80,7 +80,7 @@ bool McapFile::index_by_summary() {
       any_chunk |= record.opcode == McapRecord::chunk_index;
       return record.opcode != McapRecord::chunk_index || index_chunk(record);
     });
-    return all_indexed && (statistics.empty() ? any_chunk : agrees_with(statistics));
+    return all_indexed && (statistics.empty() ? any_chunk : take_statistics(statistics));
   } catch (const InputError&) {  // the cause does not matter if a scan succeeds
     remark_ = kDamagedIndex;
     return false;
@@ -119,9 +119,9 @@ bool McapFile::index_chunk(const McapRecord& chunk_index) {
   return true;
 }
 
-// True if the chunks' indexes contain all messages: some messages may be outside of chunks. Also sets the
-// number of messages of each topic, which for unwanted topics is known only from here.
-bool McapFile::agrees_with(const std::string& statistics) {
+// Sets the number of messages of each topic, which for unwanted topics is known only from here. Returns false
+// if the chunks' indexes do not contain all messages: some may be outside of chunks.
+bool McapFile::take_statistics(const std::string& statistics) {
   MessageCursor cursor(statistics, WireFormat::ros1, file_.name());
   cursor.view(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // other numbers, and the times of the messages
   MessageCursor entry(cursor.bytes(), WireFormat::ros1, file_.name());

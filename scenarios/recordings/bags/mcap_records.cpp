@@ -29,7 +29,7 @@ ChunkPlace mcap_chunk_at(const ByteFile& file, std::uint64_t at) {
   constexpr std::uint64_t kMaxHeader = 8 + 8 + 8 + 4 + 4 + 32 + 8;  // the name of a compression is short
   const McapRecord record = mcap_record_at(file, at);
   const std::string name = file.name() + ", the record at byte " + std::to_string(at);
-  if (record.opcode != McapRecord::chunk) throw InputError(name, "is no chunk");
+  if (record.opcode != McapRecord::chunk) throw InputError(name, "is not a chunk");
   const std::string start = file.bytes(record.body_at, std::min(record.body_size, kMaxHeader));
   MessageCursor cursor(start, WireFormat::ros1, name);
   ChunkPlace chunk;

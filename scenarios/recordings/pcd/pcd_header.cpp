@@ -36,7 +36,7 @@ std::size_t integer_value(const std::string& file, const std::string& keyword, s
   return value;
 }
 
-// The lines up to DATA by keyword; of a keyword that comes twice the last line counts. Any other keyword is
+// The lines up to DATA by keyword; of a keyword that appears twice the last line counts. Any other keyword is
 // refused: a file that is not PCD is found at its first line.
 Entries read_entries(const std::string& file, PcdText& rest) {
   Entries entries;
@@ -47,7 +47,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
       std::string allowed;
       for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
       throw InputError(file + ":" + std::to_string(rest.line),
-                       shown(words[0]) + " is no PCD header entry: expected" + allowed);
+                       shown(words[0]) + " is not a PCD header entry: expected" + allowed);
     }
     entries[words[0] == "COLUMNS" ? "FIELDS" : words[0]].assign(words.begin() + 1, words.end());
   }

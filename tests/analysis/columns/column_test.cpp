@@ -15,7 +15,7 @@ TEST(Column, TheMaxOfNumbers) {
   EXPECT_EQ(max_of(std::vector<double>{-3}), -3);
 }
 
-TEST(Column, WhereANumberIsMissingThereIsNoMax) {
+TEST(Column, MaxIsNanIfANumberIsMissing) {
   EXPECT_TRUE(std::isnan(max_of({})));
   for (const std::vector<double>& values :
        {std::vector<double>{kNan, 1}, {1, kNan}, {1, kNan, 2}, {2, kNan, 1}})

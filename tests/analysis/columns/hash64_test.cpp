@@ -12,7 +12,7 @@
 namespace remote_touch::hash64_test {
 namespace {
 
-TEST(Fingerprint, OfACloudDependsOnEveryBitButNotOnTheOrder) {
+TEST(Fingerprint, CloudHashDependsOnEveryBitButNotOnTheOrder) {
   PointCloud cloud = scenes::random_cloud(300, 0.1, 1);
   const std::uint64_t reference = points_hash(cloud);
   PointCloud turned = cloud;
@@ -66,7 +66,7 @@ TEST(Fingerprint, RunningHashDiffersFromTheFirstDifferenceOn) {
 }
 
 // Two seeds have other points in every frame; the flat cloud's one frame has none of that.
-TEST(Fingerprint, OfTheFramesIsInTheTraceWhereItIsAskedFor) {
+TEST(Fingerprint, TraceHasFrameHashesOnlyOnRequest) {
   SimulationOptions options;
   EXPECT_EQ(simulate(Experiment::load("fig4.12"), options).frame_hash.back(), 0u);
   options.hash_frames = true;

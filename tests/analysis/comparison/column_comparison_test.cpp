@@ -16,7 +16,7 @@ Column numbers(std::vector<double> values, int width = 1, std::string units = "m
   return {"x", std::move(units), "", std::move(values), width, {}};
 }
 
-TEST(Within, WithoutToleranceOnlyEqualNumbers) {
+TEST(Within, ZeroToleranceAcceptsOnlyEqualNumbers) {
   const Tolerance exact;
   EXPECT_TRUE(within(exact, 0.1, 0.1));
   EXPECT_FALSE(within(exact, 1e-20, 2e-20));
@@ -34,7 +34,7 @@ TEST(Within, IsAbsolutePlusRelativeToTheBaseline) {
   EXPECT_FALSE(within({0, 1}, 0, 4));
 }
 
-TEST(Within, NothingExcusesWhatIsNoNumber) {
+TEST(Within, NanAndInfinityEqualOnlyThemselvesAtAnyTolerance) {
   const double other_nan = -std::numeric_limits<double>::signaling_NaN();
   for (const Tolerance& tolerance : {Tolerance{}, Tolerance{1, 1}, Tolerance{kInfinity, kInfinity}}) {
     EXPECT_TRUE(within(tolerance, kNaN, kNaN));
@@ -79,7 +79,7 @@ TEST(CompareColumns, AVectorsDeviationIsALength) {
 }
 
 // Their squares are 0.
-TEST(CompareColumns, TheSmallestVectorsAreToldApart) {
+TEST(CompareColumns, DistinguishesTheSmallestVectors) {
   const auto c = compare_columns(numbers({0, 1e-170, 0}, 3), numbers({0, 2e-170, 0}, 3), {});
   EXPECT_EQ(c.outside, 1u);
   EXPECT_DOUBLE_EQ(c.max, 1e-170);
@@ -99,7 +99,7 @@ TEST(CompareColumns, ARelativeToleranceNeedsAFiniteLength) {
       compare_columns(numbers({1e200, 0, 0}, 3), numbers({1.0001e200, 0, 0}, 3), {0, 1e-3}).is_same());
 }
 
-TEST(CompareColumns, NoNumberIsNeverAPassAgainstANumber) {
+TEST(CompareColumns, NanOrInfinityNeverPassesAgainstANumber) {
   for (const double none : {kNaN, kInfinity}) {
     const auto c = compare_columns(numbers({none, 1}), numbers({0, 1}), {1e9, 1e9});
     EXPECT_EQ(c.outside, 1u);

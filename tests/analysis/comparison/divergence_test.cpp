@@ -19,7 +19,7 @@ TEST(Causes, Drift) {
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(found.cause, Cause::drift);
   EXPECT_EQ(found.situation, Cause::drift);
-  EXPECT_HAS(found.explanation, "no frame came in and the state, ");
+  EXPECT_HAS(found.explanation, "no frame arrived and the state, ");
   EXPECT_HAS(found.explanation, "did not change");
 }
 
@@ -29,7 +29,7 @@ TEST(Causes, FrameUpdate) {
   const std::string frame = "frame " + std::to_string(integers(columns, "frame_index")[tick]);
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(found.cause, Cause::frame_update);
-  EXPECT_EQ(found.explanation, frame + " came in with this tick, the same in both");
+  EXPECT_EQ(found.explanation, frame + " arrived in this tick, the same in both");
   // A tick before and a tick after it are none.
   for (const std::size_t other : {tick - 1, tick + 1})
     EXPECT_NE(divergence(after([&](Columns& c) { proxy_x(c, other) += 1e-9; })).cause, Cause::frame_update);
@@ -83,7 +83,7 @@ TEST(Causes, EveryInput) {
       proxy_x(c, tick) += 1;  // a consequence of the change
     }));
     EXPECT_EQ(found.cause, Cause::input) << name;
-    EXPECT_EQ(found.explanation, std::string(name) + " differs; the renderer was given something else");
+    EXPECT_EQ(found.explanation, std::string(name) + " differs; the renderers had different input");
   }
   const Divergence all = divergence(after([&](Columns& c) {
     for (const auto& [name, change] : inputs) change(c);
@@ -106,7 +106,7 @@ TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
     };
     const Divergence found = divergence(after(change));
     EXPECT_EQ(found.cause, Cause::frame_update);
-    EXPECT_HAS(found.explanation, "one did not take the newest");
+    EXPECT_HAS(found.explanation, "one did not use the newest");
   }
 }
 
@@ -125,14 +125,14 @@ TEST(Causes, TheTruthAloneIsAnInput) {
   EXPECT_EQ(follows.cause, Cause::drift);
 }
 
-TEST(Causes, TheConfigurationIsTheCauseAndTheSituationIsToldBeside) {
+TEST(Causes, TheConfigurationIsTheCauseAndTheSituationIsAdded) {
   const std::size_t tick = tick_where(true, false);
   const Texts differences = {"renderer.r1_m 0.004 against 0.005", "seed 1 against 2"};
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }, {}, differences));
   EXPECT_EQ(found.cause, Cause::configuration);
   EXPECT_EQ(found.explanation, "renderer.r1_m 0.004 against 0.005, seed 1 against 2");
   EXPECT_EQ(found.situation, Cause::frame_update);
-  EXPECT_HAS(found.observation, "came in with this tick");
+  EXPECT_HAS(found.observation, "arrived in this tick");
 }
 
 // Configuration before input before frame update before state transition before drift: at a tick that is
@@ -172,7 +172,7 @@ TEST(Causes, AreThoseOfTheTickAtWhichTheRunsPart) {
 }
 
 // Columns that a trace does not have are no obstacle.
-TEST(Causes, WithoutFramesAndStates) {
+TEST(Causes, DriftIsTheCauseIfFramesAndStatesAreMissing) {
   Columns bare, changed;
   for (const char* name : {"time", "proxy_position"}) bare.push_back(find(lift(), name));
   changed = bare;
@@ -193,7 +193,7 @@ TEST(Causes, HaveNames) {
 
 // --- what is shown of it ---
 
-TEST(Rows, OfTheTickBeforeAndOfTheTickItself) {
+TEST(Rows, ShowTheTickBeforeAndTheTickItself) {
   const std::size_t tick = 640;
   const Divergence found = divergence(after([&](Columns& c) {
     proxy_x(c, tick) = 7;
@@ -240,7 +240,7 @@ TEST(Rows, AreOfColumnsThatBothHave) {
   }
 }
 
-TEST(FrameText, TellsTheFrameAndTheNextOne) {
+TEST(FrameText, NamesTheFrameAndTheNextOne) {
   Columns columns = lift();
   auto& frames = integers(columns, "frame_index");
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -250,8 +250,8 @@ TEST(FrameText, TellsTheFrameAndTheNextOne) {
     proxy_x(changed, tick) += 1;
     return divergence(compare(columns, changed)).frame;
   };
-  EXPECT_EQ(at(0), "none had come yet");
-  EXPECT_EQ(at(9), "none had come yet");
+  EXPECT_EQ(at(0), "none had arrived yet");
+  EXPECT_EQ(at(9), "none had arrived yet");
   EXPECT_EQ(at(10), "frame 0 since tick 10, frame 4 with tick 50");
   EXPECT_EQ(at(49), "frame 0 since tick 10, frame 4 with tick 50");
   EXPECT_EQ(at(50), "frame 4 since tick 50, frame 5 with tick 90");

@@ -13,7 +13,7 @@ using namespace made_sweeps;
 const Directions kSmaller = {{"event", Better::smaller}, {"depth", Better::smaller}};
 const Directions kLarger = {{"event", Better::larger}, {"depth", Better::larger}};
 
-TEST(Judged, ByTheDirection) {
+TEST(Judged, JudgementFollowsTheDirectionOfTheMeasure) {
   EXPECT_EQ(judged(1, 2, Better::smaller, {}), Judgement::worse);
   EXPECT_EQ(judged(2, 1, Better::smaller, {}), Judgement::better);
   EXPECT_EQ(judged(1, 2, Better::larger, {}), Judgement::better);
@@ -27,14 +27,14 @@ TEST(Judged, ByTheDirection) {
   EXPECT_EQ(judged(1, kInfinity, Better::smaller, {}), Judgement::worse);
 }
 
-TEST(Judged, NoNumberIsNeitherBetterNorWorse) {
+TEST(Judged, NanIsNeitherBetterNorWorse) {
   EXPECT_EQ(judged(kNaN, kNaN, Better::smaller, {}), Judgement::equal);
   EXPECT_EQ(judged(1, kNaN, Better::smaller, {}), Judgement::changed);
   EXPECT_EQ(judged(kNaN, 1, Better::smaller, {}), Judgement::changed);
   EXPECT_EQ(judged(-1, kNaN, Better::not_negative, {}), Judgement::changed);
 }
 
-TEST(JudgedRunByRun, WhereAllRunsWentOneWay) {
+TEST(JudgedRunByRun, DirectionOfAllChangedRunsDecides) {
   SweepResult a = row(6), b = a;
   flip(a, b, 2, true);
   EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kSmaller), 0, false), Judgement::worse);
@@ -69,7 +69,7 @@ TEST(JudgedRunByRun, OneRunBesideManyWithAnotherOutcomeDecidesNothing) {
 }
 
 // 60 runs hold that did not before, and 4 are lost: better. Equal numbers each way: undecided.
-TEST(JudgedRunByRun, WhereRunsWentBothWaysTheTestsSayWhichPrevails) {
+TEST(JudgedRunByRun, TheTestsDecideIfRunsWentBothWays) {
   SweepResult a = map(), b = a;
   for (std::size_t i = 0; i < 64; ++i) flip(a, b, i * 83, i % 16 == 0);
   const SweepComparison c = compare(a, b, {}, {}, kSmaller);

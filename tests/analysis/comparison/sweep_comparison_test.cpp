@@ -53,7 +53,7 @@ TEST(CompareSweeps, NamesTheFirstDifference) {
   EXPECT_EQ(c.measures[0].first_outside, 25u);
 }
 
-TEST(CompareSweeps, OfSeveralMeasuresOfARunTheFirstIsNamed) {
+TEST(CompareSweeps, NamesTheFirstOfSeveralMeasuresOfARun) {
   SweepResult a = row(8), b = a;
   flip(a, b, 5, true);
   depth(b)[5] = 2;
@@ -154,7 +154,7 @@ TEST(CompareSweeps, ARunDoneInOneOnlyIsNamedAndNoPass) {
   }
 }
 
-TEST(CompareSweeps, WhatIsDoneInNeitherIsNotLookedAt) {
+TEST(CompareSweeps, IgnoresRunsThatAreDoneInNeither) {
   SweepResult a = row(10), b = a;
   a.state[3] = b.state[3] = RunState::not_sampled, depth(b)[3] = 1;
   const SweepComparison c = compare(a, b);

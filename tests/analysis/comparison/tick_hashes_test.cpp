@@ -91,7 +91,7 @@ TEST(TickHashes, EveryNthTickAndTheLast) {
   }
 }
 
-TEST(TickHashes, WhatIsWrittenComesBack) {
+TEST(TickHashes, ReadsBackWhatWasWritten) {
   const TestFolder folder("tick_hashes_test");
   for (const int ticks : {0, 1, kTicks}) {
     const fs::path trace = stored(folder, "x.h5", walk(ticks));
@@ -188,7 +188,7 @@ TEST(CompareHashes, TheSameAreTheSame) {
   EXPECT_EQ(compare_hashes(every_nth(all, 3), every_nth(all, 5)).compared, 335u);
 }
 
-TEST(CompareHashes, ATickThatIsPlantedIsBetweenTheTwoThatAreTold) {
+TEST(CompareHashes, APlantedTickIsBetweenTheTwoReportedOnes) {
   std::mt19937_64 random(5);
   const std::vector<Column> columns = walk(500);
   const auto of = [](const std::vector<Column>& trace) {
@@ -231,7 +231,7 @@ TEST(CompareHashes, OneRunIsLonger) {
   }
 }
 
-TEST(CompareHashes, NothingCommonIsNotTheSame) {
+TEST(CompareHashes, HashesWithoutACommonTickAreNotTheSame) {
   const TickHashes even = {{0, 2, 4}, {10, 12, 14}}, odd = {{1, 3}, {11, 13}}, none;
   for (const auto& [baseline, candidate] :
        {std::pair(even, odd), std::pair(odd, even), std::pair(none, odd), std::pair(none, none)}) {

@@ -25,7 +25,7 @@ TEST(Claim, TheCriterionIsInWordsWithItsNumbers) {
   EXPECT_EQ(claim_between("1.1", "speed", "16", 29, 28, 30.5, "m/s").criterion, "from 28 to 30.5");
   EXPECT_EQ(claim_at_most("1.1", "depth", "-", 1, 0.001, "m").criterion, "at most 0.001");
   EXPECT_EQ(claim_at_least("1.1", "depth", "-", 1, -2, "m").criterion, "at least -2");
-  EXPECT_EQ(claim_differs("1.1", "speed", "16", 29, 28, 30, "m/s").criterion, "as known here: from 28 to 30");
+  EXPECT_EQ(claim_differs("1.1", "speed", "16", 29, 28, 30, "m/s").criterion, "expected here: from 28 to 30");
   EXPECT_EQ(claim_at_most("1.1", "depth", "-", 1, 1.0 / 3, "m").criterion, "at most 0.333333");
 }
 

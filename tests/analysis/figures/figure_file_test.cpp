@@ -108,7 +108,7 @@ TEST(FigureFile, EveryStyleHasItsName) {
   }
 }
 
-TEST(FigureFile, WithoutTablesOrPanels) {
+TEST(FigureFile, StoresAFigureThatHasNoTablesOrPanels) {
   const TestFolder folder("figure_file_test");
   write_figure(folder / "fig.h5", Figure{"9.9", "", "Not run: no recording", {}, {}, {}}, {});
   const Hdf5Content content = read_hdf5(folder / "fig.h5");

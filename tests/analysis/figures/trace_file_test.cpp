@@ -131,7 +131,7 @@ TEST(Digest, EveryBitOfEveryColumnCounts) {
   }
 }
 
-TEST(Digest, ToldApart) {
+TEST(Digest, DistinguishesSignsOrderAndShape) {
   const auto of = [](std::vector<double> values, int width = 1) {
     return digest(std::vector<Column>{{"x", "1", "", std::move(values), width, {}}});
   };

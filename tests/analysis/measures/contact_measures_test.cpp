@@ -68,7 +68,7 @@ TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
 }
 
 // The mean of three times 0.1 is not 0.1 to the last bit: nothing but that may be left.
-TEST(ContactMeasures, WhatIsTheSameEverywhereHasNoScatter) {
+TEST(ContactMeasures, EqualTicksHaveNoScatter) {
   Tick same{0.1, 0};
   same.force_N = {0, 1, 0};
   EXPECT_NEAR(height_sd_m(trace_of({same, same, same})), 0, 1e-15);

@@ -32,7 +32,7 @@ Tick pushed(double force_y_N, int frame) {
 const std::vector<Tick> kTicks = {pushed(0, 0), pushed(5, 1), pushed(6, 1), pushed(9, 2), pushed(8, 2),
                                   pushed(4, 3), pushed(2, 3), pushed(0, 3), pushed(0, 4), pushed(7, 5)};
 
-TEST(ForceChange, AtUpdatesAndBetweenThem) {
+TEST(ForceChange, IsMeasuredAtUpdatesAndBetweenThem) {
   const Trace trace = trace_of(kTicks);
   EXPECT_EQ(max_force_jump_N(trace), 7);
   EXPECT_NEAR(rms_force_jump_N(trace), std::sqrt((25.0 + 9 + 16 + 49) / 4), 1e-15);
@@ -44,7 +44,7 @@ TEST(ForceChange, AForceThatIsLostAtAnUpdateIsAJump) {
   EXPECT_EQ(rms_force_jump_N(trace_of({pushed(3, 0), pushed(8, 0), pushed(0, 1), pushed(0, 2)})), 8);
 }
 
-TEST(ForceChange, OfAForceThatTurnsIsTheLengthOfTheDifference) {
+TEST(ForceChange, IsTheLengthOfTheDifferenceWhenTheForceTurns) {
   EXPECT_EQ(force_noise_N(trace_of({{{3, 0, 0}, 0}, {{0, 0, 4}, 0}})), 5);
   EXPECT_EQ(max_force_jump_N(trace_of({{{3, 0, 0}, 0}, {{0, 0, 4}, 1}})), 5);
 }

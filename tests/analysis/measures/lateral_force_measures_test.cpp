@@ -86,7 +86,7 @@ TEST(LateralForce, IsJudgedInContactWithAForceAndAKnownNormal) {
 }
 
 // A force into the surface has no ratio, but an angle above a right one.
-TEST(LateralForce, OfAForceIntoTheSurfaceIsAnAngleOnly) {
+TEST(LateralForce, AForceIntoTheSurfaceHasAnAngleButNoRatio) {
   const Trace trace = trace_of({{{1, -2, 0}}, {{0, -1, 0}}, {{1, 0, 0}}});
   EXPECT_TRUE(std::isnan(mean_lateral_force(trace)));
   EXPECT_TRUE(std::isnan(lateral_force_95(trace)));

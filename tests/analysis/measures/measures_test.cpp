@@ -72,7 +72,7 @@ TEST(Measures, NoValueHasTheSameBitsEverywhere) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(measure(trace)), std::bit_cast<std::uint64_t>(kNoValue));
 }
 
-TEST(Measures, OfNoTicksNoneIsUnconvergedOrNotFinite) {
+TEST(Measures, AreZeroForAnEmptyTrace) {
   EXPECT_EQ(unconverged_fraction(Trace()), 0);
   EXPECT_EQ(non_finite_fraction(Trace()), 0);
   EXPECT_EQ(mean_steps(Trace()), 0);

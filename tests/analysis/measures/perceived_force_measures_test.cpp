@@ -41,7 +41,7 @@ TEST(PerceivedForce, JumpsAreThoseAboveTheFractionOfTheForceBefore) {
   EXPECT_EQ(felt_jump_fraction(trace, 1), 0.2);  // a force that begins is above any fraction
 }
 
-TEST(PerceivedForce, BetweenUpdatesAndWithoutForceThereIsNoJump) {
+TEST(PerceivedForce, HasNoJumpBetweenUpdatesOrWithoutForce) {
   EXPECT_EQ(felt_jump_fraction(trace_of({{0, 1, 0}, {0, 9, 0}, {0, 9, 0}, {0, 1, 0}}, 2), 0.2), 0);
   EXPECT_TRUE(std::isnan(felt_jump_fraction(trace_of({{0, 1, 0}, {0, 9, 0}}, 2), 0.2)));
   EXPECT_TRUE(std::isnan(felt_jump_fraction(trace_of({{0, 0, 0}, {0, 0, 0}}, 1), 0.2)));
@@ -57,7 +57,7 @@ TEST(PerceivedForce, AForceThatTurnsChanges) {
 }
 
 // exp(a t): a packet whenever the force has grown by 1 + d, so every ceil(ln(1 + d) / a) ticks.
-TEST(PerceivedForce, OfAnExponentialForcePacketsComeAtEqualTimes) {
+TEST(PerceivedForce, ExponentialForceSendsPacketsAtEqualTimes) {
   const double per_tick = 0.003;
   const Trace trace = trace_along(1000, [&](int i) { return std::exp(per_tick * i); });
   for (const double weber : {0.05, 0.1, 0.2}) {

@@ -17,7 +17,7 @@ const std::vector<char> kDepth{1, 1, 1, 1, 0, 0, 1, 0};
 
 TEST(Segmentation, CountsPixelsWithDepthAndThoseWithoutApart) {
   const SegmentationScore score = score_segmentation(kPicked, kOfClass, kDepth);
-  EXPECT_EQ(score.right, 2);
+  EXPECT_EQ(score.found, 2);
   EXPECT_EQ(score.missed, 1);
   EXPECT_EQ(score.wrong, 1);
   EXPECT_EQ(score.of_class_without_depth, 2);
@@ -31,13 +31,13 @@ TEST(Segmentation, CountsPixelsWithDepthAndThoseWithoutApart) {
 TEST(Segmentation, FramesAddUp) {
   SegmentationScore sum = score_segmentation(kPicked, kOfClass, kDepth);
   sum += score_segmentation({1, 0}, {1, 1}, {1, 1});
-  EXPECT_EQ(sum.right, 3);
+  EXPECT_EQ(sum.found, 3);
   EXPECT_EQ(sum.missed, 2);
   EXPECT_EQ(sum.wrong, 1);
   EXPECT_EQ(sum.of_class_without_depth, 2);
 }
 
-TEST(Segmentation, OfNothingThereIsNoShare) {
+TEST(Segmentation, SharesOfNoPointsAreNan) {
   const SegmentationScore none = score_segmentation({}, {}, {});
   EXPECT_TRUE(std::isnan(none.recall()) && std::isnan(none.precision()) && std::isnan(none.depth_fraction()));
   const SegmentationScore unpicked = score_segmentation({0, 0}, {1, 0}, {1, 1});

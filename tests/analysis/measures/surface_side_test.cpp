@@ -39,7 +39,7 @@ TEST(SurfaceSide, HasNotCrossedWhatItBeganBehind) {
   EXPECT_EQ(popped_through({-0.03, 0.002, -0.03}), 1) << "it was in front in between";
 }
 
-TEST(SurfaceSide, ThatLiesOnTheSurfaceIsHeldByItUpToADepth) {
+TEST(SurfaceSide, APositionOnTheSurfaceIsHeldUpToADepth) {
   EXPECT_EQ(popped_through({0.01, -2.37e-16}, 0.0025), 0);
   EXPECT_EQ(popped_through({0.01, -0.0025}, 0.0025), 0);
   EXPECT_EQ(popped_through({0.01, -0.001, -0.0026}, 0.0025), 1);

@@ -80,15 +80,14 @@ TEST(CardNumbers, EachNumberOutsideHasItsLine) {
             "flat, proxy, noise 0 mm: max_force in N is 2.003, stored 2 (1.998 to 2.002)");
   now = numbers();
   now.means[1].value = {0, kNan, kNan, kNan};
-  EXPECT_EQ(only(differences(numbers(), now)),
-            "flat, proxy, noise 3 mm: max_force in N has no number, stored 2.5");
+  EXPECT_EQ(only(differences(numbers(), now)), "flat, proxy, noise 3 mm: max_force in N is NaN, stored 2.5");
   now = numbers();
   now.counts[2].successes = {0, 0, kNan, 0, 1};
   EXPECT_EQ(only(differences(numbers(), now)),
             "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10 (0 to 0.28)");
 }
 
-TEST(CardNumbers, WhatIsNotStoredIsADifferenceAndWhatIsNotRunIsNone) {
+TEST(CardNumbers, NewNumbersAreDifferencesAndMissingOnesAreNot) {
   CardNumbers now = numbers();
   now.counts[1].place.method = "newcomer", now.means[1].place.method = "newcomer";
   const auto list = differences(numbers(), now);

@@ -52,7 +52,7 @@ TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
   EXPECT_EQ(list[0].other, "proxy");
   EXPECT_EQ(list[0].ahead, 1);
   EXPECT_GT(list[0].own_mean, list[0].other_mean);
-  EXPECT_TRUE(list[0].is_shown);
+  EXPECT_TRUE(list[0].is_significant);
   EXPECT_LT(list[0].p, kSignificance);
   EXPECT_EQ(list[1].scene, "scene 1");
   EXPECT_EQ(list[1].what, "success");
@@ -62,7 +62,7 @@ TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
   EXPECT_TRUE(weaknesses(card, "nobody").empty());
 }
 
-TEST(Weaknesses, OfSeveralThatAreAheadTheFirstIsNamed) {
+TEST(Weaknesses, NameTheFirstOfSeveralMethodsAhead) {
   const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
   const auto list = weaknesses(card, kOwnMethod);
   ASSERT_EQ(list.size(), 1u);
@@ -72,14 +72,14 @@ TEST(Weaknesses, OfSeveralThatAreAheadTheFirstIsNamed) {
   EXPECT_EQ(list[0].p, card.scenes[0].ranking.against[2][0].p);
 }
 
-TEST(Weaknesses, WhatMayBeChanceIsListedApart) {
+TEST(Weaknesses, PossibleChanceIsListedApart) {
   const Scorecard card = card_of({{sweep_of(false, 17, 1), sweep_of(true, 18, 1), sweep_of(true, 20, 1)}});
   const auto list = weaknesses(card, kOwnMethod);
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].what, "success");
   EXPECT_EQ(list[0].other, "penalty");
   EXPECT_EQ(list[0].ahead, 2);
-  EXPECT_FALSE(list[0].is_shown);
+  EXPECT_FALSE(list[0].is_significant);
   EXPECT_GT(list[0].p, kSignificance);
   EXPECT_EQ(list[1].what, "success without noise");
   EXPECT_EQ(list[1].own_mean, 0);

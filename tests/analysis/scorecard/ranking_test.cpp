@@ -55,7 +55,7 @@ TEST(Standings, NoDifferenceIsSaidAsSuch) {
   EXPECT_EQ(two_best.top_group, (std::vector<std::size_t>{0, 2}));
 }
 
-TEST(Standings, OfEventsFewFlipsAreNoDifference) {
+TEST(Standings, FewFlippedEventsAreNoDifference) {
   const PairedValues all(2, std::vector<double>(20, 1)), none(2, std::vector<double>(20, 0));
   PairedValues one_less = all;
   one_less[1][3] = 0;
@@ -167,7 +167,7 @@ TEST(Standings, NearZeroIsAboutMagnitudes) {
   EXPECT_EQ(ranking({low, high}, Better::smaller, false).order.front(), 0u);
 }
 
-TEST(Standings, WhoHasNoNumberHasNoPlace) {
+TEST(Standings, AMethodWithoutNumbersHasNoPlace) {
   const PairedValues none(1, std::vector<double>(12, kNan)), good(1, twice({1, 2, 1.5, 1, 2, 1.5})),
       bad(1, twice({9, 10, 9.5, 9, 10, 9.5}));
   const Ranking result = ranking({none, bad, good}, Better::smaller, false);

@@ -13,7 +13,7 @@ TEST(Mean, IsTheSumInItsOrderOverTheCount) {
   EXPECT_EQ(mean({1e16, -1e16, 1}), 1.0 / 3);
 }
 
-TEST(Mean, OfNoneIsNoNumber) {
+TEST(Mean, IsAPositiveNanForAnEmptyList) {
   EXPECT_TRUE(std::isnan(mean({})));
   EXPECT_FALSE(std::signbit(mean({}))) << "the bits that kNoValue has";
 }

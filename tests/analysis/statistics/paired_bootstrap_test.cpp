@@ -56,7 +56,7 @@ TEST(PairedBootstrap, HasTheSameBitsForTheSameKeyAlone) {
   EXPECT_NE(once.low, bootstrap_mean({group}, 4).low);
 }
 
-TEST(PairedBootstrap, SkipsWhatIsNoNumber) {
+TEST(PairedBootstrap, SkipsNan) {
   const MeanDifference with = bootstrap_mean({{1, kNan, 4}, {kNan}, {2, 6}}, 3);
   const MeanDifference without = bootstrap_mean({{1, 4}, {}, {2, 6}}, 3);
   EXPECT_EQ(with.pairs, 4);

@@ -202,7 +202,7 @@ TEST(HolmAdjusted, IsTheExampleByHand) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-15) << i;
 }
 
-TEST(HolmAdjusted, StaysAProbability) {
+TEST(HolmAdjusted, IsNeverAboveOne) {
   EXPECT_TRUE(holm_adjusted({}).empty());
   EXPECT_EQ(holm_adjusted({0.02}), std::vector<double>{0.02});
   EXPECT_EQ(holm_adjusted({1, 0.4, 1, 0.9}), (std::vector<double>{1, 1, 1, 1}));

@@ -57,7 +57,7 @@ TEST(Student, ANumberAloneInItsGroupIsNotCertain) {
   EXPECT_TRUE(std::isnan(student_mean({{kNan}}).mean));
 }
 
-TEST(MeanTest, OfSymmetricNumbersIsStudents) {
+TEST(MeanTest, IsStudentsTestForSymmetricNumbers) {
   // Zero skewness needs no correction: t = 3 / sqrt(2.5 / 5).
   EXPECT_NEAR(mean_test({1, 2, 3, 4, 5}), std::max(0.0625, student_two_sided(3 / std::sqrt(0.5), 4)), 1e-12);
   EXPECT_NEAR(mean_test({-1, 0, 1, 2, 3}), student_two_sided(1 / std::sqrt(0.5), 4), 1e-12);

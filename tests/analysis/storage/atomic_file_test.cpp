@@ -163,7 +163,7 @@ TEST(WriteFilesTogether, ReplacesAllOrNone) {
   EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
 }
 
-TEST(MoveIntoPlace, WhatCannotBeMovedIsRemoved) {
+TEST(MoveIntoPlace, RemovesAFileThatCannotBeMoved) {
   const TestFolder folder("atomic_file_test");
   fs::create_directory(folder / "taken");
   const fs::path temporary = temporary_of(folder / "taken");

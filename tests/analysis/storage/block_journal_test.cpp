@@ -122,7 +122,7 @@ TEST(BlockJournal, GrowsWhileItsWriterLives) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
-TEST(BlockJournal, NothingOverwritesIt) {
+TEST(BlockJournal, RefusesToOverwriteAnExistingFile) {
   const TestFolder folder("block_journal");
   write(folder);
   const std::string bytes = bytes_of(folder / "x.unfinished");
@@ -191,7 +191,7 @@ TEST(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
   EXPECT_EQ(reader.next()->content, "later");
 }
 
-TEST(BlockJournal, WithoutRoomForTheFirstBlockNothingIsLeft) {
+TEST(BlockJournal, LeavesNoFileIfTheFirstBlockHasNoRoom) {
   const TestFolder folder("block_journal");
   const NoRoom limit(50);
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, std::string(100, 'x')}); }), "File too large");
@@ -202,9 +202,9 @@ TEST(BlockJournal, RefusesToReadOtherFiles) {
   const TestFolder folder("block_journal");
   const auto why = [](const fs::path& file) { return refusal([&] { JournalReader{file}; }); };
   EXPECT_HAS(why(folder / "none"), "none: no such file");
-  EXPECT_HAS(why(folder.write("empty", "")), "empty: is no unfinished recording");
-  EXPECT_HAS(why(folder.write("text", "Remote Touch result")), "text: is no unfinished recording");
-  EXPECT_HAS(why(folder.path()), "is no unfinished recording");
+  EXPECT_HAS(why(folder.write("empty", "")), "empty: is not an unfinished recording");
+  EXPECT_HAS(why(folder.write("text", "Remote Touch result")), "text: is not an unfinished recording");
+  EXPECT_HAS(why(folder.path()), "is not an unfinished recording");
   write(folder);
   EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
 }

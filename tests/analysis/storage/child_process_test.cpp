@@ -40,24 +40,24 @@ TEST(ChildProcess, HandsOnWhatWentWrong) {
   EXPECT_EQ(failure_of([]() -> std::string { throw std::runtime_error("no such thing"); }), "no such thing");
 }
 
-TEST(ChildProcess, ThatWantsTooMuchMemoryFails) {
+TEST(ChildProcess, FailsIfItNeedsTooMuchMemory) {
   EXPECT_EQ(failure_of([] { return std::string(std::size_t{1} << 30, 'x').substr(0, 1); }),
             "it needs more than 256 MiB of memory");
 }
 
-TEST(ChildProcess, ThatNeverEndsIsEnded) {
+TEST(ChildProcess, IsEndedIfItTakesTooLong) {
   EXPECT_EQ(failure_of([]() -> std::string {
               for (std::atomic<unsigned> i = 0;;) ++i;
             }),
             "it takes more than 1 s");
 }
 
-TEST(ChildProcess, ThatCrashesIsTold) {
+TEST(ChildProcess, ReportsTheSignalOfACrash) {
   EXPECT_EQ(failure_of([]() -> std::string {
               std::raise(SIGSEGV);
               return {};
             }),
-            "its reader ended with signal 11, perhaps without memory");
+            "its reader ended with signal 11, perhaps out of memory");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::size_t files_in(const TestFolder& folder) {
                                                 std::filesystem::directory_iterator()));
 }
 
-TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
+TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
   const TestFolder folder("hdf5_appender");
   const auto file = folder / "grown.h5";
   {
@@ -101,13 +101,13 @@ TEST(Hdf5Appender, RefusesADeviceThatItWouldReplace) {
   EXPECT_HAS(refusal([] { Hdf5Appender("/dev/null"); }), "/dev/null: is a device: expected a file");
 }
 
-TEST(Hdf5Appender, WithoutFinishNothingIsLeft) {
+TEST(Hdf5Appender, LeavesNoFileIfItIsNotFinished) {
   const TestFolder folder("hdf5_appender");
   { Hdf5Appender out(folder / "left.h5"); }
   EXPECT_EQ(files_in(folder), 0u);
 }
 
-TEST(Hdf5Appender, AFileThatWasThereStaysUntilTheNewOneIsWhole) {
+TEST(Hdf5Appender, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
   const TestFolder folder("hdf5_appender");
   const auto file = folder.write("old.h5", "old");
   { Hdf5Appender out(file); }
@@ -117,7 +117,7 @@ TEST(Hdf5Appender, AFileThatWasThereStaysUntilTheNewOneIsWhole) {
   EXPECT_EQ(file_digest_of(file), FileDigest::valid);
 }
 
-TEST(Hdf5Appender, TellsWhereItCannotWrite) {
+TEST(Hdf5Appender, NamesTheFileThatCannotBeWritten) {
   const TestFolder folder("hdf5_appender");
   EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
   EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");

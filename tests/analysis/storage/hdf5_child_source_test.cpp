@@ -36,7 +36,7 @@ TEST(ChildAnswer, ComesBackAsItWas) {
   }
 }
 
-TEST(ChildAnswer, ThatIsCutOrTooLongIsRefused) {
+TEST(ChildAnswer, IsRefusedIfItIsCutOrTooLong) {
   const std::string summary = packed(kSummary);
   for (std::size_t length = 0; length < summary.size(); ++length)
     EXPECT_THROW(unpacked_summary(summary.substr(0, length)), std::runtime_error) << length;
@@ -49,7 +49,7 @@ TEST(ChildAnswer, ThatIsCutOrTooLongIsRefused) {
   }
 }
 
-TEST(ChildAnswer, WithoutWholeRowsIsRefused) {
+TEST(ChildAnswer, IsRefusedIfItsRowsAreNotWhole) {
   Column column = columns()[0];
   for (const int width : {0, -1, 4, 7}) {
     column.width = width;

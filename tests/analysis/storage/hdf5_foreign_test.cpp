@@ -64,7 +64,7 @@ std::string refusal_of(const fs::path& file) {
   return refusal([&] { read_hdf5(file); });
 }
 
-TEST(ForeignAttributes, OfSeveralTextsAreReadWhole) {
+TEST(ForeignAttributes, ListsOfTextsAreReadWhole) {
   const TestFolder folder("hdf5_foreign_test");
   {
     const Handle file = new_file(folder / "x.h5");
@@ -96,7 +96,7 @@ TEST(ForeignAttributes, EndWhereTheirTypeSays) {
   EXPECT_EQ(attribute(found, "full"), "abcde");
 }
 
-TEST(ForeignAttributes, OfOtherKindsAreNoTexts) {
+TEST(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
   const TestFolder folder("hdf5_foreign_test");
   {
     const Handle file = new_file(folder / "x.h5");
@@ -173,7 +173,7 @@ TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data has its values in another file");
 }
 
-TEST(ForeignDatasets, OfOtherKindsAreNamed) {
+TEST(ForeignDatasets, AreNamedIfTheyAreOfOtherKinds) {
   const TestFolder folder("hdf5_foreign_test");
   add_dataset(new_file(folder / "x.h5"), "data", H5T_STD_REF_OBJ, {{3}});
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data is neither numbers nor texts of one length");
@@ -195,7 +195,7 @@ TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
 }
 
 // Each ended the program: by a signal, or never. Which of the library's ways it is depends on its version.
-TEST(DamagedFiles, ThatTheLibraryDoesNotSurviveAreRefused) {
+TEST(DamagedFiles, AreRefusedIfTheLibraryWouldNotSurviveThem) {
   const fs::path seeds = fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus/hdf5_bytes";
   for (const char* name : {"library-bus-error", "library-crashes-1", "library-crashes-2", "library-crashes-3",
                            "library-divides-by-zero", "library-never-ends"})

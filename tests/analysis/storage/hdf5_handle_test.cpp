@@ -38,7 +38,7 @@ std::string failure_after(hid_t major, hid_t minor, const std::string& sentence)
   return failure([] { throw_refusal(); });
 }
 
-TEST(Hdf5Refusal, OfTheSystemIsToldInItsWords) {
+TEST(Hdf5Refusal, RepeatsTheWordsOfTheSystem) {
   const TestFolder folder("hdf5_handle_test");
   use_hdf5();
   EXPECT_EQ(failure([&] {
@@ -56,7 +56,7 @@ TEST(Hdf5Refusal, OfTheSystemIsToldInItsWords) {
   EXPECT_EQ(told(""), "the HDF5 library failed: out of memory, or a damaged file");
 }
 
-TEST(Hdf5Refusal, WithoutMemoryIsBadAlloc) {
+TEST(Hdf5Refusal, IsBadAllocIfMemoryRunsOut) {
   for (const hid_t minor : {H5E_NOSPACE, H5E_CANTALLOC})
     EXPECT_EQ(failure_after(H5E_RESOURCE, minor, "memory allocation failed"), "no memory") << minor;
   EXPECT_EQ(failure_after(H5E_RESOURCE, H5E_CANTINIT, ""),

@@ -28,7 +28,7 @@ TEST(NewFiles, AppearTogether) {
   EXPECT_EQ(files_in(folder.path()), (Names{"a", "b"}));
 }
 
-TEST(NewFiles, WithoutFinishNothingIsLeft) {
+TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
   const TestFolder folder("new_files");
   folder.write("b", "old");
   {
@@ -60,7 +60,7 @@ TEST(NewFiles, OneThatCannotAppearTakesTheOthersBack) {
   EXPECT_EQ(bytes_of(folder / "b"), "old");
 }
 
-TEST(NewFiles, ThatCannotBeBegunAreNamed) {
+TEST(NewFiles, AreNamedIfTheyCannotBeBegun) {
   const TestFolder folder("new_files");
   NewFiles files;
   EXPECT_HAS(refusal([&] { files.begin(folder / "nowhere/a"); }), "nowhere/a: cannot be written");

@@ -52,7 +52,7 @@ TEST_F(ReplacementRuleTest, AFileThatAppearedAndTheResultAreKept) {
   EXPECT_TRUE(fs::exists(folder_ / kept));
 }
 
-TEST_F(ReplacementRuleTest, WhatTheRuleAllowsIsReplaced) {
+TEST_F(ReplacementRuleTest, ReplacesFilesThatTheRuleAllows) {
   const fs::path target = folder_ / "x";
   set_rule(target);
   EXPECT_EQ(write(target, "ours, 1"), kNone);
@@ -86,7 +86,7 @@ TEST_F(ReplacementRuleTest, FilesThatBelongTogetherAppearAllOrNone) {
   EXPECT_EQ(bytes_of(folder_ / "b"), "precious notes");
 }
 
-TEST_F(ReplacementRuleTest, WithoutARuleEveryFileIsReplaced) {
+TEST_F(ReplacementRuleTest, ReplacesEveryFileIfThereIsNoRule) {
   folder_.write("free", "anything");  // the rules of the other tests last as long as the process
   EXPECT_EQ(write(folder_ / "free", "new"), kNone);
   EXPECT_EQ(bytes_of(folder_ / "free"), "new");

@@ -73,7 +73,7 @@ void expect_same(const SweepResult& a, const SweepResult& b) {
 
 const TextAttributes kAttributes = {{"command", "remote-touch sweep x"}, {"config", "{}"}, {"shard", "1/2"}};
 
-TEST(SweepFile, WhatIsWrittenComesBack) {
+TEST(SweepFile, ReadsBackWhatWasWritten) {
   const TestFolder folder("sweep_file_test");
   for (const int replicates : {1, 2, 1000})  // 1000: the arrays are chunked and compressed
     for (const bool refined : {false, true}) {
@@ -231,7 +231,7 @@ TEST(SweepInProgress, DamageAsksForNoRuns) {
   EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
 }
 
-TEST(SweepInProgress, NoticesThatItsFileIsGone) {
+TEST(SweepInProgress, NoticesThatItsFileWasMoved) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   const SweepResult result = awkward();
@@ -253,7 +253,7 @@ RunInChild replacing(const std::filesystem::path& file, int at, int& asked) {
   };
 }
 
-TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsNotDamaged) {
+TEST(SweepInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   for (int at = 0; at < kQuestions; ++at) {
@@ -265,7 +265,7 @@ TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsNotDamaged) {
   }
 }
 
-TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsReadAgain) {
+TEST(SweepInProgress, IsReadAgainWhenItIsReplacedDuringReading) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   for (int at = 0; at < kQuestions; ++at) {
@@ -278,7 +278,7 @@ TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsReadAgain) {
 }
 
 // The file is replaced as if by a program that never stops.
-TEST(SweepInProgress, ThatIsReplacedAllTheTimeIsRefused) {
+TEST(SweepInProgress, IsRefusedIfItIsReplacedAllTheTime) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   write_sweep_in_progress(file, awkward(), kAttributes);

@@ -37,7 +37,7 @@ std::vector<double> rough_profile(unsigned seed) {
 // Sums of a height and half a ball, each rounded twice.
 constexpr double kRounding = 1e-17;
 
-TEST(BallClosing, FlatStaysFlat) {
+TEST(BallClosing, KeepsAFlatSurface) {
   for (const double height : {0.0, -0.02, 0.01})
     for (const double h : closed(sampled([&](double) { return height; }))) EXPECT_NEAR(h, height, kRounding);
 }

@@ -55,7 +55,7 @@ TEST(LiftUpdates, MarginIsTheHeightOverTheNewPlane) {
   EXPECT_EQ(updates.back().above_after, popped_through(trace) == 0);
 }
 
-TEST(LiftUpdates, CriterionTellsAPopThroughWithoutNoise) {
+TEST(LiftUpdates, CriterionPredictsPopThroughWithoutNoise) {
   const auto updates = lift({"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=5"});
   int pops = 0;
   for (const LiftUpdate& update : updates) {

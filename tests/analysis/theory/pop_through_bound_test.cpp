@@ -42,7 +42,7 @@ TEST(Bound, PrintedBoundAsPlotted) {
   }
 }
 
-TEST(ScatterBound, WithoutNoiseIsTheBoundWithoutNoise) {
+TEST(ScatterBound, EqualsTheCriticalAccelerationAtZeroNoise) {
   EXPECT_NEAR(scatter_bound(kLift, {}), critical_acceleration(kLift), 1e-9);
   EXPECT_EQ(survival_probability(kLift, {}, 4.4), 1);
   EXPECT_EQ(survival_probability(kLift, {}, 4.6), 0);

@@ -82,7 +82,7 @@ double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyP
 
 // 2000 jumps know a share within 0.04 (3.5 standard errors of one half). The median place stands for one that
 // scatters, which changes the share by less than 0.05 here.
-TEST(ToolJump, AtTheJumpOfNoisyPointsHalfOfAllAreLost) {
+TEST(ToolJump, HalfOfAllToolsAreLostAtTheJumpOfNoisyPoints) {
   std::vector<NoisyPoint> plane(400), slope, fading;
   for (int i = 0; i < 400; ++i) {
     slope.push_back({-0.00005 * i, 1});
@@ -97,7 +97,7 @@ TEST(ToolJump, AtTheJumpOfNoisyPointsHalfOfAllAreLost) {
     }
 }
 
-TEST(ToolJump, WithLittleNoiseItIsTheThicknessAndTheDrop) {
+TEST(ToolJump, IsTheThicknessAndTheDropAtLittleNoise) {
   EXPECT_NEAR(noisy_jump_m(0.01, {{0}, {-0.002}, {-0.004}, {-0.006}}, 1e-7), 0.016, 1e-6);
 }
 

@@ -37,7 +37,7 @@ TEST(SequenceLog, IsEmptyWithoutATask) {
   EXPECT_TRUE(sequence_log(trace_of({{0, false, 0}, {0, false, 0}})).empty());
 }
 
-TEST(SequenceLog, TellsWhenAStepBeganAndEnded) {
+TEST(SequenceLog, HasTheTimesAtWhichAStepBeganAndEnded) {
   const auto log = sequence_log(trace_of({{0, false, 0}, {0, true, 0}, {0, true, 0}, {1, false, 0, 0.003}}));
   ASSERT_EQ(log.size(), 1u);
   EXPECT_EQ(log[0].began_s, 0.001);
@@ -48,7 +48,7 @@ TEST(SequenceLog, TellsWhenAStepBeganAndEnded) {
 }
 
 // The first step reaches its deadline, the second is done at once and the third begins, all in one tick.
-TEST(SequenceLog, OfSeveralInATickOnlyTheOneThatRanIsMissed) {
+TEST(SequenceLog, OnlyTheRunningOneOfSeveralStepsInATickIsMissed) {
   const auto log = sequence_log(trace_of({{0, true, 0}, {2, true, 1}, {2, true, 1}}));
   ASSERT_EQ(log.size(), 3u);
   EXPECT_TRUE(log[0].missed);

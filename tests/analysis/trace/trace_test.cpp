@@ -136,7 +136,7 @@ TEST(TraceColumns, MakeNoTraceWhereOneIsMissingOrAnother) {
 }
 
 // A tool has no proxy of radius r_c: what is said of it must not be said of one.
-TEST(TraceColumns, OfAToolDoNotSpeakOfAProxy) {
+TEST(TraceColumns, DoNotMentionAProxyForATool) {
   const std::vector<Column> proxy = one_tick(false, false, false).columns();
   const std::vector<Column> tool = one_tick(true, false, false).columns();
   for (const char* name : {"contact_count", "nearest_distance", "signed_distance", "proxy_position"}) {

@@ -175,7 +175,7 @@ TEST(DepthPipeline, APoseMovesPointsAndNormals) {
   EXPECT_TRUE(moved.image->X_WC.isApprox(X_WC));
 }
 
-TEST(DepthPipeline, WithoutFilterThePointsAreTheMeasuredOnes) {
+TEST(DepthPipeline, KeepsMeasuredPointsIfTheFilterIsOff) {
   const scenes::DepthScene scene = with_holes(noisy_waves(80, 60));
   Settings settings;
   settings.filter = false;

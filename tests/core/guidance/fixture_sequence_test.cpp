@@ -56,7 +56,7 @@ void play(std::vector<SequenceStep> steps, const std::vector<Tick>& ticks) {
   }
 }
 
-TEST(FixtureSequence, WithoutStepsIsOver) {
+TEST(FixtureSequence, IsOverIfItHasNoSteps) {
   FixtureSequence sequence({});
   EXPECT_TRUE(sequence.is_over());
   play({}, {{0, 1, true, 0, false, 0}});
@@ -168,11 +168,11 @@ TEST(FixtureSequence, TheNextStepBeginsInTheTickOfTheDeadlineWithOneOfItsOwn) {
                    {1.25, 0, true, 3, false, 2}});
 }
 
-TEST(FixtureSequence, WithoutADeadlineWaitsForEver) {
+TEST(FixtureSequence, WaitsForEverIfThereIsNoDeadline) {
   play({kReach}, {{0, 0, false, 0, true, 0, {0}}, {86400, 0, false, 0, true, 0}});
 }
 
-TEST(FixtureSequence, WhatHasNotBegunMissesNothing) {
+TEST(FixtureSequence, AStepThatHasNotBegunIsNotMissed) {
   play({with_deadline(step(StepStart::button, StepEnd::reached), 0.5)},
        {{0, 0, false, 0, false, 0}, {10, 0, true, 0, false, 0}});
 }

@@ -37,7 +37,7 @@ TEST_P(GuidanceOverTime, ALostTargetIsUsedForHoldSeconds) {
   EXPECT_EQ(r.step(device(kAbove), 0.1875).guidance->goal_W, kRight);
 }
 
-TEST_P(GuidanceOverTime, WhatWasNeverSeenIsNotHeld) {
+TEST_P(GuidanceOverTime, ATargetThatWasNeverSeenIsNotHeld) {
   GuidanceSettings holding = plain();
   holding.hold_s = 10;
   GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, holding);

@@ -30,7 +30,7 @@ TEST(GuidancePresence, HoldsFromTheArrivalOfTheFirstFrameWithoutIt) {
   EXPECT_EQ(presence.target(5)->mean_W.x(), 3);
 }
 
-TEST(GuidancePresence, WithFewerPointsItIsLostAndKeepsTheLastThatHadEnough) {
+TEST(GuidancePresence, FewerPointsLoseItAndTheLastGoodTargetIsHeld) {
   GuidancePresence presence(kMinPoints, kHold_s, 0);
   presence.on_frame(seen(kMinPoints, 1), 0);
   presence.on_frame(seen(kMinPoints - 1, 2), 1);
@@ -39,7 +39,7 @@ TEST(GuidancePresence, WithFewerPointsItIsLostAndKeepsTheLastThatHadEnough) {
   EXPECT_EQ(presence.target(1 + kHold_s), nullptr);
 }
 
-TEST(GuidancePresence, WhatNeverHadEnoughPointsIsNotHeld) {
+TEST(GuidancePresence, ATargetThatNeverHadEnoughPointsIsNotHeld) {
   GuidancePresence presence(kMinPoints, kHold_s, 0);
   EXPECT_EQ(presence.target(0), nullptr);
   presence.on_frame(seen(kMinPoints - 1), 0);
@@ -47,7 +47,7 @@ TEST(GuidancePresence, WhatNeverHadEnoughPointsIsNotHeld) {
 }
 
 // Ticks continue while the frame is on its way, so its time may be later than that of the tick it arrives in.
-TEST(GuidancePresence, WithoutAHoldTheFrameEndsItWheneverItArrived) {
+TEST(GuidancePresence, AFrameEndsItAtAnyTimeIfThereIsNoHold) {
   GuidancePresence presence(kMinPoints, 0, 0);
   presence.on_frame(seen(kMinPoints), 0);
   presence.on_frame(seen(0), 1);

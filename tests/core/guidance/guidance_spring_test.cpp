@@ -41,7 +41,7 @@ TEST(GuidanceGoal, FixedLiesBeforeTheTargetAgainstTheTurnedAxis) {
   EXPECT_LT((goal->q_WT * Vec3::UnitZ() - Vec3::UnitZ()).norm(), 1e-15);
 }
 
-TEST(GuidanceGoal, WithoutStandoffAndOffsetIsTheTarget) {
+TEST(GuidanceGoal, IsTheTargetIfThereIsNoStandoffOrOffset) {
   GuidanceSettings s;
   s.standoff_m = 0;
   EXPECT_EQ(guidance_goal(s, target({1, 2, 3}))->p_W, Vec3(1, 2, 3));
@@ -84,7 +84,7 @@ TEST(GuidanceGoal, APlaneBehindIsTurnedTo) {
   }
 }
 
-TEST(GuidanceGoal, WithoutAPlaneIsFixed) {
+TEST(GuidanceGoal, HasTheFixedOrientationIfThereIsNoPlane) {
   GuidanceSettings s = against_the_plane();
   const auto goal = guidance_goal(s, target({1, 2, 3}));
   s.orientation = GuidedOrientation::fixed;

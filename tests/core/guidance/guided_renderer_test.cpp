@@ -64,7 +64,7 @@ TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
   EXPECT_LT((r.step(device(kAbove), 0).force_N - Vec3(1, 0, 0)).norm(), 1e-12);
 }
 
-TEST_P(EveryRenderer, NothingPullsBeforeAFrameOrWithoutATarget) {
+TEST_P(EveryRenderer, NoGuidanceBeforeAFrameOrWithoutATarget) {
   GuidedRenderer r = guided(GetParam(), {guide("valve")});
   expect_no_guidance(r.step(device(kAbove), 0));
   r.on_frame(frame({}));
@@ -139,7 +139,7 @@ TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
 
 // --- tasks ---
 
-TEST(GuidedRenderer, WhatIsActivatedPullsAlone) {
+TEST(GuidedRenderer, OnlyTheActivatedFixturePulls) {
   using enum FixtureAction;
   const StepStart button = StepStart::button;
   GuidedRenderer r = guided(
@@ -215,7 +215,7 @@ TEST(GuidedRenderer, AGoalThatIsNotSeenIsNotReached) {
   EXPECT_EQ(r.step(device({0, 0.1, 0}), 0.001).guidance->sequence_step, 0);
 }
 
-TEST(GuidedRenderer, TellsWhereTheTaskIs) {
+TEST(GuidedRenderer, ReportsTheCurrentStepOfTheTask) {
   using enum FixtureAction;
   SequenceStep timed = until_reached(step(activate, "valve"));
   timed.deadline_s = 0.01;

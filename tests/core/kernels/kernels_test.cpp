@@ -71,7 +71,7 @@ void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& 
   // Beside the grid, psi and the unit vector of a point carry a few roundings of their own.
   const double rounding = static_cast<double>(cloud.size()) * (kOnGrid + 2e-15);
   EXPECT_NEAR(got.nearest, static_cast<double>(nearest), 1e-17);
-  EXPECT_EQ(got.touching, touching);
+  EXPECT_EQ(got.touching_count, touching);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(got.normal_sum[k], static_cast<double>(normal[k]), rounding);
   EXPECT_NEAR(got.weight_sum, static_cast<double>(weights), rounding);
   EXPECT_NEAR(got.stiffness_sum, static_cast<double>(stiffness), 0x1p20 * rounding);  // a coarser grid
@@ -109,7 +109,7 @@ TEST(ContactQuery, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
     for (std::size_t i = 0; i < at.size(); ++i) {
       const ContactQuery first =
           supported_kernels()[0]->proxy.contact_query(plain.view(), at.point(i).data(), kRegions);
-      ASSERT_GT(first.touching, 0);
+      ASSERT_GT(first.touching_count, 0);
       for (const Kernels* kernels : supported_kernels()) {
         const ContactQuery got = kernels->proxy.contact_query(other.view(), at.point(i).data(), kRegions);
         EXPECT_EQ(std::memcmp(&got, &first, sizeof got), 0) << kernels->isa << " " << seed;
@@ -160,7 +160,7 @@ TEST(ContactQuery, PointAtTheProxyGivesNoDirection) {
     const ContactQuery got = kernels->proxy.contact_query(alone.view(), kOrigin.data(), kRegions);
     EXPECT_EQ(Vec3(got.normal_sum), kOrigin);
     EXPECT_EQ(got.nearest, 0);
-    EXPECT_EQ(got.touching, 1);
+    EXPECT_EQ(got.touching_count, 1);
     EXPECT_EQ(kernels->proxy.contact_query(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
   }
 }
@@ -171,7 +171,7 @@ TEST(ContactQuery, TouchingIncludesR2) {
     cloud.append({0, d, 0}), cloud.append({-d, 0, 0});
   const GatheredPoints points = columns(cloud);
   for (const Kernels* kernels : supported_kernels())
-    EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching, 4);
+    EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching_count, 4);
 }
 
 // Roots of |x - p - d u| = r by the quadratic formula, which long double can afford.

@@ -91,7 +91,7 @@ TEST(NearRegions, TheNearestIsFoundAtItsOwnGap) {
   }
 }
 
-TEST(NearRegions, OfNoNumberThereAreNone) {
+TEST(NearRegions, NoneAreNearNanOrANegativeRadius) {
   for (const Kernels* kernels : supported_kernels()) {
     Patch patch(20);
     const double nowhere[4] = {std::nan(""), 0, 0, 0.01}, inverted[4] = {0, 0, 0, -0.5};
@@ -135,7 +135,7 @@ struct PlainChoice {
 
 // Regions are kept from the deepest to the shallowest, and each kept region removes those it stands for. All
 // levels give the same bits, from columns that close up, for all lengths around the number of lanes.
-TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
+TEST(NearRegions, KeptRegionsStandForTheRemovedOnes) {
   const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
   std::size_t closed_up = 0;
   for (const Kernels* kernels : supported_kernels())
@@ -168,7 +168,7 @@ TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
 }
 
 // Equally deep regions around a leaf in the order in which they were found, and as many as stand for nothing.
-TEST(NearRegions, OfEquallyDeepOnesTheFirstIsNext) {
+TEST(NearRegions, TheFirstOfEquallyDeepOnesIsNext) {
   for (const Kernels* kernels : supported_kernels())
     for (const std::size_t count : {1, 8, 13, 64, 99}) {
       Patch patch(120);

@@ -17,7 +17,7 @@ TEST(CountingSort, ItemsOfACellAreSideBySideInTheirOrder) {
   EXPECT_EQ(sorted, (std::vector<std::uint32_t>{1, 4, 0, 2, 5, 3}));
 }
 
-TEST(CountingSort, WithoutItemsEveryCellIsEmpty) {
+TEST(CountingSort, EveryCellIsEmptyIfThereAreNoItems) {
   std::vector<std::uint32_t> start(3, 77), next(3);
   sort_by_cell(
       0, start, next, [](std::size_t) { return 0u; }, [](std::size_t, std::uint32_t) { FAIL(); });

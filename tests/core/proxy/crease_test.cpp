@@ -64,7 +64,7 @@ ProxyParameters parameters(ContactRule rule, double xi) {
 }
 
 // The limit that the page of experiments tells.
-TEST(Crease, OnTheMeanPlaneTheProxyWandersByUpTo3mmBelow100Degrees) {
+TEST(Crease, ProxyOnTheMeanPlaneWandersByUpTo3mmBelow100Degrees) {
   double sharp_m = 0, wide_m = 0;
   at_every_crease([&](double opening_deg, double xi, const PointCloud& cloud, const Vec3& hip_W) {
     const double wander_m = rest(parameters(ContactRule::tangent_plane, xi), cloud, hip_W).wander_m;

@@ -161,7 +161,7 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
   }
 }
 
-TEST(EntrenchedStep, WithoutANormalItGoesBackFromTheHip) {
+TEST(EntrenchedStep, GoesBackFromTheHipIfThereIsNoNormal) {
   PointCloud cloud;
   cloud.append({0, 0, 0});
   cloud.append({0.003, 0.004, 0});  // distance r_c: touched, but not within r1, so the point sets no step
@@ -180,7 +180,7 @@ TEST(EntrenchedStep, WithoutANormalItGoesBackFromTheHip) {
   EXPECT_LT((step(kUp, {0, -0.03, 0}, fixed) - Vec3(0, 1e-4, 0)).norm(), 1e-19);
 }
 
-TEST(ContactStep, StaysInTheTangentPlaneWhenTheHipIsBelowIt) {
+TEST(ContactStep, IsInTheTangentPlaneWhenTheHipIsBelowIt) {
   const PointCloud normals = scenes::random_cloud(200, 1, 9),
                    directions = scenes::random_cloud(200, 0.02, 10);
   int below = 0;

@@ -69,7 +69,7 @@ TEST(StraightExit, OnlyTheDirectionOfTheDisplacementMatters) {
 }
 
 // Never against the normal, though that is nearest.
-TEST(StraightExit, StaysOnItsSide) {
+TEST(StraightExit, NeverGoesAgainstTheNormal) {
   Neighbourhood near = neighbourhood(two_balls(0, 0.02));
   const auto exit =
       straight_exit(near, scenes::kernels(), {0, -0.019, 0}, Vec3::UnitY(), {0, -1e-3, 0}, kDefault);
@@ -122,7 +122,7 @@ TEST(NearestRegion, IsTheOneWithTheSmallestDistance) {
 }
 
 // All numbers are exact in binary, so that both distances are the same; outside of both regions and inside.
-TEST(NearestRegion, OfEquallyNearOnesItIsTheSmallestInAnyOrder) {
+TEST(NearestRegion, IsTheSmallestOfEquallyNearOnesInAnyOrder) {
   constexpr double small_m = 0x1p-8, large_m = 0x1p-7;
   for (const double distance_m : {0x1p-8, -0x1p-9})
     for (const bool small_first : {true, false}) {
@@ -137,7 +137,7 @@ TEST(NearestRegion, OfEquallyNearOnesItIsTheSmallestInAnyOrder) {
     }
 }
 
-TEST(NearestRegion, WithoutPointsThereIsNone) {
+TEST(NearestRegion, IsNoneIfThereAreNoPoints) {
   Neighbourhood near = neighbourhood(PointCloud{});
   EXPECT_EQ(nearest_region_radius_m(near.around(Vec3::Zero()).view(), Vec3::Zero()), std::nullopt);
 }
@@ -181,7 +181,7 @@ std::vector<double> estimates(bool growth_is_motion, const std::vector<GrowingFr
 }
 
 // A region of 8 mm that appears at once: 0.24 m/s as printed.
-TEST(GrowingRegion, IsNoMotionIfToldApart) {
+TEST(GrowingRegion, CountsAsMotionOnlyIfGrowthIsMotion) {
   const std::vector<GrowingFrame> appears{{0, 0}, {0, 0}, {0, 0.008}, {0, 0.008}};
   const double limit_m_per_s = 30 * (sag_m(kDefault.contact_radius_m()) + kBand_m);  // 4 mm/s
   EXPECT_NEAR(estimates(true, appears)[2], 0.008 * 30, limit_m_per_s);

@@ -65,7 +65,7 @@ std::string name(const ProxyParameters& p) {
          std::to_string(p.steps_per_tick) + (p.velocity_estimate ? "_velocity" : "");
 }
 
-TEST(UnionOfSpheres, WhatIsReportedIsTrue) {
+TEST(UnionOfSpheres, ReportedDistancesAndStatesAreTrue) {
   for (const ProxyParameters& p : settings()) {
     int ticks = 0, near = 0, at_hip = 0;
     walk_all(p, [&](const PointCloud& cloud, const Vec3& hip, const RenderOutput& out) {
@@ -293,7 +293,7 @@ double max_deviation(const PointCloud& cloud, double own, Expected expected, int
   return max;
 }
 
-TEST(UnionOfSpheres, OneStiffnessStaysItHoweverManyPointsThereAre) {
+TEST(UnionOfSpheres, ACommonStiffnessIsKeptForAnyNumberOfPoints) {
   for (const int count : {1, 10, 100, 1000, 10000}) {
     PointCloud cloud = one_and_more(count, 40);
     cloud.stiffness_N_per_m.assign(cloud.size(), 600);

@@ -37,7 +37,7 @@ TEST(DensityProxy, DoesNotSinkBetweenSparsePoints) {
 }
 
 // r1 and r2 may differ in the last bits.
-TEST(DensityProxy, WithTheRadiusOfTheProxyItIsTheProxy) {
+TEST(DensityProxy, EqualsTheProxyAtTheProxysRadius) {
   DensityProxyParameters fixed;
   fixed.min_radius_m = fixed.max_radius_m = 0.005;
   ProxyRenderer plain({}, 1000, scenes::kernels());

@@ -52,7 +52,7 @@ TEST(FrameAverage, ExponentialIsTheRecursionBelowTheThresholdAndTheNewDepthFromI
   expect_same(shown({}, {0, 0.01, 0.01, 0.05, 0.04}), {0, 0.004, 0.0064, 0.05, 0.046});
 }
 
-TEST(FrameAverage, AMissingPointStaysWhileItWasMeasuredTwiceInTheLastFourFrames) {
+TEST(FrameAverage, AMissingPointIsKeptIfMeasuredTwiceInTheLastFourFrames) {
   expect_same(shown({}, {0.001, kNaN, 0.001, kNaN, kNaN, kNaN, 0.001}),
               {0.001, kNaN, 0.001, 0.001, kNaN, kNaN, 0.001});
   FrameAverageSettings never;

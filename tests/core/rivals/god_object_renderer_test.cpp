@@ -36,7 +36,7 @@ RenderOutput go(GodObjectRenderer& r, const Vec3& from, const Vec3& to, int tick
   return out;
 }
 
-TEST(GodObject, OnATiltedPlaneItIsTheFootOfTheHip) {
+TEST(GodObject, IsTheFootOfTheHipOnATiltedPlane) {
   const Vec3 n = Vec3(-0.5, 1, -0.25).normalized();
   GodObjectRenderer r = over(surface([](double x, double z) { return 0.5 * x + 0.25 * z; }));
   const Vec3 hip(0.003, -0.01, 0.002);
@@ -51,7 +51,7 @@ TEST(GodObject, OnATiltedPlaneItIsTheFootOfTheHip) {
 }
 
 // Two planes hold it: the bottom of the valley is as low as it gets, and the HIP's place along it is kept.
-TEST(GodObject, InAValleyTwoPlanesHoldIt) {
+TEST(GodObject, TwoPlanesHoldItInAValley) {
   GodObjectRenderer r = over(surface([](double x, double) { return std::abs(x); }));
   const RenderOutput out = go(r, {0.004, 0.03, 0}, {0.001, -0.01, 0.0037}, 100);
   EXPECT_NEAR(out.proxy_W.x(), 0, 1e-9);
@@ -61,7 +61,7 @@ TEST(GodObject, InAValleyTwoPlanesHoldIt) {
 }
 
 // A pyramid upside down, whose three edges are edges of the mesh: three planes hold it in the corner.
-TEST(GodObject, InACornerThreePlanesHoldIt) {
+TEST(GodObject, ThreePlanesHoldItInACorner) {
   const auto pit = [](double x, double z) { return 0.5 * std::max({x + 2 * z, -2 * x - z, x - z}); };
   GodObjectRenderer r = over(surface(pit));
   const Vec3 hip(0.0004, -0.01, 0.0003);

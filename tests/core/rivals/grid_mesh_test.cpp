@@ -104,7 +104,7 @@ TEST(GridMesh, IsTheSameForEverySearchAndHasAllThatMeetTheBall) {
   }
 }
 
-TEST(GridMesh, NothingPassesBetweenTriangles) {
+TEST(GridMesh, HasNoGapBetweenTriangles) {
   const GridMesh mesh = mesh_of(BruteForceSearch(scenes::flat_grid(8, 0.0015)));
   const double corner = 0.0015 * 3.5;
   for (int i = 0; i <= 14; ++i)

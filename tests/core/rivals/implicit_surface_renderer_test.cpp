@@ -84,7 +84,7 @@ TEST(ImplicitSurfaceRenderer, MetaballsOfAPlaneHoldTheProxyAtAnEvenHeight) {
   EXPECT_LT(high - low, 1e-5);
 }
 
-TEST(ImplicitSurfaceRenderer, StaysOnTheSurfaceWhileTheHipPressesAndSlides) {
+TEST(ImplicitSurfaceRenderer, ProxyIsOnTheSurfaceWhileTheHipPressesAndSlides) {
   const PointCloud cloud = bumps(60);
   for (const Settings& p : kAll) {
     ImplicitSurfaceRenderer r = over(cloud, p);
@@ -186,7 +186,7 @@ TEST(ImplicitSurfaceRenderer, IsSmootherOverATriangleWaveThanDirectRendering) {
   }
 }
 
-TEST(ImplicitSurfaceRenderer, AnEmptyFrameLetsGo) {
+TEST(ImplicitSurfaceRenderer, AnEmptyFrameEndsTheContact) {
   for (const Settings& p : kAll) {
     ImplicitSurfaceRenderer r = over(scenes::flat_grid(60), p);
     go(r, {0, 0.03, 0}, {0, -0.01, 0});

@@ -23,7 +23,7 @@ std::shared_ptr<const TrueSurface> truth(std::function<double(const Vec3&, doubl
   return surface;
 }
 
-TEST(TrueMotion, OfATiltedPlaneAndOfABall) {
+TEST(TrueMotion, FollowsATiltedPlaneAndABall) {
   const Vec3 n = Vec3(0.6, 0.8, 0);
   const auto plane = truth([&](const Vec3& p, double t) { return n.dot(p) - 0.2 * t; });
   const SurfaceMotion risen = true_motion(*plane, {0.3, 0.1, 5}, 1, 1.5);
@@ -59,7 +59,7 @@ double end_height(bool tells) {
   return y - height(last_s);
 }
 
-TEST(OracleProxy, HoldsWhatItIsToldOfAndLosesWhatItIsNot) {
+TEST(OracleProxy, HoldsWithTheTrueMotionAndPopsThroughWithoutIt) {
   EXPECT_NEAR(end_height(true), 0.005, 2e-4);
   EXPECT_NEAR(end_height(false), -0.02, 1e-9);
 }

@@ -89,7 +89,7 @@ TEST(PenaltyRenderer, TakesRegionsAndStiffnessOfThePoints) {
   EXPECT_NEAR(force(r, {0, 0.012, 0}).y(), 250 * 0.003, 1e-6);
 }
 
-TEST(PenaltyRenderer, AtAPointItHasNoDirectionUntilItHadOne) {
+TEST(PenaltyRenderer, HasNoDirectionAtAPointUntilItHadOne) {
   PenaltyRenderer fresh = over(point_at(Vec3::Zero()));
   const RenderOutput out = fresh.step({Vec3::Zero()}, 0);
   EXPECT_EQ(out.status, RenderStatus::degenerate_normal);
@@ -99,7 +99,7 @@ TEST(PenaltyRenderer, AtAPointItHasNoDirectionUntilItHadOne) {
   EXPECT_NEAR(force(r, Vec3::Zero()).y(), kStiffness_N_per_m * kRadius_m, 1e-12);
 }
 
-TEST(PenaltyRenderer, AnEmptyFrameHoldsNothingAndAStaleOneIsTold) {
+TEST(PenaltyRenderer, AnEmptyFrameHasNoForceAndAStaleOneIsReported) {
   PenaltyRenderer r = over(point_at(Vec3::Zero()));
   r.on_frame(scenes::frame({}, 1));
   const RenderOutput empty = r.step({Vec3(0, 0.001, 0)}, 0.04);

@@ -36,14 +36,14 @@ TEST(NearestPoints, AreThoseOfBruteForceWhateverWasAskedBefore) {
   }
 }
 
-TEST(NearestPoints, ThoseAtTheSameDistanceBelongTogether) {
+TEST(NearestPoints, PointsAtTheSameDistanceBelongTogether) {
   const auto search = make_search(scenes::flat_grid(21, 0.002));
   NearestPoints nearest(scenes::kernels());
   EXPECT_NEAR(nearest.find(*search, Vec3::Zero(), 3), 0.002, 1e-12);
   EXPECT_EQ(found_by(nearest).size(), 5u) << "the node and its four neighbours";
 }
 
-TEST(NearestPoints, OfFewPointsAreAll) {
+TEST(NearestPoints, AreAllIfThereAreFewPoints) {
   PointCloud two;
   two.append({0, 0, 0}), two.append({0.01, 0, 0});
   NearestPoints nearest(scenes::kernels());
@@ -53,7 +53,7 @@ TEST(NearestPoints, OfFewPointsAreAll) {
 }
 
 // A corner node of a grid has its third neighbour across the square, a node of a side at one spacing.
-TEST(MeanSpacing, OfASquareGridIsItsSpacingButForTheCorners) {
+TEST(MeanSpacing, IsThatOfASquareGridButForTheCorners) {
   constexpr int kSide = 20;
   constexpr double kSpacing_m = 0.003;
   const auto search = make_search(scenes::flat_grid(kSide, kSpacing_m));

@@ -132,7 +132,7 @@ TEST(ThinnestAxis, IsThatOfAnEigenvalueSolver) {
   }
 }
 
-TEST(ThinnestAxis, OfADiagonalMatrixAndOfOneWithEqualAxes) {
+TEST(ThinnestAxis, IsFoundForADiagonalMatrixAndForEqualAxes) {
   EXPECT_EQ(thinnest_axis(Vec3(3, 1, 2).asDiagonal()).axis, Vec3(0, 1, 0));
   const ThinnestAxis alike = thinnest_axis(Eigen::Matrix3d::Identity());
   EXPECT_EQ(alike.smallest, alike.middle);

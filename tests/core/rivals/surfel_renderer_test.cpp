@@ -184,7 +184,7 @@ TEST(SurfelRenderer, PointsOfAllFramesGiveTheirStiffness) {
   EXPECT_NEAR(out.force_N.norm() / (out.proxy_W - Vec3(0.004, -0.005, 0)).norm(), sum / weights, 0.01);
 }
 
-TEST(SurfelRenderer, LeavesWithoutAForceAndAnEmptyFrameLetsGo) {
+TEST(SurfelRenderer, LeavingAndAnEmptyFrameEndTheContact) {
   SurfelRenderer r = over(scenes::flat_grid(60), {});
   press(r, 0.01);
   RenderOutput out = rest(r, {0, 0.02, 0});

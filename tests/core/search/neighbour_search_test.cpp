@@ -57,7 +57,7 @@ PointCloud with_regions(PointCloud cloud) {
 }
 
 // A mesh of neighbours needs the width of the rows, and the numbers of the points in their original order.
-TEST(NeighbourSearch, TellsHowWideTheRowsOfAnOrganisedFrameAre) {
+TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
   EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
   const PointCloud grid = scenes::flat_grid(30);
   const UniformGridSearch search(grid, 0.004);
@@ -119,7 +119,7 @@ TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
 }
 
 // The list comes from another order of the points: the columns must follow it.
-TEST(NeighbourSearch, ARegionStaysWithItsPoint) {
+TEST(NeighbourSearch, KeepsARegionWithItsPoint) {
   PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));
   GatheredPoints out;

@@ -95,7 +95,7 @@ Vector<6> axis(int k, double value = 1) {
   return value * Vector<6>::Unit(k);
 }
 
-TEST(QuadraticProgram, WithoutRowsTheTargetIsTheAnswer) {
+TEST(QuadraticProgram, TheTargetIsTheAnswerIfThereAreNoRows) {
   Random random(7);
   const Vector<6> target = vector<6>(random);
   for (const int capacity : {0, 5}) {
@@ -179,7 +179,7 @@ TEST(QuadraticProgram, AllRowsAtOnceAreAsOneAfterTheOther) {
   }
 }
 
-TEST(QuadraticProgram, NothingIsLeftAfterClear) {
+TEST(QuadraticProgram, ClearRemovesAllRows) {
   QuadraticProgram<6> program(20);
   for (int k = 0; k < 20; ++k) program.add(axis(k % 6), 1 + k);
   program.clear();
@@ -187,7 +187,7 @@ TEST(QuadraticProgram, NothingIsLeftAfterClear) {
   EXPECT_EQ(program.nearest(Vector<6>::Zero()).y, axis(5));
 }
 
-TEST(QuadraticProgram, ATargetThatIsNoNumberStalls) {
+TEST(QuadraticProgram, ATargetThatIsNotFiniteOrTooLargeStalls) {
   QuadraticProgram<6> program(1);
   program.add(axis(4), 1);
   for (const double bad : {std::nan(""), kInfinite, -kInfinite, 1e160}) {

@@ -122,7 +122,7 @@ TEST(RegionContacts, ABallLiesInAnObtuseCrease) {
   EXPECT_NEAR(held.pose.p_W.norm(), 0, 2e-4);
 }
 
-TEST(RegionContacts, WithoutRegionsTheToolFollows) {
+TEST(RegionContacts, TheToolFollowsTheDeviceIfThereAreNoRegions) {
   Held held(kBox, spheres_of_box());
   const ToolPose device{{0.3, 0.2, 0.1}, rotation({1, 0.5, 0})};
   held.move_to(device);
@@ -297,7 +297,7 @@ TEST(RegionTouch, IsThatOfAllPairs) {
     const ToolPose pose{{0.04, 0.0555 - 2e-4 * i + (i % 4 == 0 ? 0.02 : 0), 0.01},
                         rotation({0.02, 0.1 * i, 0})};
     double nearest_distance_m = std::numeric_limits<double>::infinity(), weights = 0, weighted = 0;
-    int pairs = 0, max_tool_leaves = 0;
+    int pairs = 0, touching_leaf_count = 0;
     for (const Sphere& leaf : leaves->leaves()) {
       const int before = pairs;
       for (std::size_t j = 0; j < cloud.size(); ++j) {
@@ -308,11 +308,11 @@ TEST(RegionTouch, IsThatOfAllPairs) {
         const double k = cloud.stiffness_N_per_m[j], weight = std::clamp((1e-4 - gap_m) / 2e-4, 0.0, 1.0);
         ++pairs, weights += weight, weighted += weight * (std::isnan(k) ? own : k);
       }
-      max_tool_leaves += pairs > before ? 1 : 0;
+      touching_leaf_count += pairs > before ? 1 : 0;
     }
     const RegionTouch touch = contacts.touched(pose, own);
     EXPECT_EQ(touch.leaf_pairs, pairs);
-    EXPECT_EQ(touch.max_tool_leaves, max_tool_leaves);
+    EXPECT_EQ(touch.touching_leaf_count, touching_leaf_count);
     EXPECT_NEAR(touch.stiffness_N_per_m, pairs > 0 ? weighted / weights : own, 1e-6);
     if (std::isfinite(nearest_distance_m))
       EXPECT_NEAR(touch.nearest_distance_m, nearest_distance_m, 1e-12);

@@ -62,7 +62,7 @@ TEST(SphereTreeRenderer, ABallIsKeptOutByASpringOfItsDepth) {
   EXPECT_TRUE(out.converged);
 }
 
-TEST(SphereTreeRenderer, BeyondTheLookAheadNothingIsTold) {
+TEST(SphereTreeRenderer, ReportsNoDistanceBeyondTheLookAhead) {
   SphereTreeRenderer r = renderer();
   r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
   const DeviceState device{{0, 0.0521, 0}, rotation({0.3, -0.2, 0.9})};
@@ -74,7 +74,7 @@ TEST(SphereTreeRenderer, BeyondTheLookAheadNothingIsTold) {
   EXPECT_EQ(out.state, ContactState::free);
 }
 
-TEST(SphereTreeRenderer, WithinTheLookAheadTheGapIsTold) {
+TEST(SphereTreeRenderer, ReportsTheGapWithinTheLookAhead) {
   SphereTreeRenderer r = renderer();
   r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
   const RenderOutput out = held(r, {{0, 0.051, 0}});
@@ -127,7 +127,7 @@ TEST(SphereTreeRenderer, AFrameThatSwallowsTheToolPushesItOut) {
   EXPECT_NEAR(out.proxy_W.y(), 0.05, 2e-4);
 }
 
-TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndToldOfOnce) {
+TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndReportedOnce) {
   SphereTreeRenderer r = renderer();
   r.on_frame(scenes::frame(regions_at({{0, 0, 0}}), 5));
   r.on_frame(scenes::frame(regions_at({{0, 0.1, 0}}), 4));

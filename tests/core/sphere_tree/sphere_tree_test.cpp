@@ -59,7 +59,7 @@ TEST(SphereTree, EveryNodeEnclosesItsChildrenAndEveryLeafHasOne) {
   EXPECT_LE(tree.top().size(), SphereTree::kBranching);
 }
 
-TEST(SphereTree, OfNothingIsEmpty) {
+TEST(SphereTree, IsEmptyIfThereAreNoSpheres) {
   SphereTree tree;
   tree.add({});
   tree.finish();
@@ -140,7 +140,7 @@ TEST(RegionTree, KeepsItsMemoryFromFrameToFrame) {
   EXPECT_EQ(tree.points().size(), cloud.size() - 5000);
 }
 
-TEST(RegionTree, WithoutRegionsIsEmpty) {
+TEST(RegionTree, IsEmptyIfThereAreNoRegions) {
   PointCloud cloud = scenes::random_cloud(100, 0.1, 5);
   RegionTree tree;
   tree.assign(cloud);
@@ -212,7 +212,7 @@ TEST(TreeCollision, KeepsTheDeepestPairsWhereRoomEnds) {
   EXPECT_EQ(collision.near({}, 0.002, {}), expected.size());
 }
 
-TEST(TreeCollision, NothingIsNearWhatIsEmptyOrNoNumber) {
+TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
   const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
   std::vector<LeafPair> buffer(100);
   const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {

@@ -78,7 +78,7 @@ double outside_of_cover_m(const VoxelTool& tool, int leaves) {
   const ToolSpheres made = make_tool_spheres(tool, leaves);
   EXPECT_LE(made.spheres.leaves().size(), static_cast<std::size_t>(leaves));
   EXPECT_LE(made.outside_m, made.inflation_m + kRounding_m) << leaves;
-  EXPECT_LT(made.inside_m, kRounding_m) << leaves;
+  EXPECT_LT(made.surface_outside_m, kRounding_m) << leaves;
   return made.outside_m;
 }
 
@@ -92,11 +92,11 @@ TEST(ToolSpheres, AreTheCloserTheMoreThereAre) {
 }
 
 // The same two numbers by other means: of a box the distance is known, and its surface is easily walked over.
-TEST(ToolSpheres, WhatIsToldOfABoxIsTrue) {
+TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
   const Vec3 half_m(0.02, 0.005, 0.01);
   const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
   const PointCloud directions = scenes::random_cloud(3000, 1, 8);
-  double outside_m = 0, inside_m = 0;
+  double outside_m = 0, surface_outside_m = 0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (const Sphere& leaf : made.spheres.leaves())
       outside_m = std::max(
@@ -107,15 +107,15 @@ TEST(ToolSpheres, WhatIsToldOfABoxIsTrue) {
     double min_m = 1;
     for (const Sphere& leaf : made.spheres.leaves())
       min_m = std::min(min_m, (half_m.cwiseProduct(path_length) - leaf.centre).norm() - leaf.radius_m);
-    inside_m = std::max(inside_m, min_m);
+    surface_outside_m = std::max(surface_outside_m, min_m);
   }
   EXPECT_GT(made.inflation_m, 1e-3);  // or there would be nothing to tell
   EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
   EXPECT_LT(outside_m, made.inflation_m + 1e-6);
-  EXPECT_LT(inside_m, 5e-5);
+  EXPECT_LT(surface_outside_m, 5e-5);
 }
 
-TEST(ToolSpheres, TellsNoLessThanItIs) {
+TEST(ToolSpheres, RoundsTheReportedErrorUp) {
   ToolSpheres made;
   made.outside_m = 0.001291;
   EXPECT_EQ(text(made),
@@ -126,12 +126,12 @@ TEST(ToolSpheres, ABallIsNearlyOneSphere) {
   const ToolSpheres made = make_tool_spheres(tool_of("ball"), 1);
   ASSERT_EQ(made.spheres.leaves().size(), 1u);
   EXPECT_LT(made.outside_m, 1e-3);
-  EXPECT_LT(made.inside_m, 1e-4);
+  EXPECT_LT(made.surface_outside_m, 1e-4);
 }
 
 // Two layers of nodes lie inside, each next to an end of the field. Balls of one of them alone would have to
 // grow by a voxel to cover the other side.
-TEST(ToolSpheres, OfAPlateOfAFewVoxels) {
+TEST(ToolSpheres, CoverAPlateOfAFewVoxelsClosely) {
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 half_m(0.53, 0.53, 0.53);
     half_m[axis] = 0.13;

@@ -91,7 +91,7 @@ TEST(HeightFit, TheErrorIsThatOfTheWidestWindowOnAPlane) {
   EXPECT_NEAR(std::sqrt(squares / 60), expected, 4 / std::sqrt(2 * 60.0) * expected);  // standard errors
 }
 
-TEST(HeightFit, NoiseIsToldFromEdges) {
+TEST(HeightFit, DistinguishesNoiseFromEdges) {
   for (const double sigma : {0.02, 0.2, 1.0, 3.0}) {
     HeightFit fit;
     fit.take(sampled(ridge, sigma, 7));
@@ -117,7 +117,7 @@ TEST(HeightFit, TheOrderOfThePointsDoesNotMatter) {
   for (double u = -7; u <= 7; u += 0.5) EXPECT_EQ(one.height(u, 0.3 * u), other.height(u, 0.3 * u));
 }
 
-TEST(HeightFit, WhereThereAreNoPointsNothingIsKnown) {
+TEST(HeightFit, MapCoversOnlyPlacesWithPoints) {
   PatchPoints points = sampled(tilted, 0, 1);
   for (std::size_t i = 0; i < points.size(); ++i) points.set_member(i, points.place(i).u < 0);
   HeightMap map = fitted(points, 0);

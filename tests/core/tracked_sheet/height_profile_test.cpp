@@ -49,7 +49,7 @@ TEST(HeightProfile, FindsTheShift) {
 }
 
 // Both of two sheets must agree: a shift by their distance matches only one of them.
-TEST(HeightProfile, ASecondSheetTellsWhichOneItIs) {
+TEST(HeightProfile, ASecondSheetShowsWhichOneItIs) {
   const HeightProfile before = profile({0, -3}, 0.2, 500, 1), now = profile({0, -3}, 0.2, 500, 2, 1.8, 20);
   EXPECT_NEAR(before.shift_of(now.smoothed(0.3), 3), 1.8, 0.15);
 }
@@ -60,7 +60,7 @@ TEST(HeightProfile, AValleyLiesBetweenTwoSheets) {
   EXPECT_EQ(p.valley_from(0, 1), 30);  // above there is none
 }
 
-TEST(HeightProfile, WithoutARangeThereIsNoValley) {
+TEST(HeightProfile, AnEmptyProfileHasNoValley) {
   EXPECT_EQ(HeightProfile().valley_from(0, 1), 0);
 }
 

@@ -54,7 +54,7 @@ TEST(SheetAcquisition, FindsPlaceNormalAndNoise) {
   }
 }
 
-TEST(SheetAcquisition, FromBelowItFacesDown) {
+TEST(SheetAcquisition, FacesDownIfItIsFoundFromBelow) {
   const auto sheet = found(planes({0}, 0.2, 3), Vec3(0, -0.01, 0));
   ASSERT_TRUE(sheet);
   EXPECT_LT(sheet->frame.normal_W().dot(kNormal), -std::cos(0.1));
@@ -69,7 +69,7 @@ TEST(SheetAcquisition, TheNearerOfTwoIsTheSheet) {
   EXPECT_NEAR(height_above(*lower, 0.02), 0, 0.1);
 }
 
-TEST(SheetAcquisition, WhereThereIsNoSurfaceThereIsNoSheet) {
+TEST(SheetAcquisition, FindsNoSheetIfThereIsNoSurface) {
   EXPECT_FALSE(found(PointCloud(), Vec3::Zero()));
   EXPECT_FALSE(found(planes({0}, 0, 1), Vec3(0, 0.5, 0))) << "too far away";
   PointCloud few;

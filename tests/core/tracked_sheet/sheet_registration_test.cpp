@@ -89,7 +89,7 @@ TEST(SheetRegistration, PointsThatDetermineNoPlaneGiveNoSlope) {
   }
 }
 
-TEST(SheetRegistration, WithoutPointsNothingMoved) {
+TEST(SheetRegistration, FindsNoMotionIfThereAreNoPoints) {
   const SheetShift shift = shift_of(PatchPoints(scenes::kernels()), 3, 0.1);
   EXPECT_EQ(shift.slope_u, 0);
   EXPECT_EQ(shift.slope_v, 0);

@@ -114,7 +114,7 @@ TEST(SheetTracker, LeavesASheetWithoutNoiseAsItIs) {
 
 // --- for tools: the points one by one ---
 
-TEST(SheetTracker, TellsHowFarTheNewestFrameMovedTheSheet) {
+TEST(SheetTracker, ReportsHowFarTheNewestFrameMovedTheSheet) {
   SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
   tracker.keep(plane(0, 0, 1));
   tracker.requery({Vec3(0, kUnit, 0), false});

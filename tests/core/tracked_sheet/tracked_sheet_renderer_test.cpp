@@ -75,7 +75,7 @@ TEST(TrackedSheetRenderer, APauseDoesNotProlongTheTimeForWhichALostSheetIsHeld) 
   Frame late = scenes::frame({}, 2);
   late.captured_s = late.arrives_s = 60;
   renderer.on_frame(late);
-  const double until_s = 60 + 2 * UsualInterval::kLongest * kInterval_s;
+  const double until_s = 60 + 2 * UsualInterval::kMaxRatio * kInterval_s;
   EXPECT_GT(force_N(-0.005, std::nextafter(until_s, 0.0)), 1);
   EXPECT_EQ(force_N(-0.005, until_s), 0);
 }

@@ -33,7 +33,7 @@ void add_face(CarriedMotion& to, const Vec3& middle_W, const Vec3& n_W, const Ve
     }
 }
 
-TEST(CarriedMotion, WithoutPlacesThereIsNone) {
+TEST(CarriedMotion, IsUnknownIfThereAreNoPlaces) {
   EXPECT_TRUE(CarriedMotion(kLever_m).empty());
   const CarriedMotion::Result result = CarriedMotion(kLever_m).about(kAbout_W);
   EXPECT_FALSE(result.known);
@@ -121,7 +121,7 @@ TEST(CarriedMotion, AnyMotionOfABoxIsFound) {
 }
 
 // x^2 / (x^2 + 4 e^2) of the motion.
-TEST(CarriedMotion, WhatNoiseMayExplainIsNotSure) {
+TEST(CarriedMotion, IsLessSureTheMoreNoiseMayExplainIt) {
   for (const double error_m : {0.0, 0.001, 0.01}) {
     CarriedMotion places(kLever_m);
     add_face(places, kAbout_W, Vec3::UnitY(), Vec3::UnitX(), {{0, 0.004, 0}, {0, 0, 0}}, error_m);

@@ -82,7 +82,7 @@ DeviceState approaching(int frame, const Vec3& up_W, const DeviceState& end) {
 // through the points of its windows. A window has n = (10 r_c / spacing)^2 = 1111 points at most: the height
 // then has the standard error sigma / sqrt(n), and the slope sigma / sqrt(n) / (10 r_c / sqrt(12)). A plate
 // lies on the highest of what is below it, and edges of windows are nearer: no more than a few of these.
-TEST(TrackedTool, OnANoisyPlaneErrorsAreThoseOfAFit) {
+TEST(TrackedTool, ErrorsOnANoisyPlaneAreThoseOfAFit) {
   for (const double sigma : {0.2, 1.0, 3.0}) {
     TrackedToolRenderer r = renderer();
     Panels panels(sigma * kUnit_m, 5);
@@ -126,7 +126,7 @@ TEST(TrackedTool, LiesOnTheRimOfAHole) {
 }
 
 // Every bit is that of the tool of chapter 6 if the scene has no noise and rests.
-TEST(TrackedTool, WithoutNoiseAndAtRestItIsThePlainTool) {
+TEST(TrackedTool, EqualsThePlainToolAtRestWithoutNoise) {
   TrackedToolRenderer r = renderer();
   ToolParameters p;
   p.max_force_N = 1000, p.max_torque_Nm = 100;

@@ -17,10 +17,11 @@ namespace {
 
 using Column = std::vector<double>;
 
-// A rule that returns given shares.
-class Told final : public FixtureRule {
+// A rule that returns given weights.
+class GivenWeights final : public FixtureRule {
  public:
-  Told(const FixtureValues& values, Column weights) : FixtureRule(values), weights_(std::move(weights)) {}
+  GivenWeights(const FixtureValues& values, Column weights)
+      : FixtureRule(values), weights_(std::move(weights)) {}
   Column weights(const PointCloud&) const override { return weights_; }
 
  private:
@@ -35,7 +36,7 @@ struct Rule {
 
 FixtureAssignment assignment(const std::vector<Rule>& rules) {
   std::vector<std::unique_ptr<const FixtureRule>> list;
-  for (const Rule& rule : rules) list.push_back(std::make_unique<Told>(rule.values, rule.weights));
+  for (const Rule& rule : rules) list.push_back(std::make_unique<GivenWeights>(rule.values, rule.weights));
   return FixtureAssignment(std::move(list));
 }
 
@@ -57,7 +58,7 @@ void expect_near(const Column& column, const Column& expected) {
 
 // --- columns ---
 
-TEST(FixtureAssignment, WithoutRulesNothingIsChanged) {
+TEST(FixtureAssignment, ChangesNothingIfThereAreNoRules) {
   const PointCloud plain = assigned({}, points(2));
   EXPECT_TRUE(plain.fixture_radius_m.empty() && plain.stiffness_N_per_m.empty());
   PointCloud own = points(2);
@@ -160,11 +161,11 @@ TEST(Schedule, IsEvenBetweenRowsAndConstantOutside) {
   for (const auto& [time_s, value] : expected) EXPECT_NEAR(strength(rows, time_s), value, 1e-15) << time_s;
 }
 
-TEST(Schedule, WithoutRowsIsAlwaysWhole) {
+TEST(Schedule, StrengthIsAlwaysOneIfThereAreNoRows) {
   for (const double time_s : {-1.0, 0.0, 1e6}) EXPECT_EQ(strength({}, time_s), 1);
 }
 
-TEST(Schedule, OfOneRowIsConstant) {
+TEST(Schedule, StrengthIsConstantIfThereIsOneRow) {
   for (const double time_s : {-1.0, 2.0, 1e6}) EXPECT_EQ(strength({2, 0.5}, time_s), 0.5);
 }
 
@@ -185,7 +186,7 @@ TEST(Schedule, MultipliesTheShare) {
 }
 
 // A rule that does not count does not give a stiffness either.
-TEST(Schedule, AtNothingTheStiffnessStaysTheRenderersOwn) {
+TEST(Schedule, StiffnessIsTheRenderersAtZeroStrength) {
   FixtureValues values = scheduled({1, 0, 1, 1});
   values.stiffness_N_per_m = 50;
   EXPECT_TRUE(std::isnan(assigned({{values, {1}}}, points(1), 0.5).stiffness_N_per_m.at(0)));
@@ -206,7 +207,7 @@ TEST(Schedule, ChangesWithTimeWhereItsStrengthDoes) {
 
 // --- what is refused ---
 
-TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
+TEST(FixtureValues, AreRefusedIfOutOfRangeOrOutOfOrder) {
   EXPECT_EQ(validate(FixtureValues{}), "");
   EXPECT_EQ(validate(FixtureValues{0, 0, {}}), "");
   EXPECT_EQ(validate(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: expected 0 or more, or -1");
@@ -226,7 +227,7 @@ FixtureAssignment by_hue(FixtureRole role, bool with_other_rule) {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   rules.push_back(std::make_unique<HueRange>(red));
   rules.push_back(std::make_unique<HueRange>(blue));
-  if (with_other_rule) rules.push_back(std::make_unique<Told>(FixtureValues{}, Column{}));
+  if (with_other_rule) rules.push_back(std::make_unique<GivenWeights>(FixtureValues{}, Column{}));
   return FixtureAssignment(std::move(rules));
 }
 

@@ -68,7 +68,7 @@ TEST(GuidanceTarget, TheMeanIsThatOfTheShares) {
   EXPECT_LT((target.mean_W - Vec3(1, 1, 1) / 1.75).norm(), 1e-15);
 }
 
-TEST(GuidanceTarget, NothingPickedIsNotSeen) {
+TEST(GuidanceTarget, IsNotVisibleIfNoPointIsPicked) {
   EXPECT_FALSE(guidance_target({}, {}).is_visible());
   const GuidanceTarget none = guidance_target(scenes::flat_grid(3), std::vector<double>(9, 0));
   EXPECT_FALSE(none.is_visible() || none.is_flat());
@@ -243,7 +243,7 @@ std::unique_ptr<const FixtureRule> near(const Vec3& point_m, FixtureRole role, d
   return std::make_unique<NearPoint>(settings);
 }
 
-TEST(GuidanceTarget, EveryGuidanceRuleTellsOneInTheirOrder) {
+TEST(GuidanceTarget, EveryGuidanceRuleHasOneInTheirOrder) {
   PointCloud cloud;
   for (int i = 0; i < 5; ++i) cloud.append({1.0 * i, 0, 0});
   cloud.append({kNaN, kNaN, kNaN});

@@ -33,7 +33,7 @@ class CacheSizeTest : public testing::Test {
   TestFolder folder_{"cache_size"};
 };
 
-TEST_F(CacheSizeTest, WhatWasUsedLongestAgoGoesFirst) {
+TEST_F(CacheSizeTest, RemovesTheLeastRecentlyUsedFilesFirst) {
   add("a.tool", 100, 30), add("b.spheres", 100, 50), add("c.tool", 100, 10), add("d.tool", 100, 40);
   EXPECT_EQ(cache_size(folder_.path()).bytes, 400u);
   EXPECT_EQ(shrink_cache(folder_.path(), 400).files, 4u);
@@ -64,7 +64,7 @@ TEST_F(CacheSizeTest, NoFolderHoldsNothing) {
 }
 
 // Written files make room for themselves, and reading one keeps it.
-TEST_F(CacheSizeTest, ItStaysBelowItsMaximum) {
+TEST_F(CacheSizeTest, WritingKeepsTheCacheBelowItsMaximum) {
   ::setenv("REMOTE_TOUCH_CACHE_MB", "0.0025", 1);  // 2500 bytes: two files
   const auto put = [](CacheWriter& pack) { pack.text(std::string(1000, 'x')); };
   const auto take = [](Unpacker& unpack) {

@@ -76,7 +76,7 @@ TEST(FigureFolder, AFileThatIsNoResultIsNotOverwritten) {
   const CommandLine line;
   EXPECT_EQ(refusal([&] { FigureFolder(line, folder.path(), kRuns); }),
             file.string() +
-                ": is there already and is no result of this program: expected another file, or --force");
+                ": exists already and is not a result of this program: expected another file, or --force");
   EXPECT_EQ(bytes_of(file), "of someone else");
 }
 
@@ -116,7 +116,7 @@ TEST(FigureFolder, AFailedClaimIsTheExitCode) {
   }
 }
 
-TEST(FigureFolder, WhereNothingWasMadeThatIsTheExitCode) {
+TEST(FigureFolder, ExitCodeIsBadInputIfNoFigureWasMade) {
   const TestFolder folder("figure_folder_test");
   const Claim none = claim_not_run("4.11", "needs a recording", "it is not there");
   EXPECT_EQ(told(folder.path(), {{"4.11", {none}}, {"4.12", {none}}}).code, kBadInput);

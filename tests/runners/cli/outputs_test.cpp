@@ -45,7 +45,7 @@ TEST_F(Outputs, TwoNamesOfOneFileAreRefused) {
   EXPECT_HAS(refusal_of(file("x"), file("y")), "is also the file of --json");
 }
 
-TEST_F(Outputs, NothingAndADeviceMayComeTwice) {
+TEST_F(Outputs, AnEmptyNameAndADeviceMayComeTwice) {
   EXPECT_EQ(refusal_of("", ""), kNone);
   EXPECT_EQ(refusal_of("/dev/null", "/dev/null"), kNone);
 }

@@ -66,7 +66,7 @@ TEST(ExperimentSections, SurviveARoundTripCompletely) {
   EXPECT_EQ(json["fixtures"][1]["label"], "valve");
 }
 
-TEST(ExperimentSections, OfTheLiveLoopSurviveToo) {
+TEST(ExperimentSections, SectionsOfTheLiveLoopAreKept) {
   const std::string text =
       task({"live.device_position_m=[0,0.1,0]", "live.device_scale=2", "safety.ramp_s=1"}).to_json();
   EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
@@ -180,7 +180,8 @@ TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
   EXPECT_EQ(refusal([] {
               task({"sequence=[]", R"(fixtures.0={"name": "everywhere", "role": "guidance"})"});
             }),
-            "fixtures.1.role = guidance: expected once where no step of a sequence activates or releases it");
+            "fixtures.1.role = guidance: expected at most once among fixtures that no step of a sequence "
+            "activates or releases");
   EXPECT_EQ(why("sequence.0.offset_m=[0,0,1]"),
             "sequence.0.offset_m: expected other than 0 for action = activate only");
   EXPECT_EQ(why("sequence.0.deadline_s=1"),

@@ -246,7 +246,7 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
 }
 
-TEST(Experiment, AKeyWithoutItsSectionIsToldWhereItBelongs) {
+TEST(Experiment, AKeyWithoutItsSectionIsRefusedWithASuggestion) {
   const auto refused = [](const std::string& assignment) {
     return refusal([&] { Experiment::load("fig4.12", {assignment}); });
   };

@@ -84,7 +84,7 @@ std::vector<int> indices(const std::vector<Frame>& frames) {
 
 // --- delivery ---
 
-TEST(FrameStream, WithoutDeliverySettingsFramesArriveWhenCaptured) {
+TEST(FrameStream, FramesArriveWhenCapturedByDefault) {
   const auto frames = received(Walk(50), 1, {});
   ASSERT_EQ(frames.size(), 50u);
   for (int j = 0; j < 50; ++j) {

@@ -63,7 +63,7 @@ TEST(RendererChanges, TimesDoNotGoBack) {
 }
 
 // r1 < r2 < r3 has to be true after all changes of one time, not between them.
-TEST(RendererChanges, ThoseOfOneTimeAreCheckedTogether) {
+TEST(RendererChanges, ChangesOfOneTimeAreCheckedTogether) {
   const std::string r1 = change("0.1", "renderer.r1_m", "0.00599"),
                     r2 = change("0.1", "renderer.r2_m", "0.00601");
   EXPECT_EQ(why("[" + r1 + "]"), "changes.0: then renderer.r1_m = 0.00599: expected below r2_m = 0.00501");
@@ -107,7 +107,7 @@ std::string digest_of(const Experiment& experiment) {
   return digest(simulate(experiment).columns());
 }
 
-TEST(RendererChanges, AtTimeZeroTheyAreSettings) {
+TEST(RendererChanges, ChangesAtTimeZeroAreSettings) {
   for (const auto& [parameter, value, set] :
        {std::tuple("stiffness_N_per_m", "900", "900"), std::tuple("r3_m", "0.013", "0.013"),
         std::tuple("velocity_estimate", "0", "false")}) {
@@ -146,7 +146,7 @@ TEST(RendererChanges, ASpringTwiceAsStiffPushesTwiceAsHard) {
 }
 
 // Once the estimate is off, v_hat is no part of the force (4.15).
-TEST(RendererChanges, WithoutTheEstimateTheSurfaceIsAtRest) {
+TEST(RendererChanges, SurfaceIsAtRestOnceTheEstimateIsOff) {
   const Trace changed = simulate(lift("[" + change("0.65", "renderer.velocity_estimate", "0") + "]"));
   EXPECT_GT(changed.surface_velocity_m_per_s[649], 0);
   for (std::size_t tick = 650; tick < 800; ++tick)

@@ -89,7 +89,7 @@ TEST(RendererContacts, EveryRendererOfThreeDegreesOfFreedomIsPressed) {
 }
 
 // A ball is held until its centre is behind the surface, a position on the surface until it has sunk 2.5 mm.
-TEST(RendererContacts, HowFarBehindTheSurfaceAPositionIsHeld) {
+TEST(RendererContacts, HeldDepthDependsOnTheDistanceOfThePosition) {
   EXPECT_EQ(held_depth_m({0.005}), 0);
   EXPECT_EQ(held_depth_m({0.0025}), 0);
   EXPECT_DOUBLE_EQ(held_depth_m({0.001}), 0.0015);

@@ -91,7 +91,7 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
     }
 }
 
-TEST(SensorFaultFrames, ASensorGoesOnWhereItsFramesDiffer) {
+TEST(SensorFaultFrames, FramesNeverEndIfTheirFaultsDiffer) {
   SensorFaults s;
   s.late_probability = 1, s.quantisation_m = 0.001;
   EXPECT_EQ(faulty(s).frame_count(), 41);
@@ -141,7 +141,7 @@ TEST(SensorFaultFrames, ShearMovesAlongTheNormalOfATiltedPlane) {
   }
 }
 
-TEST(SensorFaultFrames, WithoutAKnownOrMovingTruthThereIsNoShear) {
+TEST(SensorFaultFrames, NoShearIfTheTruthIsUnknownOrAtRest) {
   SensorFaults s;
   s.rolling_shutter_s = 0.02;
   MovingShape::Settings rests = rising_plane();
@@ -164,7 +164,7 @@ TEST(SensorFaultFrames, WithoutAKnownOrMovingTruthThereIsNoShear) {
 }
 
 // A plane that comes along the rays: what its pixels saw then lies on the same rays.
-TEST(SensorFaultFrames, ShearOfAnImageStaysOnTheRays) {
+TEST(SensorFaultFrames, ShearMovesThePointsOfAnImageAlongTheirRays) {
   class Wall final : public Scenario {
    public:
     double frame_rate_hz() const override { return 30; }

@@ -15,13 +15,13 @@ std::string npy(const std::string& text, const std::string& values) {
   return file + "\n" + values;
 }
 
-TEST(NpyArray, OfNumbers) {
+TEST(NpyArray, WritesNumbers) {
   const Column column{"a", "m", "", std::vector<double>{1.5, -2}, 1, {}};
   EXPECT_EQ(npy_array(column), npy("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }",
                                    std::string("\0\0\0\0\0\0\xf8\x3f\0\0\0\0\0\0\0\xc0", 16)));
 }
 
-TEST(NpyArray, OfVectorsCountsAndHashes) {
+TEST(NpyArray, WritesVectorsCountsAndHashes) {
   const Column counts{"a", "1", "", std::vector<std::int32_t>{1, 2, 3, -1, 5, 6}, 3, {}};
   EXPECT_EQ(npy_array(counts),
             npy("{'descr': '<i4', 'fortran_order': False, 'shape': (2, 3), }",
@@ -34,7 +34,7 @@ TEST(NpyArray, OfVectorsCountsAndHashes) {
 }
 
 // Characters have four bytes; U+00E9, U+20AC and U+1F600 have two, three and four in UTF-8.
-TEST(NpyArray, OfTexts) {
+TEST(NpyArray, WritesTexts) {
   const Column column{"a", "1", "", std::vector<std::string>{"\u00e9\u20ac\U0001f600", "x", ""}, 1, {}};
   const auto c = [](std::uint32_t character) { return raw(character); };
   EXPECT_EQ(npy_array(column),

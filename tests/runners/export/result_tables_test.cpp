@@ -12,7 +12,7 @@
 namespace remote_touch::result_tables_test {
 namespace {
 
-TEST(ResultTables, OfATraceAreItsColumnsAndTheDurations) {
+TEST(ResultTables, ATraceHasOneTableOfItsColumnsAndTheDurations) {
   const TestFolder folder("result_tables");
   const Trace trace = awkward_trace(5);
   write_trace(folder / "a.h5", trace, kProvenance, {1, 2, 3, 4, 5});
@@ -44,7 +44,7 @@ SweepResult two_by_two() {
 }
 
 // A row for each run; the last axis runs fastest, then the replicates.
-TEST(ResultTables, OfASweepHaveARowForEachRun) {
+TEST(ResultTables, ASweepHasARowForEachRun) {
   const TestFolder folder("result_tables");
   write_sweep(folder / "a.h5", two_by_two(), kProvenance);
   const std::vector<Table> tables = result_tables(Hdf5Reader(folder / "a.h5"));
@@ -65,7 +65,7 @@ TEST(ResultTables, OfASweepHaveARowForEachRun) {
   EXPECT_EQ(std::get<std::vector<std::string>>(tables[0].columns[5].values)[5], "no \u00e9lan");
 }
 
-TEST(ResultTables, OfASweepNameTheKindsOfNotes) {
+TEST(ResultTables, NameTheKindsOfNotesOfASweep) {
   const TestFolder folder("result_tables");
   SweepResult sweep = two_by_two();
   sweep.note_kinds = {"no contact", "frames unused"};
@@ -79,7 +79,7 @@ TEST(ResultTables, OfASweepNameTheKindsOfNotes) {
                                       "", ""}));
 }
 
-TEST(ResultTables, OfAFigureAreItsTables) {
+TEST(ResultTables, AFigureHasItsTables) {
   const TestFolder folder("result_tables");
   Figure figure;
   figure.name = "x";
@@ -99,7 +99,7 @@ TEST(ResultTables, OfAFigureAreItsTables) {
   EXPECT_EQ(std::get<std::vector<double>>(tables[1].columns[0].values), (std::vector<double>{1, 2}));
 }
 
-TEST(ResultTables, OfOtherFilesAreRefused) {
+TEST(ResultTables, OtherFilesAreRefused) {
   const TestFolder folder("result_tables");
   std::vector<Column> columns = awkward_trace(3).columns();
   std::get<std::vector<std::uint64_t>>(columns.back().values).pop_back();

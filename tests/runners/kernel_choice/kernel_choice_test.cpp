@@ -54,7 +54,7 @@ TEST_F(KernelChoiceTest, AForcedLevelIsNeitherMeasuredNorKept) {
 }
 
 // Any byte changed, cut anywhere, longer, a folder, or a sound file of times that cannot be.
-TEST_F(KernelChoiceTest, WhatIsDamagedIsMeasuredAgain) {
+TEST_F(KernelChoiceTest, DamagedFilesAreMeasuredAgain) {
   if (levels() == 1) GTEST_SKIP() << "this machine has one level only: nothing to choose";
   const std::size_t last = levels() - 1;
   chosen(folder_ / "cache", last);

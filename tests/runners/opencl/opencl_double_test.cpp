@@ -106,7 +106,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
     }
 }
 
-TEST_F(OpenClDoubleTest, WhatCannotBeDoneAtOnceIsLeftAsItWas) {
+TEST_F(OpenClDoubleTest, CloudsThatCannotBeProcessedAtOnceAreUnchanged) {
   const auto pipeline = opened();
   const FixtureAssignment fixtures = coloured_frames::rules_by_hue();
   const HueSteps steps = fixtures.hue_steps(0, 0).value();
@@ -165,7 +165,7 @@ TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
 }
 
 // Kernels that were built for a lost device are of no use when it is there again.
-TEST_F(OpenClDoubleTest, AfterAFailureKernelsAreBuiltAndTriedAnew) {
+TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedAnewAfterAFailure) {
   const auto pipeline = opened();
   library().failing = "clFinish", library().failing_call = 1;
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
@@ -189,7 +189,7 @@ TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
   EXPECT_EQ(depth_device_of(settings), "");  // of other settings
 }
 
-TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
+TEST_F(OpenClDoubleTest, ListingOfDevicesTimesOutIfDriversHang) {
   library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
   EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
   // The call throws at once while they still hang; ctest would not wait 10 hours for a test.

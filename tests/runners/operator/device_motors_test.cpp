@@ -15,7 +15,7 @@ Vec3 direction(std::mt19937& random) {
   return Vec3(normal(random), normal(random), normal(random)).normalized();
 }
 
-TEST(DeviceMotors, ADeviceWithAllOfThemExertsWhatItIsTold) {
+TEST(DeviceMotors, ADeviceWithAllOfThemExertsWhatIsCommanded) {
   std::mt19937 random(1);
   for (int i = 0; i < 50; ++i) {
     const Wrench commanded{5 * direction(random), direction(random)};

@@ -59,7 +59,7 @@ using Pair = std::pair<double, double>;
 
 // --- at rest ---
 
-TEST(OperatorModel, AFreeHandOnARestingPathStaysWhereItIs) {
+TEST(OperatorModel, AFreeHandOnARestingPathDoesNotMove) {
   std::mt19937 random(1);
   for (int run = 0; run < 50; ++run) {
     const DeviceState rest = at(10 * direction(random), 3 * direction(random));
@@ -136,7 +136,7 @@ TEST(OperatorModel, FollowsAnEvenMotionWithoutLag) {
   }
 }
 
-TEST(OperatorModel, WithoutAGripTheDeviceLeadsTheHand) {
+TEST(OperatorModel, TheDeviceLeadsTheHandIfThereIsNoGrip) {
   OperatorSettings s;
   s.grip = {0, 0};
   OperatorModel hand(s, kTick_s);
@@ -242,7 +242,7 @@ TEST(OperatorModel, MovesOnThroughMissedTicks) {
 
 // --- settings ---
 
-TEST(OperatorModel, PressesButtonsWhenItIsToldTo) {
+TEST(OperatorModel, PressesButtonsAtTheGivenTimes) {
   OperatorSettings s;
   s.presses = {0.125, 3, 0.25, 0.25, 0, 0.5, 0.25, 31, 0.5};
   OperatorModel hand(s, kTick_s);

@@ -14,7 +14,7 @@ DeviceState at(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
   return {p_W, rotation(turn)};
 }
 
-TEST(SimulatedHand, WithoutAnOperatorFollowsTheScriptExactly) {
+TEST(SimulatedHand, FollowsTheScriptExactlyIfThereIsNoOperator) {
   SimulatedHand hand({}, {}, kTick_s);
   RenderOutput out;
   out.force_N = {100, 0, 0};

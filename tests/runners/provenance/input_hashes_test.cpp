@@ -94,7 +94,7 @@ TEST_F(Inputs, AreTheFilesOfTheFramesAndNoOthers) {
   EXPECT_NE(text(), before);  // a name counts too
 }
 
-TEST_F(Inputs, OfTumFoldersHoldTheListsThatAreUsed) {
+TEST_F(Inputs, IncludeTheUsedListsOfTumFolders) {
   for (const std::string name : {"depth/a.png", "depth/b.png", "rgb/p.png", "rgb/q.png", "rgb/r.png"})
     folder_.write(name, "image " + name);
   folder_.write("depth.txt", "# list\n1.0 depth/a.png\n2.0 ./depth//b.png\n2.01 depth/a.png\n");
@@ -118,7 +118,7 @@ TEST_F(Inputs, NamedFromElsewhereComeFromTheFolder) {
   EXPECT_TRUE(fs::equivalent(folder_ / name, file));
 }
 
-TEST_F(Inputs, OfSeveralPartsAreOneLineARecording) {
+TEST_F(Inputs, HaveOneLineARecordingForSeveralParts) {
   write_depth_folder(false);
   const std::string cloud = folder_.write("x.pcd", "cloud").string();
   InputHashes hashes;
@@ -133,7 +133,7 @@ TEST_F(Inputs, OfSeveralPartsAreOneLineARecording) {
   EXPECT_EQ(input_hashes({part(0, 1), part(1, 2)}), text());
 }
 
-TEST_F(Inputs, ThatAreNotThereAreRefusedAsByARun) {
+TEST_F(Inputs, MissingOnesAreRefusedAsByARun) {
   const std::string nowhere = (folder_ / "nowhere").string();
   InputHashes hashes;
   EXPECT_THROW(hashes.add({{nowhere}}), MissingRecording);
@@ -148,7 +148,7 @@ TEST_F(Inputs, ThatAreNotThereAreRefusedAsByARun) {
   EXPECT_HAS(refused(part()), "camera.json: is missing");
 }
 
-TEST_F(Inputs, ThatChangeDuringARunAreRefused) {
+TEST_F(Inputs, AreRefusedIfTheyChangeDuringARun) {
   write_depth_folder(false);
   const std::string before = text(0, 1);
   require_unchanged({part(0, 1)}, before);
@@ -162,7 +162,7 @@ TEST_F(Inputs, ThatChangeDuringARunAreRefused) {
 
 // The first run that ends changes the recording: no run of that call is kept, and the next call does them
 // all.
-TEST_F(Inputs, ThatChangeDuringASweepUndoItsRuns) {
+TEST_F(Inputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
   const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
   const std::string file = folder_.write("cloud.pcd", cloud).string();
   const Sweep sweep =
@@ -187,7 +187,7 @@ TEST_F(Inputs, ThatChangeDuringASweepUndoItsRuns) {
   EXPECT_EQ(read_sweep(result).result.runs_in(RunState::done).size(), 3u);
 }
 
-TEST(ChangedInputs, AreToldByPath) {
+TEST(ChangedInputs, AreListedByPath) {
   const std::string a = "a: b: 1 file(s), 2 bytes, sha256 00", b = "b: 3 file(s), 4 bytes, sha256 11";
   EXPECT_TRUE(changed_inputs("", "").empty());
   EXPECT_TRUE(changed_inputs(a + "\n" + b, a + "\n" + b).empty());
@@ -209,7 +209,7 @@ TEST(NamedInputs, AreThoseOfTheScenario) {
             (std::vector<RecordingPart>{{"rgbd/visp_organ_table", 0, 4}}));
 }
 
-TEST(NamedInputs, OfASweepAreThoseOfAllItsCells) {
+TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
   EXPECT_TRUE(Sweep::load("fig4.13").inputs().empty());
   const Sweep sweep = Sweep::from_json(
       R"({"experiment": "fig4.16-recorded", "measures": ["mean_steps"],
@@ -220,7 +220,7 @@ TEST(NamedInputs, OfASweepAreThoseOfAllItsCells) {
 }
 
 // Runs on x are done, those on y are not: y may be mended.
-TEST(NamedInputs, OfAnUnfinishedSweepStayWhereRunsAreDone) {
+TEST(NamedInputs, AnUnfinishedSweepKeepsThoseOfDoneRuns) {
   const TestFolder folder("input_hashes_test_session");
   const Sweep sweep = Sweep::from_json(
       R"({"experiment": "fig4.16-recorded", "measures": ["mean_steps"],

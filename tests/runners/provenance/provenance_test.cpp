@@ -11,7 +11,7 @@ class Provenance : public testing::Test {
   ~Provenance() override { identify_program({}); }
 };
 
-TEST_F(Provenance, OfThisProgramNamesNoOther) {
+TEST_F(Provenance, NamesNoOtherProgramByDefault) {
   EXPECT_EQ(program_text(), "remote-touch");
   const TextAttributes of = provenance("{}", Recipe{"run", "fig4.11"}, "x86-64");
   EXPECT_EQ(attribute(of, "command"), "remote-touch run fig4.11");
@@ -19,7 +19,7 @@ TEST_F(Provenance, OfThisProgramNamesNoOther) {
   EXPECT_NE(attribute(of, "source_digest"), "");
 }
 
-TEST_F(Provenance, OfAProgramWithItsOwnCatalogNamesIt) {
+TEST_F(Provenance, NamesAProgramWithItsOwnCatalog) {
   identify_program({"press lab", "12ab"});
   const TextAttributes of = provenance("{}", Recipe{"sweep", "mine.json"}, "");
   EXPECT_EQ(attribute(of, "program"), "press lab");

@@ -39,7 +39,7 @@ TEST(Recipe, IsACommand) {
             "remote-touch compare a.h5 b.h5 --tolerance '*=1' --tolerance force=1e-9,1e-6");
 }
 
-TEST(Recipe, OfAnotherKindIsNone) {
+TEST(Recipe, IsNoneIfTheTextIsOfAnotherKind) {
   for (const char* text : {"", "remote-touch run fig4.11", "{}", "[]", "null", "{\"action\": \"run\"}",
                            "{\"subject\": \"fig4.11\"}", "{\"action\": 1, \"subject\": 2}",
                            "{\"action\": \"touch evil\", \"subject\": \"x\"}",
@@ -55,7 +55,7 @@ TEST(Recipe, OfAnotherKindIsNone) {
   EXPECT_FALSE(recipe_of({}));
 }
 
-TEST(Recipe, OfAFileWithAnyNameIsStored) {
+TEST(Recipe, AFileWithAnyNameIsStored) {
   EXPECT_TRUE(recipe_of({{kRecipe, to_json({"run", "\xff.json"})}}));
 }
 

@@ -28,7 +28,7 @@ BAD = {
     "a zero byte": (lambda: rt.run("fig4.12\0"), "fig4.12"),
     "lines": (lambda: rt.run("a\nb"), "a b: "),
     "an unwritable folder": (lambda: rt.run(PRESS, output="absent/a.h5"), "absent/a.h5: "),
-    "another's file": (lambda: rt.run(PRESS, output="other.txt"), "other.txt: is there already and is no result"),
+    "another's file": (lambda: rt.run(PRESS, output="other.txt"), "other.txt: exists already and is not a result"),
     "an unknown sweep": (lambda: rt.sweep("absent"), "absent: "),
     "no threads": (lambda: rt.sweep("absent", threads=0), "threads = 0: expected 1 to 4096"),
     "threads that are no number": (lambda: rt.sweep("absent", threads="all"), "threads = 'all': expected an integer"),

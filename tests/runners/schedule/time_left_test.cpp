@@ -26,7 +26,7 @@ TEST(TimeLeft, TakesTheSpeedOfTheMachineFromWhatIsDone) {
   EXPECT_DOUBLE_EQ(left.all_s, 60);
 }
 
-TEST(TimeLeft, OfARunningJobGoesDownToATwentieth) {
+TEST(TimeLeft, ARunningJobCountsForATwentiethAtLeast) {
   EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 4}}, 1).all_s, 6);
   EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 40}}, 1).all_s, 0.5);
 }

@@ -88,13 +88,13 @@ TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   const auto own = chosen_methods({mine, "proxy"});
   EXPECT_EQ(own.front().name, "mine");
   EXPECT_EQ(own.front().title, "my own");
-  EXPECT_HAS(refusal([&] { chosen_methods({mine, mine}); }), "method mine: comes twice");
+  EXPECT_HAS(refusal([&] { chosen_methods({mine, mine}); }), "method mine: appears twice");
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("a b.json", "{}").string()}); }), "expected letters");
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("bad.json", "[").string()}); }), "expected JSON");
   EXPECT_HAS(refusal([] { chosen_scenes({"none.json"}); }), "none.json: cannot be read");
   EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected finger-proxy, ");
   EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
-  EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");
+  EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "appears twice");
 }
 
 std::vector<std::string> names(const auto& list) {
@@ -126,7 +126,7 @@ TEST(Benchmark, ToolsAreComparedWithTools) {
   EXPECT_HAS(refusal([&] { chosen({}, {"flat-press", "tool-slot"}); }), "scene tool-slot: expected only");
 }
 
-TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
+TEST(Benchmark, NamesWhatIsWrongInAFile) {
   const auto scene = [](const std::string& text) {
     return refusal([&] { read_benchmark_scene("x", text); });
   };
@@ -145,7 +145,7 @@ TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
   const Method proxy = chosen_methods({"proxy"}).front();
   BenchmarkScene with_renderer = chosen_scenes({"flat-press"}).front();
   with_renderer.experiment = R"({"renderer": {"name": "proxy"}})";
-  EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "methods bring it");
+  EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "methods define it");
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
 }
 

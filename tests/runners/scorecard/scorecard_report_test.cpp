@@ -56,7 +56,7 @@ Json json_of(const ScorecardReport& report) {
   return parse_json(to_json(report), "scorecard.json");
 }
 
-TEST(Score, CountsSuccessesAndTellsWhoStandsOut) {
+TEST(Score, CountsSuccessesAndNamesBestAndWorst) {
   const Scorecard card = two_scenes();
   const SceneScore& scene = card.scenes[0];
   EXPECT_EQ(scene.success[0].at_level[0].events, 1);  // twenty equal runs without noise count once
@@ -130,7 +130,7 @@ TEST(ScorecardFigure, HasARowForEverySceneMethodAndLevel) {
   EXPECT_EQ(figure.panels.size(), 2u);
 }
 
-TEST(ScorecardReport, TellsWhatItIsOf) {
+TEST(ScorecardReport, DescribesItsOrigin) {
   const Json json = json_of(report_of(two_scenes()));
   EXPECT_EQ(json["schema"], kScorecardSchema);
   EXPECT_EQ(json["origin"], "remote-touch 1");
@@ -281,7 +281,7 @@ TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
   EXPECT_EQ(json_of(report)["audit"], nullptr);  // a scene of that name that measures no energy
 }
 
-TEST(Costs, WhatWasNotMeasuredIsNotSorted) {
+TEST(Costs, UnmeasuredCostsAreNotSorted) {
   ScorecardReport report = report_of(two_scenes());
   const double none = std::nan("");
   report.costs = {{"own-noise", "one", none, none},

@@ -45,7 +45,7 @@ TEST(LiveSettings, ACameraIsTurnedAndMoved) {
   EXPECT_EQ(camera_registration(s).translation(), Vec3(1, 2, 3));
 }
 
-TEST(LiveSettings, WhereTheDeviceStandsMovesNoCamera) {
+TEST(LiveSettings, PlaceOfTheDeviceDoesNotMoveTheCamera) {
   LiveSettings s;
   s.device_position_m = Vec3(1, 2, 3), s.device_rotation_deg = Vec3(0, 0, 90), s.device_scale = 2;
   EXPECT_EQ(camera_registration(s).matrix(), Eigen::Matrix4d::Identity());

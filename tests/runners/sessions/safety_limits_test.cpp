@@ -42,7 +42,7 @@ TEST(SafetyLimits, ASlewRateThatCannotLetGoIsRefused) {
   force.force_slew_N_per_s = 499;
   EXPECT_EQ(validate(force),
             "force_slew_N_per_s = 499.000000: expected max_force_N / 0.01 s = 500.000000 or more, "
-            "so that the device is let go in that time");
+            "so that the maximum can fall to 0 in that time");
   SafetyLimits torque;
   torque.torque_slew_Nm_per_s = 20;
   EXPECT_EQ(validate(torque), "");

@@ -8,7 +8,7 @@
 namespace remote_touch::sensed_points_test {
 namespace {
 
-TEST(SensedPoints, OfImagesAreTheirMeasuredPixels) {
+TEST(SensedPoints, CountTheMeasuredPixelsOfImages) {
   SensorView view{{4, 1, 100, 100, 2, 0.5}, 0.0005, 30, true, RigidTransform::Identity()};
   SensedPoints points;
   EXPECT_EQ(points.text(), "0 % of 0 points measured, without colours");
@@ -20,7 +20,7 @@ TEST(SensedPoints, OfImagesAreTheirMeasuredPixels) {
   EXPECT_EQ(layout_text(view), "4 x 1 pixels");
 }
 
-TEST(SensedPoints, OfCloudsAreTheirFinitePoints) {
+TEST(SensedPoints, CountTheFinitePointsOfClouds) {
   SensorView view;
   view.cloud = CloudLayout{true, 0, 3};
   SensorFrame frame;

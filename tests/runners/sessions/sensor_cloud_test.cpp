@@ -43,7 +43,7 @@ TEST(SensorCloud, IsTheClosedFormOfItsPixels) {
 }
 
 // The pose is the one that was given, not the one that the source knows.
-TEST(SensorCloud, TellsWhichImageItIs) {
+TEST(SensorCloud, HasTheCameraAndTheGivenPose) {
   SensorView view = kView;
   view.X_WC = RigidTransform(Eigen::Translation3d(9, 9, 9));
   const PointCloud cloud = cloud_of(frame_of(1000), view, somewhere());

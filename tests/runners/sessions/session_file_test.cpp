@@ -131,7 +131,7 @@ TEST(SessionFile, GivesBackTheViewToTheBit) {
   }
 }
 
-TEST(SessionFile, WithoutATickOrAFrameItIsASession) {
+TEST(SessionFile, ASessionMayHaveNoTicksAndNoFrames) {
   const TestFolder folder("session_file");
   const SessionReader read(SmallSession{}.write(folder / "session.h5"));
   EXPECT_EQ(read.tick_count(), 0u);
@@ -285,7 +285,7 @@ TEST(SessionFile, ColumnsThatDoNotFitAreRefused) {
   });
 }
 
-TEST(SessionFile, WhatNoLoopRecordsIsRefused) {
+TEST(SessionFile, RefusesWhatNoLoopRecords) {
   const char *ticks = "its ticks are out of order", *frames = "its frames are out of order",
              *changes = "its changes of parameters cannot be";
   expect_refused({
@@ -331,8 +331,8 @@ TEST(SessionFile, WhatNoLoopRecordsIsRefused) {
        frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::quiet_NaN(); }, frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::infinity(); }, frames},
-      {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that no buttons make"},
-      {[](RawSession& s) { s.buttons[2] = 1e10; }, "/ticks/buttons has values that no buttons make"},
+      {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that are not button states"},
+      {[](RawSession& s) { s.buttons[2] = 1e10; }, "/ticks/buttons has values that are not button states"},
   });
 }
 
@@ -382,8 +382,8 @@ TEST(SessionFile, AViewThatNoCameraHasIsRefused) {
        "metres_per_unit = 0"},
       {[](RawSession& s) { s.view_with("\"frame_rate_hz\": 30", "\"frame_rate_hz\": -30"); },
        "frame_rate_hz = -30"},
-      {[](RawSession& s) { s.view_with("[1, 0", "[2, 0"); }, "X_WC is no pose"},
-      {[](RawSession& s) { s.view_with("[1, 0", "[-1, 0"); }, "X_WC is no pose"},
+      {[](RawSession& s) { s.view_with("[1, 0", "[2, 0"); }, "X_WC is not a pose"},
+      {[](RawSession& s) { s.view_with("[1, 0", "[-1, 0"); }, "X_WC is not a pose"},
   });
 }
 

@@ -165,7 +165,7 @@ TEST_P(SessionRecorderOf, MakesTheFileThatTheWriterMakes) {
     recorded.fill(recorder, [](std::size_t, std::size_t) {});
     EXPECT_TRUE(fs::exists(folder / "x.h5.unfinished"));
     EXPECT_FALSE(fs::exists(folder / "x.h5"));
-    recorder.finish({{"ended", "its duration is over"}});
+    recorder.finish({{"ended", "its duration has elapsed"}});
     EXPECT_EQ(recorder.keep(), "");
     EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"whole.h5", "x.h5"}));
     const Hdf5Content made = read_hdf5(folder / "x.h5");
@@ -173,7 +173,7 @@ TEST_P(SessionRecorderOf, MakesTheFileThatTheWriterMakes) {
     EXPECT_EQ(rows_of(made, "/ticks/number"), recorded.session.ticks.size());
     EXPECT_EQ(rows_of(made, "/frames/number"), recorded.session.frames.size());
     EXPECT_EQ(rows_of(made, "/changes/tick"), recorded.changes.size());
-    EXPECT_EQ(attribute(made.attributes, "ended"), "its duration is over");
+    EXPECT_EQ(attribute(made.attributes, "ended"), "its duration has elapsed");
     fs::remove(folder / "x.h5");
   }
 }
@@ -207,7 +207,7 @@ TEST_P(SessionRecorderOf, KilledAtAnyMomentKeepsEveryBlock) {
         if (by_itself && ticks >= when) ::raise(SIGKILL);
       });
       counts.finishing = 1;
-      recorder.finish({{"ended", "its duration is over"}});
+      recorder.finish({{"ended", "its duration has elapsed"}});
       ::_exit(0);
     }
     if (!by_itself) {
@@ -267,7 +267,7 @@ TEST_P(SessionRecorderOf, CutAnywhereItIsTheBeginning) {
       const UnfinishedSession found = recover_session(cut, folder / "r.h5");
       EXPECT_GE(found.ticks, least) << "a longer file has no fewer ticks";
       least = found.ticks;
-      EXPECT_EQ(found.is_whole, false);
+      EXPECT_EQ(found.has_end, false);
       const Hdf5Content part = read_hdf5(folder / "r.h5");
       expect_beginning(part, whole);
       EXPECT_EQ(attribute(part.attributes, "ended"), kInterruptedRecording);
@@ -320,17 +320,17 @@ TEST(SessionRecorder, AFileThatCannotBeMadeLeavesTheWhole) {
     recorded.fill(recorder, [](std::size_t, std::size_t) {});
     fs::create_directory(folder / "x.h5");
     EXPECT_HAS(refusal([&] {
-                 recorder.finish({{"ended", "its duration is over"}, {"notes", "n"}});
+                 recorder.finish({{"ended", "its duration has elapsed"}, {"notes", "n"}});
                }),
                "x.h5: cannot be written");
     EXPECT_HAS(recorder.keep(), "x.h5.unfinished keeps 500 ticks and 16 frames");
   }
-  EXPECT_TRUE(read_unfinished(folder / "x.h5.unfinished").is_whole);
+  EXPECT_TRUE(read_unfinished(folder / "x.h5.unfinished").has_end);
   recover_session(folder / "x.h5.unfinished", folder / "r.h5");
   const Hdf5Content made = read_hdf5(folder / "r.h5");
   expect_beginning(made, whole);
   EXPECT_EQ(rows_of(made, "/ticks/number"), 500u);
-  EXPECT_EQ(attribute(made.attributes, "ended"), "its duration is over");
+  EXPECT_EQ(attribute(made.attributes, "ended"), "its duration has elapsed");
   EXPECT_EQ(attribute(made.attributes, "notes"), "n");
   EXPECT_TRUE(fs::exists(folder / "x.h5.unfinished")) << "only the user removes it";
 }

@@ -91,7 +91,7 @@ TEST_F(SessionSceneTest, AFrameThatWasReplacedIsNotSaidToBeAfterTheEnd) {
             file_.string() + ": 1 of 2 frames were not used: newer ones replaced them, or they were lost");
 }
 
-TEST_F(SessionSceneTest, WithoutFramesItIsRefused) {
+TEST_F(SessionSceneTest, IsRefusedIfThereAreNoFrames) {
   session_.frames.clear(), session_.ticks.clear();
   EXPECT_EQ(refusal([this] { scene(); }), file_.string() + ": has no frames: expected a session with some");
   session_.write(file_);
@@ -138,7 +138,7 @@ TEST_F(SessionSceneTest, ASessionOfOneTickHasAHand) {
   EXPECT_EQ(hand.duration_s(), 4 / 500.0);
 }
 
-TEST_F(SessionSceneTest, WithoutTicksThereIsNoHand) {
+TEST_F(SessionSceneTest, HandIsRefusedIfThereAreNoTicks) {
   session_.ticks.clear();
   EXPECT_EQ(refusal([this] { hand(); }), file_.string() + ": has no ticks: expected a session with some");
 }

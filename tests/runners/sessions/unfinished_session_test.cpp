@@ -114,7 +114,7 @@ TEST_F(UnfinishedSessionFile, RefusesWhatIsNoSession) {
   const auto refused = [&](const std::string& bytes) {
     return refusal([&] { recover_session(folder_.write("x", bytes), folder_ / "r.h5"); });
   };
-  EXPECT_HAS(refused(""), "x: is no unfinished recording");
+  EXPECT_HAS(refused(""), "x: is not an unfinished recording");
   EXPECT_HAS(refused(opening), "its first block is not whole");
   EXPECT_HAS(refused(opening + std::string(1000, '\x5a')), "its first block is not whole");
 }

@@ -69,7 +69,7 @@ TEST(Titles, NameWhatWasChanged) {
             "a lift, changed: seed=3, duration_s=2");
 }
 
-TEST(Titles, OfTheUserAreKept) {
+TEST(Titles, TitlesOfTheUserAreKept) {
   EXPECT_EQ(titled(R"({"title": "a lift"})", {"seed=2", "title=mine"}), "mine");
   EXPECT_EQ(titled(R"({"title": ""})", {"seed=2"}), "");
   EXPECT_EQ(titled("{}", {"seed=2"}), "none");

@@ -50,7 +50,7 @@ TEST(FixtureNotes, ARuleThatSelectsNothingInFirstAndLastFrameIsNamed) {
   EXPECT_EQ(fixture_notes(beyond_1_and_3(), same, same).size(), 2u);
 }
 
-TEST(FixtureNotes, WithoutRulesOrFramesThereAreNone) {
+TEST(FixtureNotes, AreNoneIfThereAreNoRulesOrFrames) {
   EXPECT_TRUE(fixture_notes({}, points_at(0), points_at(0)).empty());
   EXPECT_TRUE(fixture_notes(beyond_1_and_3(), nullptr, nullptr).empty());
 }

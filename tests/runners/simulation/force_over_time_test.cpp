@@ -89,7 +89,7 @@ TEST(ForceOverTime, CountsFromTheArrivalOfTheFrame) {
 
 // The cloud stops to come while v_hat is 0.1 m/s: the force may go on as if it rose for max_prediction_s,
 // no longer.
-TEST(ForceOverTime, StaysBoundedWhenTheStreamStops) {
+TEST(ForceOverTime, IsBoundedWhenTheStreamStops) {
   const Trace trace = simulate(Experiment::load(
       "fig4.12", {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0",
                   "scenario.rise_s=0.6666666666666666", "scenario.acceleration_s=0", "duration_s=4"}));

@@ -130,7 +130,7 @@ TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
   EXPECT_HAS(line(pcd(false, false), "god-object"), "of a PCD file: HEIGHT above 1");
   EXPECT_HAS(
       line(pcd(false, false), "surfels"),
-      "renderer.view = [0, -1, 0]: the points of this recording are no image: expected the direction in "
+      "renderer.view = [0, -1, 0]: the points of this recording are not an image: expected the direction in "
       "which its sensor looks, [0, 0, 1]");
 }
 
@@ -145,7 +145,7 @@ TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
                "needs forbidden regions");
 }
 
-TEST_F(FrameNeeds, AViewThatIsToldIsEnough) {
+TEST_F(FrameNeeds, AGivenViewIsEnough) {
   const Kind cloud = pcd(false, false);
   for (const char* name : {"surfels", "averaged-proxy"}) {
     const Method told{name, R"(, "view": [0, 0.1, 1])", "", "the view is told"};
@@ -157,7 +157,7 @@ TEST_F(FrameNeeds, FaultsAlongAWrongViewAreRefused) {
   const std::string faults = R"(, "faults": {"quantisation_m": 0.001)";
   const Kind cloud = pcd(false, false);
   EXPECT_HAS(refusal([&] { run(press_on(cloud, R"({"name": "proxy"})", faults + "}")); }),
-             "faults.view_direction = [0, -1, 0]: the points of this recording are no image");
+             "faults.view_direction = [0, -1, 0]: the points of this recording are not an image");
   const Method proxy{"proxy", "", "", ""};
   expect_force_or_refusal(cloud, proxy, faults + R"(, "view_direction": [0, 0, 1]})");
   expect_force_or_refusal(cloud, proxy, R"(, "faults": {"dropout_probability": 0.1})");

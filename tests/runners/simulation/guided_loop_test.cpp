@@ -92,7 +92,7 @@ TEST(GuidedLoop, HandAndGuidanceMeetWhereTheirSpringsAreEven) {
   EXPECT_EQ(trace.intended_position_m[end], Vec3(0.02, 0.05, 0));
 }
 
-TEST(GuidedLoop, AHandThatLetsGoIsLedToTheGoal) {
+TEST(GuidedLoop, AHandThatReleasesItsGripIsLedToTheGoal) {
   const Trace trace = beside_a_goal({"operator.grip=[[1,1],[1,0]]"});
   EXPECT_GT(trace.hip_position_m[999].x(), 0.0119);
   EXPECT_LT((trace.hip_position_m[trace.length() - 1] - Vec3(0, 0.05, 0)).norm(), 1e-9);
@@ -129,7 +129,7 @@ TEST(GuidedLoop, TurnsMeetWhereTheirSpringsAreEven) {
 }
 
 // 7.5.2: a device without a motor for the roll cannot exert the torque that is left, and it never vanishes.
-TEST(GuidedLoop, WithoutAMotorForTheRollATorqueRemains) {
+TEST(GuidedLoop, ATorqueRemainsIfTheRollHasNoMotor) {
   const Trace trace = of_a_tool("[40,0,0]", {"device.torque_x=false", "operator.grip=[[0,0]]"});
   for (std::size_t i = 0; i < trace.length(); i += 100) {
     ASSERT_LT((trace.guidance_torque_Nm[i] - Vec3(40 * kDegree * 200 * 9e-4, 0, 0)).norm(), 1e-9) << i;

@@ -85,7 +85,7 @@ std::vector<Vec3> grid(double columns_m, double rows_m, double from_x_m = -0.015
 }
 
 // A rectangle with sides a and b leaves a gap of half its diagonal.
-TEST(PointGap, OfAGridIsHalfTheDiagonalOfACell) {
+TEST(PointGap, IsHalfTheDiagonalOfACellOfAGrid) {
   EXPECT_EQ(widest_gap(grid(0.00707, 0.00707), Vec3::Zero(), kBall_m, kKnown_m).radius_m, 0);
   EXPECT_NEAR(widest_gap(grid(0.00708, 0.00708), Vec3::Zero(), kBall_m, kKnown_m).radius_m,
               0.00708 / std::sqrt(2.0), 1e-12);

@@ -70,7 +70,7 @@ TEST(PopThrough, IsNotThatTheHandSlidesOffTheEdge) {
 }
 
 // The tool moves from the back of the sheet to its front and back again.
-TEST(PopThrough, IsNotThatAToolStaysBehindASheet) {
+TEST(PopThrough, AToolThatReturnsBehindASheetDidNotPopThrough) {
   const Trace trace = simulate(Experiment::load("tool-sheet"));
   EXPECT_LT(end_distance_m(trace), -0.02);
   EXPECT_EQ(popped_through(trace), 0);

@@ -84,7 +84,7 @@ std::vector<Note> watched(const std::vector<double>& depths_m, const std::option
   return watch.notes();
 }
 
-TEST(SurfaceWatch, HasNoNoteOnAHandThatStaysOnTheSurface) {
+TEST(SurfaceWatch, HasNoNoteOnAHandAtTheSurface) {
   EXPECT_EQ(kinds(watched({0.5, 0.496, 0.512}, kTouches, {0.1, 0, 0.51})), Kinds{});
 }
 

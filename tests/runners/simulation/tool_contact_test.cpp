@@ -135,7 +135,7 @@ TEST(ToolContact, ASlabAtRestIsCarriedIfAFrameShowsThePlaneInItByContinuous) {
 // (4.15) for a tool: a plane rises evenly under a held slab at 0.1 m/s, 10 cm in 1 s, 3.33 mm a frame.
 // Without the term the force jumps by k v / f_c at each frame, with it not at all, with the printed sign by
 // twice that.
-TEST(ToolContact, BetweenFramesTheForceGoesOnWithTheSurface) {
+TEST(ToolContact, ForceFollowsTheSurfaceBetweenFrames) {
   const auto max_jump_N = [](const std::string& sign) {
     const Trace trace =
         run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_height_m": -0.02, "wait_s": 0.1,

@@ -110,7 +110,7 @@ TEST(ToolCrossings, ThereAreNoneWherePointsAreMerged) {
 }
 
 // The tool comes from the back of a surface. The printed rule pulls it through.
-TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
+TEST(ToolCrossings, VoxelsPullAToolThroughFromTheBack) {
   EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);
   EXPECT_EQ(audited("tool-sheet", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
@@ -134,7 +134,7 @@ TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
 }
 
 // Walls that close to less than the tool's thickness: no pose keeps their points out.
-TEST(ToolCrossings, BetweenClosingWallsOnlyFramesPutPointsIntoTheToolByTheContinuousRule) {
+TEST(ToolCrossings, TheContinuousRuleMovesIntoNoPointsBetweenClosingWalls) {
   EXPECT_EQ(audited("tool-wedge", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-wedge", "look-ahead", kLookAhead_m).entered, 0);
   EXPECT_GT(audited("tool-wedge", "voxels", kVoxels_m).entered, 0);

@@ -65,7 +65,7 @@ Heights slide(const std::string& renderer, double sigma, int seed) {
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum / n * sum / n)), std::sqrt(jumps / updates)};
 }
 
-TEST(TrackedSheet, WithoutNoiseItIsTheProxyOfChapter4) {
+TEST(TrackedSheet, EqualsTheProxyOfChapter4WithoutNoise) {
   for (const char* experiment : {"fig4.11", "fig4.14"}) {
     const Trace paper = run(experiment, {kProxy}), ours = run(experiment, {kSheet});
     EXPECT_EQ(paper.proxy_position_m, ours.proxy_position_m) << experiment;
@@ -122,7 +122,7 @@ TEST(TrackedSheet, APlaneThatRisesPastAFreeProxyTakesItAlong) {
 }
 
 // The sheet is gone; a frame is bridged, then the proxy is let go.
-TEST(TrackedSheet, AVanishedSheetLetsGoAfterOneFrameMore) {
+TEST(TrackedSheet, ForceOfAVanishedSheetEndsOneFrameLaterThanTheProxys) {
   const double paper = last_force_time_s(run("vanishing-plane", {kProxy}));
   const double ours = last_force_time_s(run("vanishing-plane", {kSheet}));
   EXPECT_NEAR(ours - paper, 1.0 / 30, 0.002);
@@ -193,7 +193,7 @@ Vec3 resting_place(const Vec3& around) {
   return out.proxy_W - around;
 }
 
-TEST(TrackedSheet, WhereTheWorldHasItsOriginDoesNotMatter) {
+TEST(TrackedSheet, TheOriginOfTheWorldDoesNotMatter) {
   const Vec3 here = resting_place(Vec3::Zero());
   expect_rests_on_plane(here.y(), 0.004 / std::sqrt(12) / kRc);  // heights are uniform over 4 mm
   for (const Vec3& there : {Vec3(0.03125, 0, 0.015625), Vec3(0.5, 0.25, -1)})

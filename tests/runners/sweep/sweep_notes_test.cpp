@@ -43,7 +43,7 @@ TEST(SweepNotes, NameTheReplicateWhereThereAreSeveral) {
             Lines{"1 of 11 runs: a kind of another program (the first: --cell 1,1 --replicate 1)"});
 }
 
-TEST(SweepNotes, OfAResultWithoutThemAreNone) {
+TEST(SweepNotes, AResultWithoutNotesHasNoLines) {
   SweepResult result = two_by_three(1);
   result.note_kinds.clear(), result.notes.clear();
   EXPECT_EQ(note_lines(result), Lines{});

@@ -83,7 +83,7 @@ TEST(SweepRuns, DoNotDependOnThreads) {
   }
 }
 
-TEST(SweepRuns, OnlyWhatIsPendingIsDoneAndToldOnce) {
+TEST(SweepRuns, OnlyPendingRunsAreDoneAndEachIsReportedOnce) {
   const Sweep sweep = quick();
   SweepResult result = sweep.plan({2, 3});
   std::vector<int> told(result.run_count(), 0);
@@ -130,7 +130,7 @@ TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
 }
 
 // A recording is looked for when its run begins.
-TEST(SweepRuns, OneThatFailsIsToldAndTheOthersGoOn) {
+TEST(SweepRuns, AFailureIsReportedAndTheOthersContinue) {
   const TestFolder folder("sweep_run_test");
   const CameraIntrinsics camera{64, 48, 50, 50, 31.5, 23.5};
   const std::string sound = folder.write("sound.pcd", organised_pcd(camera, 0)).string();

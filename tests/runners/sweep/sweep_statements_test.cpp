@@ -72,7 +72,7 @@ TEST(OverlappingAxes, NamesThatBeginAlikeAreOthers) {
                    axis("trajectory.start_m.0", "[0, 0.01]")});
 }
 
-TEST(OverwrittenValues, OfSetAreRefused) {
+TEST(OverwrittenValues, ValuesOfSetAreRefused) {
   EXPECT_EQ(why({kAcceleration}, R"({"scenario.acceleration_m_per_s2": 2})"),
             "mine.json: set.scenario.acceleration_m_per_s2: is overwritten by the axis "
             "scenario.acceleration_m_per_s2: expected one of them");
@@ -90,7 +90,7 @@ TEST(OverwrittenValues, OfSetAreRefused) {
              "set.scenario: is overwritten by set.scenario.columns: ");
 }
 
-TEST(OverwrittenValues, OfTheCommandLineAreRefused) {
+TEST(OverwrittenValues, ValuesOfTheCommandLineAreRefused) {
   EXPECT_EQ(
       why({kNoise}, "{}", {"scenario.noise_sigma_m=0.002"}),
       "--set scenario.noise_sigma_m=0.002: is overwritten by the axis scenario.noise_sigma_m: expected one "
@@ -116,7 +116,7 @@ TEST(OverwrittenValues, AreRefusedWhereTheObjectAroundThemIsReplaced) {
 }
 
 // --set experiment.x changes the experiment before `set` and the axes do.
-TEST(OverwrittenValues, OfTheOwnExperimentAreRefused) {
+TEST(OverwrittenValues, ValuesOfTheOwnExperimentAreRefused) {
   const auto why_with = [](const std::string& set, const Texts& overrides) {
     Plain sweep = Plain::parse(R"({"axes": [{"parameter": "seed", "values": [1, 2]}]})");
     sweep["experiment"] = Plain::parse(Experiment::load("fig4.12").to_json());
@@ -202,9 +202,9 @@ TEST(Statements, IntegersThatADoubleDoesNotHaveAreNames) {
 
 TEST(Statements, OneNumberInTwoSpellingsComesTwice) {
   EXPECT_HAS(why({axis("scenario.noise_sigma_m", "[0, 0.0]")}),
-             "axes.0.values: 0.0 comes twice: expected once");
-  EXPECT_HAS(why({axis("trajectory.start_m.0", "[0.01, -0.0, 0]")}), "axes.0.values: 0 comes twice");
-  EXPECT_HAS(why({axis("seed", R"([1, "1"])")}), "comes twice");
+             "axes.0.values: 0.0 appears twice: expected once");
+  EXPECT_HAS(why({axis("trajectory.start_m.0", "[0.01, -0.0, 0]")}), "axes.0.values: 0 appears twice");
+  EXPECT_HAS(why({axis("seed", R"([1, "1"])")}), "appears twice");
 }
 
 TEST(Statements, AResultWithOtherAxesOrMeasuresIsNotOfTheSweep) {

@@ -256,7 +256,7 @@ TEST(Titles, NameWhatWasChanged) {
 }
 
 // So that the trace of a cell does not have the title of a run with other values.
-TEST(Titles, OfRunsNameTheValuesOfTheirCell) {
+TEST(Titles, TitlesOfRunsNameTheValuesOfTheirCell) {
   const std::string stored = Experiment::load("fig4.12").settings().title;
   EXPECT_EQ(value_in(small(), 5, "title"),
             stored +

@@ -132,8 +132,10 @@ TEST_F(MeshFileTest, FacetsOfStlWithAnotherNumberOfCornersAreRefused) {
     });
   };
   EXPECT_EQ(problem(facet(3) + facet(3)), "read");
-  EXPECT_HAS(problem(facet(4) + facet(3)), "q.stl: cannot be read (line 7: a facet has not three vertices)");
-  EXPECT_HAS(problem(facet(2) + facet(3)), "q.stl: cannot be read (line 6: a facet has not three vertices)");
+  EXPECT_HAS(problem(facet(4) + facet(3)),
+             "q.stl: cannot be read (line 7: a facet does not have three vertices)");
+  EXPECT_HAS(problem(facet(2) + facet(3)),
+             "q.stl: cannot be read (line 6: a facet does not have three vertices)");
 }
 
 constexpr const char* kMark = "\xEF\xBB\xBF";
@@ -371,7 +373,7 @@ struct Known {
 };
 class RealMeshTest : public testing::TestWithParam<Known> {};
 
-TEST_P(RealMeshTest, IsWhatItsReadmeTells) {
+TEST_P(RealMeshTest, IsAsItsReadmeSays) {
   const fs::path file = data_root() / "meshes" / GetParam().file;
   if (!fs::exists(file)) GTEST_SKIP() << "recorded data are missing: " << file;
   const MeshCheck check = check_mesh(read_mesh(file));

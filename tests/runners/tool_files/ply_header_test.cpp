@@ -23,7 +23,7 @@ class PlyHeader : public testing::Test {
   TestFolder folder_{"ply_header"};
 };
 
-TEST_F(PlyHeader, ThatTellsTheTruthPasses) {
+TEST_F(PlyHeader, PassesIfItIsTrue) {
   EXPECT_EQ(problem(header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2"), "");
   const std::string binary(3 * 16 + 1, '\0');  // the face is a list of none
   EXPECT_EQ(problem(header("binary_little_endian", "3", "1") + binary), "");
@@ -34,7 +34,7 @@ TEST_F(PlyHeader, ThatTellsTheTruthPasses) {
   EXPECT_EQ(problem("ply\nformat ascii 1.0\ncomment end_header is near\nobj_info x\nend_header\n"), "");
 }
 
-TEST_F(PlyHeader, ThatDoesNotEndIsRefused) {
+TEST_F(PlyHeader, IsRefusedIfItDoesNotEnd) {
   const std::string whole = header("ascii", "3", "1");
   for (std::size_t length = 0; length + 1 < whole.size(); ++length)
     EXPECT_HAS(problem(whole.substr(0, length)), "its header has no end") << length;

@@ -28,7 +28,7 @@ void expect_equal(const ToolSpheres& a, const ToolSpheres& b) {
     }
   EXPECT_EQ(a.inflation_m, b.inflation_m);
   EXPECT_EQ(a.outside_m, b.outside_m);
-  EXPECT_EQ(a.inside_m, b.inside_m);
+  EXPECT_EQ(a.surface_outside_m, b.surface_outside_m);
 }
 
 class SpheresCacheTest : public testing::Test {

@@ -51,7 +51,7 @@ TEST_F(ShownClaimsTest, ARunOfAnotherExperimentOrWithOtherSettingsHasNone) {
 
 TEST_F(ShownClaimsTest, AnotherFileIsRefused) {
   for (const char* text : {"{}", "[3]", R"([{"claim": "x"}])", R"([{"figure": "4.12"}])"})
-    EXPECT_HAS(why(text), "bad.json: is no list of claims") << text;
+    EXPECT_HAS(why(text), "bad.json: is not a list of claims") << text;
   EXPECT_HAS(why("[{"), "bad.json");
   EXPECT_HAS(refusal([&] { shown_claims(folder_ / "none.json", run("fig4.12")); }), "none.json");
 }

@@ -21,7 +21,7 @@ PointCloud cloud_with_holes() {
 }
 
 bool is_shown(const ShownPoints& shown, std::size_t i) {
-  return std::binary_search(shown.numbers.begin(), shown.numbers.end(), i);
+  return std::binary_search(shown.indices.begin(), shown.indices.end(), i);
 }
 
 TEST(ShownPoints, EverythingInTheBoxWhereThatIsFewEnough) {
@@ -35,7 +35,7 @@ TEST(ShownPoints, EverythingInTheBoxWhereThatIsFewEnough) {
   }
   EXPECT_EQ(shown.measured, measured);
   EXPECT_EQ(shown.in_box, in_box);
-  EXPECT_EQ(shown.numbers.size(), in_box);
+  EXPECT_EQ(shown.indices.size(), in_box);
 }
 
 TEST(ShownPoints, AllNearTheProxyAndAboutAsManyOthersAsAllowed) {
@@ -60,12 +60,12 @@ TEST(ShownPoints, AllNearTheProxyAndAboutAsManyOthersAsAllowed) {
   EXPECT_NEAR(static_cast<double>(others_shown), 500, 4 * std::sqrt(500 * (1 - chance)));
 }
 
-TEST(ShownPoints, ThoseThatAreAskedForAreShownOutsideOfTheBoxToo) {
+TEST(ShownPoints, RequestedPointsAreShownOutsideOfTheBoxToo) {
   const PointCloud cloud = cloud_with_holes();
   std::vector<std::uint32_t> always;
   for (std::uint32_t i = 1; i < 40; i += 2) always.push_back(i);
   const ShownPoints shown = shown_points(cloud, always, {}, {kBox, 0, 0});
-  EXPECT_EQ(shown.numbers, always);
+  EXPECT_EQ(shown.indices, always);
 }
 
 TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
@@ -73,13 +73,13 @@ TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
   const std::vector<std::uint32_t> always{5, 7, 1001};
   const ShownPoints many = shown_points(cloud, always, kPath, {kBox, 0.005, 900});
   const ShownPoints few = shown_points(cloud, always, kPath, {kBox, 0.005, 100});
-  ASSERT_EQ(many.rank.size(), many.numbers.size());
+  ASSERT_EQ(many.rank.size(), many.indices.size());
   EXPECT_EQ(many.others, few.others);
   std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < many.numbers.size(); ++i)
-    if (many.rank[i] < rank_limit(many.others, 100)) kept.push_back(many.numbers[i]);
-  EXPECT_EQ(kept, few.numbers);
-  EXPECT_LT(kept.size(), many.numbers.size());
+  for (std::size_t i = 0; i < many.indices.size(); ++i)
+    if (many.rank[i] < rank_limit(many.others, 100)) kept.push_back(many.indices[i]);
+  EXPECT_EQ(kept, few.indices);
+  EXPECT_LT(kept.size(), many.indices.size());
   for (const std::uint32_t i : always) EXPECT_TRUE(is_shown(few, i));
 }
 
@@ -87,10 +87,10 @@ TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
 TEST(ShownPoints, TheSamePlacesOfAnImageInEveryFrame) {
   PointCloud cloud = cloud_with_holes();
   const ShownPointsRule rule{kBox, 0, 300};
-  const std::vector<std::uint32_t> before = shown_points(cloud, {}, {}, rule).numbers;
+  const std::vector<std::uint32_t> before = shown_points(cloud, {}, {}, rule).indices;
   for (double& y : cloud.y) y += 1e-6;
   std::vector<std::uint32_t> common;
-  const std::vector<std::uint32_t> after = shown_points(cloud, {}, {}, rule).numbers;
+  const std::vector<std::uint32_t> after = shown_points(cloud, {}, {}, rule).indices;
   std::set_intersection(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(common));
   EXPECT_GT(static_cast<double>(common.size()), 0.98 * static_cast<double>(before.size()));
 }

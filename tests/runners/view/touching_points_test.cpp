@@ -55,7 +55,7 @@ TEST(TouchingTool, AreThoseOfEveryPointAskedInEveryTick) {
   }
 }
 
-TEST(TouchingTool, WithoutAPoseNothingTouches) {
+TEST(TouchingTool, NoPointTouchesIfThereIsNoPose) {
   const auto tool = scenes::box_tool({0.02, 0.005, 0.01});
   const PointCloud cloud = scenes::random_cloud(2000, 0.02, 6);
   std::vector<ToolPose> path(3);

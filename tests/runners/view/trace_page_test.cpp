@@ -136,7 +136,7 @@ TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
   };
   EXPECT_EQ(note(), "");
   for (std::uint64_t& hash : trace.frame_hash) ++hash;
-  EXPECT_HAS(note(), "Not the frames of the run");
+  EXPECT_HAS(note(), "These are not the frames of the run");
 }
 
 TEST_F(TracePageTest, SaysThatTheContactRadiusChanges) {
@@ -152,7 +152,7 @@ TEST_F(TracePageTest, SaysThatTheContactRadiusChanges) {
   EXPECT_EQ(note("stiffness_N_per_m", "300"), "");
 }
 
-TEST_F(TracePageTest, WhatIsNoTraceIsRefused) {
+TEST_F(TracePageTest, RefusesWhatIsNoTrace) {
   EXPECT_HAS(refusal([&] { trace_page({folder_ / "none.h5"}, options()); }), "none.h5");
   folder_.write("text.h5", "no HDF5");
   EXPECT_HAS(refusal([&] { trace_page({folder_ / "text.h5"}, options()); }), "text.h5");

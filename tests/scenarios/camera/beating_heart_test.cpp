@@ -184,7 +184,7 @@ TEST(BeatingHeart, TheLobesAreRedAndTheTableIsNot) {
   EXPECT_EQ(reds.size(), 3u);
 }
 
-TEST(BeatingHeart, WithoutAmplitudeItRests) {
+TEST(BeatingHeart, RestsAtZeroAmplitude) {
   BeatingHeart::Settings s;
   s.amplitude_m = 0;
   EXPECT_GT(made(s).frame_count(), 1) << "its noise does not";

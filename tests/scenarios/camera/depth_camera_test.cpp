@@ -99,7 +99,7 @@ TEST(DepthCamera, StraightDownColumnsGoAlongXAndRowsAlongZ) {
     }
 }
 
-TEST(DepthCamera, NothingBeyondThreeMetres) {
+TEST(DepthCamera, MeasuresNothingBeyondThreeMetres) {
   DepthCameraSettings s = small();
   s.camera_position_m = {0, 0.5, 0}, s.target_position_m = {1, 0.5, 0};
   const IdealView view = made(s).view(table, true);

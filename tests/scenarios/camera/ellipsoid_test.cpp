@@ -112,7 +112,7 @@ TEST_P(EllipsoidTest, NoSampleOfTheSurfaceIsCloser) {
   }
 }
 
-TEST_P(EllipsoidTest, OnTheAxesTheDistanceIsKnown) {
+TEST_P(EllipsoidTest, DistanceOnTheAxesIsKnown) {
   const double shortest = semi_axes().minCoeff();
   EXPECT_NEAR(solid_.signed_distance(kCentre), -shortest, 1e-15);
   for (int axis = 0; axis < 3; ++axis)

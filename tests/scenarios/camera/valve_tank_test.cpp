@@ -47,7 +47,7 @@ TEST(ValveTank, FramesArePureAndDiffer) {
   EXPECT_NE(first.colour, made({}, 2).cloud(3).colour);
 }
 
-TEST(ValveTank, WithoutAnyNoiseThereIsOneFrame) {
+TEST(ValveTank, HasOneFrameIfThereIsNoNoise) {
   EXPECT_EQ(made(ideal()).frame_count(), 1);
   for (double Settings::*varies :
        {&Settings::turbidity_per_m, &Settings::colour_noise, &Settings::dropout_probability}) {
@@ -105,7 +105,7 @@ TEST(ValveTank, ClearWaterShowsTheHuesOfThePaint) {
   }
 }
 
-TEST(ValveTank, InVeryTurbidWaterThereIsOnlyTheVeil) {
+TEST(ValveTank, OnlyTheVeilIsSeenInVeryTurbidWater) {
   Settings s = ideal();
   s.turbidity_per_m = 20;
   for (const std::uint32_t colour : made(s).cloud(0).colour) ASSERT_EQ(colour, 0x0D1F1Cu);

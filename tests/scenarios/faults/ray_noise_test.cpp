@@ -29,7 +29,7 @@ PointCloud two_places(double x, double z, double dx, double dz) {
   return places;
 }
 
-TEST(RayNoise, WithoutCorrelationPointsAndFramesHaveTheirOwn) {
+TEST(RayNoise, UncorrelatedPointsAndFramesHaveTheirOwn) {
   Correlation square, between_points, between_frames;
   const PointCloud places = two_places(0, 0, 0, 0);
   std::vector<double> last;

@@ -116,7 +116,7 @@ TEST(SensorFaults, OutliersLieWithinTheirReach) {
 }
 
 // Points in an image stay on their rays, so that the search by pixels finds them.
-TEST(SensorFaults, InAnImagePointsMoveAlongTheirRays) {
+TEST(SensorFaults, PointsOfAnImageMoveAlongTheirRays) {
   SensorFaults s;
   s.flying_probability = 0.3, s.max_flying_distance_m = 0.05, s.quantisation_m = 0.01;
   const FaultySensor sensor = faulty(s, camera());
@@ -147,7 +147,7 @@ TEST(SensorFaults, InAnImagePointsMoveAlongTheirRays) {
   }
 }
 
-TEST(SensorFaults, WhatWouldLieBehindTheCameraIsLost) {
+TEST(SensorFaults, PointsBehindTheCameraAreLost) {
   SensorFaults s;
   s.outlier_probability = 1, s.max_outlier_distance_m = 5;
   const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);

@@ -38,7 +38,7 @@ void expect_normal(const Scenario& scene, const Vec3& p_W, double time_s, const 
       << scene.true_normal(p_W, time_s).transpose() << " at " << p_W.transpose() << ", " << time_s << " s";
 }
 
-TEST(TrueNormal, OfAPlaneIsTheSameEverywhereAndWhileItMoves) {
+TEST(TrueNormal, NormalOfAPlaneIsTheSameEverywhereAndWhileItMoves) {
   const auto lift = made<MovingLift>();
   const auto plane = made<MovingPlane>();
   const auto grid = made<FlatGrid>();
@@ -51,7 +51,7 @@ TEST(TrueNormal, OfAPlaneIsTheSameEverywhereAndWhileItMoves) {
     }
 }
 
-TEST(TrueNormal, OfATiltedPlaneIsTilted) {
+TEST(TrueNormal, NormalOfATiltedPlaneIsTilted) {
   for (const double tilt_deg : {-40.0, 0.0, 20.0}) {
     const auto [sine, cosine] = sin_cos(tilt_deg * kRadiansPerDegree);
     const MovingShape plane = shape(Shape::Kind::flat, tilt_deg);
@@ -63,7 +63,7 @@ TEST(TrueNormal, OfATiltedPlaneIsTilted) {
 }
 
 // Flanks of slope 2 h / (period / 2) at full height h; over a crest the way from the crest.
-TEST(TrueNormal, OfATriangleWaveIsThatOfItsFlanksAndCrests) {
+TEST(TrueNormal, ATriangleWaveHasThatOfItsFlanksAndCrests) {
   TriangleWave::Settings settings;
   settings.period_m = 0.04, settings.max_height_m = 0.01;
   const auto wave = made<TriangleWave>(settings);
@@ -80,7 +80,7 @@ TEST(TrueNormal, OfATriangleWaveIsThatOfItsFlanksAndCrests) {
   }
 }
 
-TEST(TrueNormal, OfABallPointsFromItsCentre) {
+TEST(TrueNormal, PointsAwayFromTheCentreOfABall) {
   const MovingShape ball = shape(Shape::Kind::sphere);
   const Vec3 centre_W(0, -Shape::Settings{}.radius_m, 0);
   for (const Vec3& p_W : {Vec3(0.01, 0.002, 0.004), Vec3(-0.02, 0, 0.01), Vec3(0.004, -0.01, -0.003)})
@@ -88,7 +88,7 @@ TEST(TrueNormal, OfABallPointsFromItsCentre) {
 }
 
 // The distance of the ripple is found by a search.
-TEST(TrueNormal, OfARippleIsThatOfTheNearestPointOfTheWave) {
+TEST(TrueNormal, ARippleHasThatOfTheNearestPointOfTheWave) {
   const MovingShape ripple = shape(Shape::Kind::ripple);
   const Shape::Settings wave;
   const double per_m = 2 * M_PI / wave.period_m;
@@ -109,7 +109,7 @@ TEST(TrueNormal, IsNotKnownOverACrease) {
   expect_normal(valley, {-0.001, 0.006, 0}, 0, {sine, cosine, 0});
 }
 
-TEST(TrueNormal, OfOnePlaneIsThatOfAFlatSceneOnly) {
+TEST(TrueNormal, OnlyAFlatSceneHasThatOfAPlane) {
   for (const Shape::Kind kind : {Shape::Kind::ridge, Shape::Kind::sphere, Shape::Kind::corner})
     EXPECT_FALSE(shape(kind).plane_normal(0));
   EXPECT_FALSE(made<TriangleWave>().plane_normal(0));

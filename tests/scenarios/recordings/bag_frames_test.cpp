@@ -68,7 +68,7 @@ TEST_F(Frames, AreInTheOrderOfTheirStamps) {
   EXPECT_TRUE(std::isnan(all.cloud(3, 1.39).z[5]));
 }
 
-TEST_F(Frames, WithoutStampsHaveTheTimesOfTheRecorder) {
+TEST_F(Frames, HaveTheTimesOfTheRecorderIfStampsAreMissing) {
   const BagFrames all =
       frames({cloud(0, 0, "/points", 0), cloud(1, 3, "/points", 0), cloud(2, 5, "/points", 0)});
   EXPECT_EQ(all.captured_s(), (std::vector<double>{0, 3 * 0.03125, 5 * 0.03125}));
@@ -102,7 +102,7 @@ TEST_F(Frames, AreOfTheOnlyTopicThatFits) {
       << "colour images are no frames";
 }
 
-TEST_F(Frames, OfDepthHaveTheCameraBesideThem) {
+TEST_F(Frames, DepthFramesHaveTheCameraBesideThem) {
   const BagFrames raw_ones =
       frames({camera("/x/camera_info"), camera("/y/camera_info"), depth(0, "/x/image_raw")});
   EXPECT_EQ(raw_ones.camera().fx, 10);
@@ -139,7 +139,7 @@ BagMessage camera_of(const std::string& topic, const std::string& frame_id) {
   return message;
 }
 
-TEST_F(Frames, OfDepthHaveNoCameraOfAnotherFrame) {
+TEST_F(Frames, DepthFramesDoNotUseTheCameraOfAnotherFrame) {
   const std::vector<BagMessage> bag = {camera_of("/x/camera_info", "colours"), depth(0, "/x/image_raw")};
   EXPECT_HAS(error(bag),
              "x.mcap: /x/camera_info has frame_id = \"colours\" where the images have \"optical\": expected "
@@ -153,7 +153,7 @@ TEST_F(Frames, AreAllOfOneCoordinateFrame) {
   EXPECT_HAS(error({cloud(0, 0), other}), "message 1: frame_id = elsewhere: expected optical");
 }
 
-TEST_F(Frames, OfDepthAreInTheUnitThatIsChosen) {
+TEST_F(Frames, DepthFramesAreInTheChosenUnit) {
   const std::vector<BagMessage> bag = {camera("/x/camera_info"), depth(0, "/x/image_rect")};
   BagChoice choice;
   EXPECT_NEAR(frames(bag, choice).cloud(0, kNoLimit).z[0], 1, 1e-12);
@@ -181,18 +181,18 @@ TEST_F(Frames, AreChosenInBagsOnly) {
   BagChoice unit;
   unit.depth_unit_m = 0.001;
   EXPECT_HAS(refusal([&] { index_recording(folder_ / "x.pcd", unit); }),
-             "is no bag of ROS: expected scenario.depth_unit_m = 0");
+             "is not a ROS bag: expected scenario.depth_unit_m = 0");
   EXPECT_HAS(refusal([&] {
                index_recording(folder_ / "x.pcd", {"/points", "", {}, ""});
              }),
-             "is no bag of ROS: expected scenario.topic = \"\"");
+             "is not a ROS bag: expected scenario.topic = \"\"");
   BagChoice images;
   images.images = BagChoice::Images::rectified;
   EXPECT_HAS(refusal([&] { index_recording(folder_ / "x.pcd", images); }),
-             "is no bag of ROS: expected scenario.images = by_name");
+             "is not a ROS bag: expected scenario.images = by_name");
 }
 
-TEST_F(Frames, OfCloudsHaveNoCameraToBeChosen) {
+TEST_F(Frames, CloudsRefuseAChosenCamera) {
   BagChoice images;
   images.images = BagChoice::Images::measured;
   EXPECT_HAS(error({cloud(0, 0)}, images), "/points holds clouds: expected scenario.images = by_name");
@@ -201,7 +201,7 @@ TEST_F(Frames, OfCloudsHaveNoCameraToBeChosen) {
 }
 
 // The first one is used; a zoom that is turned later is reported.
-TEST_F(Frames, OfDepthReportACameraThatChanges) {
+TEST_F(Frames, DepthFramesReportACameraThatChanges) {
   const BagMessage first = camera("/x/camera_info");
   BagMessage later = first, other = first;
   later.bytes = camera_message(4, 3, {-0.1, 0, 0, 0, 0});
@@ -237,7 +237,7 @@ TEST_F(Frames, ComeToTheChosenCoordinateFrame) {
              "frame_id = elsewhere: expected optical");
 }
 
-TEST_F(Frames, ThatAreDamagedAreNamed) {
+TEST_F(Frames, DamagedOnesAreNamed) {
   BagMessage cut = cloud(1, 1);
   cut.bytes.resize(100);
   EXPECT_HAS(error({cloud(0, 0), cut}), "/points, message 1: ends after 100 bytes");
@@ -246,7 +246,7 @@ TEST_F(Frames, ThatAreDamagedAreNamed) {
 }
 
 // Messages of two sizes, and an empty one, which is an image without a measurement.
-TEST_F(Frames, OfAnotherSizeAreRefusedByTheirMessage) {
+TEST_F(Frames, AnotherSizeIsRefusedByTheMessage) {
   BagMessage smaller = cloud(1, 1), empty = cloud(2, 2);
   smaller.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 3, 2, 1);
   empty.bytes = cloud_message(Format::cdr, kStart_ns + 2 * kStep_ns, 0, 1, 1);

@@ -31,14 +31,14 @@ class FolderFiles : public testing::Test {
   const TestFolder folder_{"folder_files_test"};
 };
 
-TEST_F(FolderFiles, OfTheSameNameBelongTogether) {
+TEST_F(FolderFiles, EqualNamesBelongTogether) {
   write({"depth/1.png", "depth/2.png"});
   EXPECT_EQ(colours(), (Names{"", ""})) << "there are no colour images";
   write({"rgb/2.png", "rgb/a1.png"});
   EXPECT_EQ(colours(), (Names{"", "2.png"}));
 }
 
-TEST_F(FolderFiles, OfOtherNamesBelongTogetherByTheirNumbers) {
+TEST_F(FolderFiles, OtherNamesBelongTogetherByTheirNumbers) {
   write({"depth/frame-9.depth.png", "depth/frame-10.depth.png", "depth/frame-11.depth.png"});
   write({"rgb/f010.color.png", "rgb/f9.color.png"});
   EXPECT_EQ(colours(), (Names{"f9.color.png", "f010.color.png", ""}));
@@ -52,7 +52,7 @@ TEST_F(FolderFiles, AllNumbersCount) {
   EXPECT_HAS(error(), path("rgb/1.png") + ": may or may not belong to " + path("depth/k2_0001.png"));
 }
 
-TEST_F(FolderFiles, ThatBelongToNothingOrToSeveralAreRefused) {
+TEST_F(FolderFiles, AreRefusedIfTheyBelongToNothingOrToSeveral) {
   write({"depth/a_1.png", "depth/a_2.png", "rgb/1.jpg"});
   EXPECT_HAS(error(),
              path("rgb") + ": holds no .png file: expected the colour images of " + path("depth/a_1.png"));
@@ -66,12 +66,12 @@ TEST_F(FolderFiles, ThatBelongToNothingOrToSeveralAreRefused) {
   EXPECT_HAS(error(), path("rgb/b_1.png") + ": may or may not belong to " + path("depth/z_1.png"));
 }
 
-TEST_F(FolderFiles, ThatAreLinksToNothingAreRefused) {
+TEST_F(FolderFiles, LinksToNothingAreRefused) {
   write({"depth/1.png", "rgb/1.png"});
   for (const char* name : {"depth/2.png", "rgb/2.png", "rgb"}) {
     fs::remove_all(folder_ / name);
     fs::create_symlink("nowhere", folder_ / name);
-    EXPECT_HAS(error(), path(name) + ": is a link to a file that is not there: expected a file");
+    EXPECT_HAS(error(), path(name) + ": is a link to a file that does not exist: expected a file");
     fs::remove(folder_ / name);
   }
 }

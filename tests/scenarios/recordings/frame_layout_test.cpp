@@ -73,7 +73,7 @@ TEST(FrameLayout, CloudsWithoutACameraMayChangeTheirSize) {
 }
 
 // All frames are images, or none is: a camera that only later frames have is not used.
-TEST(FrameLayout, WithoutACameraHasNoneInAnyFrame) {
+TEST(FrameLayout, HasNoCameraInAnyFrameIfTheFirstHasNone) {
   PointCloud later = image(kCamera, 1);
   later.grid_columns = 4;
   conform(layout_of(grid(4, 3)), "2.pcd", later);

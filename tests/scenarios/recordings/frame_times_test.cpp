@@ -54,13 +54,13 @@ TEST(FrameTimes, AreTheStampsAlsoWhereThePartIsPlayedAgain) {
   EXPECT_EQ(hold.rate_hz(), 2) << "the mean of the part, not of the recording";
 }
 
-TEST(FrameTimes, OfASteadyRecordingAreMultiplesOfItsPeriod) {
+TEST(FrameTimes, AreMultiplesOfThePeriodOfASteadyRecording) {
   const FrameTimes loop(steady(3, 30), {"x", 0, -1}, Playback::loop, 0);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(loop.captured_s(i), i / 30.0);
   EXPECT_FALSE(loop.follows_stamps());
 }
 
-TEST(FrameTimes, OfAChosenRateIgnoreTheStamps) {
+TEST(FrameTimes, IgnoreTheStampsIfARateIsChosen) {
   for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
     const FrameTimes chosen(stamped({0, 1, 5}), {"x", 0, -1}, playback, 10);
     EXPECT_EQ(times_of(chosen, 3), (std::vector<double>{0, 1 / 10.0, 2 / 10.0}));
@@ -70,7 +70,7 @@ TEST(FrameTimes, OfAChosenRateIgnoreTheStamps) {
   }
 }
 
-TEST(FrameTimes, OfASingleFrameAreZero) {
+TEST(FrameTimes, ASingleFrameIsAtTimeZero) {
   for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
     const FrameTimes single(stamped({0, 1, 5}), {"x", 1, 1}, playback, 0);
     EXPECT_EQ(single.captured_s(0), 0);
@@ -95,7 +95,7 @@ TEST(FrameTimes, HaveAUsualRateThatAPauseDoesNotChange) {
             4);
 }
 
-TEST(FrameTimes, OfAPartThatIsTooFastAreRefused) {
+TEST(FrameTimes, APartThatIsTooFastIsRefused) {
   const RecordingIndex index = stamped({0, 1, 1 + 1.0 / 16384, 4});
   EXPECT_HAS(refusal([&] {
                FrameTimes(index, {"x", 1, 2}, Playback::hold, 0);

@@ -73,7 +73,7 @@ TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
   EXPECT_EQ(weights(grey({255, 255}, 2), cloud), (Shares{0, 1}));
 }
 
-TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
+TEST_F(ImageMasks, AnotherSizeIsRefused) {
   const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
   for (const std::pair<int, int>& size : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
     const std::string why = refusal([&] { weights(file, image(size.first, size.second)); });
@@ -85,7 +85,7 @@ TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   EXPECT_HAS(refusal([&] { weights(file, no_image); }), "image-mask: the frame is not an image");
 }
 
-TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
+TEST_F(ImageMasks, AreRefusedIfTheyCannotBeRead) {
   const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
   const fs::path missing = folder_ / "missing.png";
   EXPECT_HAS(why(missing), missing.string() + ": no such recording");

@@ -234,7 +234,7 @@ TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
   EXPECT_TRUE(scene.input_notes().empty());
   settings.max_depth_m = 1;
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-             "no image of a camera and have no depth: expected scenario.max_depth_m = 3");
+             "its points form no camera image and have no depth: expected scenario.max_depth_m = 3");
 }
 
 // --- rates ---

@@ -138,8 +138,8 @@ TEST_F(Recording, RefusesIncompleteFolders) {
   EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: expected");
   EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
   const std::string allowed =
-      "expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or metadata.yaml with a bag of ROS 2";
-  const std::string no_recording = folder_.path().string() + ": is no recording: " + allowed;
+      "expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or metadata.yaml with a ROS 2 bag";
+  const std::string no_recording = folder_.path().string() + ": is not a recording: " + allowed;
   EXPECT_EQ(error(folder_.path()), no_recording);
   folder_.write("camera.json", kCamera);
   EXPECT_EQ(error(folder_.path()), no_recording);
@@ -264,7 +264,7 @@ TEST_F(Recording, RefusesBadTumLists) {
 }
 
 // 4e10 pairs of lines: each depth image is compared with the colour images near it only.
-TEST(TumLists, OfManyLinesAreAssociatedAtOnce) {
+TEST(TumLists, ManyLinesAreAssociatedQuickly) {
   std::vector<StampedFile> depth, colour;
   for (int i = 0; i < 200'000; ++i) {
     depth.push_back({0.03 * i, std::to_string(i)});

@@ -188,7 +188,7 @@ TEST(MovingShape, NoiseFreePointsLieOnTheTrueSurfaceAtEveryFrame) {
 }
 
 // Asked between frames, the truth is where the shape has been carried to: the frame's own distance, moved.
-TEST(MovingShape, TheTruthMovesBetweenFramesOrStaysWithTheNewest) {
+TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
   MovingShape::Settings s = busy(Kind::ridge);
   const MovingShape moving = made(s);
   s.truth = MovingShape::Truth::newest_frame;
@@ -277,7 +277,7 @@ TEST(MovingShape, SearchesShowTheCloud) {
 
 // --- frames without points ---
 
-TEST(MovingShape, VanishesAndStaysAway) {
+TEST(MovingShape, VanishesForGood) {
   MovingShape::Settings s = busy(Kind::flat);
   s.vanish_at_s = 5 / 30.0;
   const MovingShape shape = made(s);

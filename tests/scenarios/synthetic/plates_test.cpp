@@ -42,7 +42,7 @@ TEST(Plates, ARaySeesTheHighestPlateOverItsPlace) {
   }
 }
 
-TEST(Plates, WhatIsTooNearToTheCameraOnlyHides) {
+TEST(Plates, PlatesTooNearToTheCameraOnlyHide) {
   Plates::Settings s = passing();
   s.max_height_m = 0.04;
   const PointCloud all = made(passing()).cloud(9), less = made(s).cloud(9);
@@ -54,7 +54,7 @@ TEST(Plates, WhatIsTooNearToTheCameraOnlyHides) {
   EXPECT_GT(hidden, 200);
 }
 
-TEST(Plates, BetweenPlatesThereIsNothing) {
+TEST(Plates, GapsBetweenPlatesHaveNoPoints) {
   Plates::Settings s = passing();
   s.plates = {-0.05, 0, 0, 0.1, 0.2, -0.1, 0, 0, 0.2, 0.05, 0, 0, 0.1, 0.2, 0.1, 0, 0, 0.2};
   const PointCloud cloud = made(s).cloud(6);  // 0.2 s: a gap of 4 cm

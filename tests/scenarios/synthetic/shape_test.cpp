@@ -113,7 +113,7 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
   }
 }
 
-TEST(Shape, OfACornerToTheNearestOfDenseSamplesOfItsFaces) {
+TEST(Shape, DistanceToACornerIsThatToTheNearestSampleOfItsFaces) {
   const Shape::Settings s = settings_of(Kind::corner);
   const Shape corner(s, kGrid);
   Samples samples{{}, 0};

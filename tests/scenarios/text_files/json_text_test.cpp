@@ -30,9 +30,9 @@ TEST(JsonText, SaysWhereItIsNone) {
 }
 
 TEST(JsonText, AKeyTwiceIsRefused) {
-  EXPECT_HAS(refused(R"({"seed": 1, "seed": 2})"), R"(x.json: the key "seed" comes twice in one object)");
-  EXPECT_HAS(refused(R"([{"a": {"b": 1, "c": [{"b": 2}], "b": 3}}])"), R"(the key "b" comes twice)");
-  EXPECT_HAS(refused(R"({"\u0061": 1, "a": 2})"), R"(the key "a" comes twice)");
+  EXPECT_HAS(refused(R"({"seed": 1, "seed": 2})"), R"(x.json: the key "seed" appears twice in one object)");
+  EXPECT_HAS(refused(R"([{"a": {"b": 1, "c": [{"b": 2}], "b": 3}}])"), R"(the key "b" appears twice)");
+  EXPECT_HAS(refused(R"({"\u0061": 1, "a": 2})"), R"(the key "a" appears twice)");
   EXPECT_EQ(refused(R"([{"a": 1, "b": {"a": {"a": 2}}}, {"a": 3}])"), "no InputError");
 }
 
@@ -51,15 +51,15 @@ TEST(JsonText, NestsSoFar) {
   }
 }
 
-TEST(JsonText, IsToldFromPlainText) {
+TEST(JsonText, IsDistinguishedFromPlainText) {
   EXPECT_EQ(*json_or_none("[1, 2]", "x"), Json::parse("[1, 2]"));
   EXPECT_FALSE(json_or_none("quick", "x"));
   EXPECT_FALSE(json_or_none("\xff", "x"));
   EXPECT_HAS(refusal([] { json_or_none(R"({"a": 1, "a": 2})", "--set x"); }),
-             "--set x: the key \"a\" comes twice");
+             "--set x: the key \"a\" appears twice");
 }
 
-TEST(JsonText, OfAFileThatIsNoneIsNull) {
+TEST(JsonText, AFileThatIsNoJsonIsNull) {
   const TestFolder folder("json_text_test");
   EXPECT_EQ(json_in_file(folder.write("x.json", "[1]")), Json::parse("[1]"));
   for (const auto& file : {folder.write("bad.json", "[1"), folder.write("twice.json", R"({"a": 1, "a": 2})"),

@@ -30,7 +30,7 @@ TEST(TextFile, IsReadWhole) {
             std::string("\0\r\n\xff", 4));
 }
 
-TEST(TextFile, ThatIsTooLongOrNoneIsRefused) {
+TEST(TextFile, IsRefusedIfItIsTooLongOrNoFile) {
   const TestFolder folder("text_file_test");
   EXPECT_HAS(refused(folder.write("long", std::string(kMaxTextBytes + 1, 'x'))),
              "long: is longer than 16 MiB: expected a list");

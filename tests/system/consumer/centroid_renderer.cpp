@@ -42,11 +42,11 @@ RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
   out.frame_index = order_.newest();
   out.converged = true;
   if (!device.position_W.allFinite()) {
-    out.proxy_W = rest_W_;
+    out.proxy_W = last_finite_W_;
     out.status = RenderStatus::device_not_finite;
     return out;
   }
-  out.proxy_W = rest_W_ = device.position_W;
+  out.proxy_W = last_finite_W_ = device.position_W;
   out.status = order_.status(points_ ? RenderStatus::ok : RenderStatus::no_frame);
   if (!points_) return out;
   near_.clear();

@@ -44,7 +44,7 @@ class CentroidRenderer final : public remote_touch::Renderer {
   remote_touch::FrameOrder order_;
   std::shared_ptr<const remote_touch::NeighbourSearch> points_;
   remote_touch::GatheredPoints near_;
-  remote_touch::Vec3 rest_W_ = remote_touch::Vec3::Zero();  // last finite position of the device
+  remote_touch::Vec3 last_finite_W_ = remote_touch::Vec3::Zero();  // position of the device
 };
 
 }  // namespace lab

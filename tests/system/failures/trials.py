@@ -17,7 +17,7 @@ FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library 
 # memory, and so does that of OpenMP, which ends the program. They cannot be told not to.
 DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\)|Fatal glibc error: "
                           r"malloc)[^\n]*\n(?=remote-touch: (?:the HDF5 library failed: out of memory"
-                          r"|[^\n]*: damaged \(its reader ended with signal 6, perhaps without memory\)))"
+                          r"|[^\n]*: damaged \(its reader ended with signal 6, perhaps out of memory\)))"
                           r"|\A\nlibgomp: Out of memory allocating \d+ bytes\n(?=remote-touch: )")
 # OpenMP ends the program by itself where it finds no memory for its threads, and its library has no call to prevent it.
 ENDED_BY_OPENMP = re.compile(r"\A\nlibgomp: Out of memory allocating \d+ bytes\n\Z")

@@ -180,7 +180,7 @@ test("the page shows the force that the device gets, and that it is limited", li
   await until(page, (now) => now.time > 0.7, async () => {}); // the force has begun
   const touched = await touches(page);
   assert.ok(touched.force > 0.3 && touched.sent <= 0.2 + 1e-9, `limited to 0.2 N: ${JSON.stringify(touched)}`);
-  await page.waitForFunction(() => /The device gets 0\.2 N of .*: limited for safety/.test(document.querySelector("footer .limited").textContent));
+  await page.waitForFunction(() => /The device receives 0\.2 N of .*: limited for safety/.test(document.querySelector("footer .limited").textContent));
   assert.equal(await page.evaluate(() => window.remoteTouch.run.forceName), "device_force", "the arrow and the sound");
   assert.match(await page.textContent("figcaption"), /force of the device 0\.\d+ N.*commanded/);
   assert.equal((await stop()).code, 0);
@@ -261,7 +261,7 @@ const says = (page, part, text) => page.waitForFunction(([selector, pattern]) =>
 test("each page says who has the hand, and what is with the run and the connection", limit, async () => {
   const { address, signal, ended } = await startLive("fig4.16");
   const { page } = await openLive(address), { page: watching } = await openLive(address);
-  await says(watching, "span", /^Another page has the hand\. This page watches/);
+  await says(watching, "span", /^Another page controls the hand\. This page only watches/);
   const before = await newest(watching), [x, y] = await middle(watching);
   await watching.mouse.move(x, y);
   await watching.mouse.down();
@@ -277,17 +277,17 @@ test("each page says who has the hand, and what is with the run and the connecti
   await page.waitForFunction(() => window.states.length > 1 && window.states.at(-1).state === "open" && window.remoteTouch.run.ticks > 0);
   const states = await page.evaluate(() => window.states);
   assert.deepEqual(states.map(({ state }) => state), ["open", "lost", "open"]);
-  await says(page, "span", /^Another page has the hand/);
+  await says(page, "span", /^Another page controls the hand/);
   await page.close();
   await says(watching, "span", /^Drag to move the hand/);
   await dragMovesTheHand(watching);
 
   signal("SIGSTOP"); // as when the machine sleeps
-  await says(watching, ".status", /^No tick has come for \d+ s: the picture is the last one\. $/);
+  await says(watching, ".status", /^No tick has arrived for \d+ s: the picture is the last one\. $/);
   signal("SIGCONT");
   await says(watching, ".status", /^$/);
-  await watching.evaluate(() => window.remoteTouch.page.showTrouble({ camera: "no frame for 0.2 s: the last cloud stays", force: "the hand is too fast" }));
-  await says(watching, ".status", /^No frame for 0\.2 s: the last cloud stays\. Force is off: the hand is too fast\. $/);
+  await watching.evaluate(() => window.remoteTouch.page.showTrouble({ camera: "no frame for 0.2 s: the last cloud is still rendered", force: "the hand is too fast" }));
+  await says(watching, ".status", /^No frame for 0\.2 s: the last cloud is still rendered\. Force is off: the hand is too fast\. $/);
 
   signal("SIGKILL");
   await ended;
@@ -298,7 +298,7 @@ test("each page says who has the hand, and what is with the run and the connecti
   assert.equal(await watching.evaluate(() => document.body.dataset.state), "other");
   assert.deepEqual(await watching.evaluate(() => {
     const { stateOf } = window.remoteTouch;
-    return ["late", { status: 200, protocol: 2 }, { status: 200, protocol: 2, ended: "its duration is over" }, { status: 200, protocol: 2, full: true },
+    return ["late", { status: 200, protocol: 2 }, { status: 200, protocol: 2, ended: "its duration has elapsed" }, { status: 200, protocol: 2, full: true },
       { status: 200, protocol: 1 }, { status: 200 }].map((answer) => stateOf(answer, 2).kind);
   }), ["lost", "lost", "ended", "full", "version", "version"]);
 });

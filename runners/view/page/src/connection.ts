@@ -126,7 +126,7 @@ export class Connection {
     if (slept) this.heardMs = now;
     const silentS = Math.round((now - this.heardMs) / 1000);
     if (this.isOver || !this.socket || now - this.heardMs < silentMs) return;
-    this.listener.state({ kind: "silent", text: `Nothing has come for ${silentS} s: the program or the connection to it hangs.` });
+    this.listener.state({ kind: "silent", text: `No data has arrived for ${silentS} s: the program or the connection to it hangs.` });
     if (now - this.heardMs < cutMs) return;
     this.socket.close(); // its event comes only when the other end answers
     void this.lost();

@@ -23,12 +23,12 @@ export function stateOf(answer: Answer, protocol: number): LinkState {
     return { kind: "gone", text: `Nothing answers at ${host}: the program was ended or killed, or a tunnel to it is closed.` };
   if (answer === "late") return { kind: "lost", text: `The connection is lost: ${host} does not answer.` };
   if (answer.status !== 200)
-    return { kind: "other", final: true, text: `Another run or program is at ${host} now, and the run of this page is over. Open the address that the terminal prints.` };
+    return { kind: "other", final: true, text: `Another run or program is at ${host} now, and the run of this page has ended. Open the address that the terminal prints.` };
   if (answer.protocol !== protocol)
     return { kind: "version", final: true, text: `The program at ${host} has another version than this page (protocol ${answer.protocol ?? "unknown"}, here ${protocol}). Load the page again.` };
   if (answer.ended) return { kind: "ended", final: true, text: `The run has ended: ${answer.ended}.` };
   if (answer.full) return { kind: "full", text: "As many pages as possible show this run already. This page connects when one of them is closed." };
-  return { kind: "lost", text: "The connection was lost; the run goes on." };
+  return { kind: "lost", text: "The connection was lost; the run continues." };
 }
 
 // Seconds before that attempt, which are counted from 0.

@@ -119,15 +119,15 @@ class LivePage {
   }
   private whoseHand(): string {
     if (this.hasHand === null) return "";
-    if (this.isHand && !this.hasHand) return "Another page has the hand. This page watches, and gets the hand when that page is closed. ";
+    if (this.isHand && !this.hasHand) return "Another page controls the hand. This page only watches, and controls the hand when that page is closed. ";
     if (this.isHand) return this.begun ? "Drag to move the hand, turn the wheel to push it. " : "";
-    const sliders = this.hasHand || this.run.stored.parameters.length === 0 ? "" : "Another page has the sliders. This page gets them when that page is closed. ";
+    const sliders = this.hasHand || this.run.stored.parameters.length === 0 ? "" : "Another page controls the sliders. This page controls them when that page is closed. ";
     return `The hand is ${this.run.stored.device}. ${sliders}`;
   }
   private showStatus(): void {
     const sentence = (text: string) => text && `${text[0].toUpperCase()}${text.slice(1)}. `;
     const silentS = (performance.now() - this.tickMs) / 1000;
-    const ticks = silentS > 1 ? `No tick has come for ${silentS.toFixed(0)} s: the picture is the last one. ` : "";
+    const ticks = silentS > 1 ? `No tick has arrived for ${silentS.toFixed(0)} s: the picture is the last one. ` : "";
     const last = this.link.kind === "ended" ? " The picture is its last one." : "";
     this.status.textContent = this.isLive
       ? ticks + sentence(this.trouble.camera) + sentence(this.trouble.force && `force is off: ${this.trouble.force}`) : this.link.text + last;

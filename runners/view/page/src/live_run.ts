@@ -19,7 +19,7 @@ export function whyLimited(run: Run, tick: number, trouble: Trouble): string {
     waiting: "the force begins when the hand is free", ramping: "the force begins slowly", engaged: "limited for safety, or to what the device can do",
     latched: "the safety gate has switched the force off",
   } as Record<string, string>)[gate];
-  return `The device gets ${newtons(sent)} of ${newtons(commanded)}: ${why}. `;
+  return `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}. `;
 }
 
 // Its ticks are numbered from the first that came; those before the last keptS seconds are gone.

@@ -15,7 +15,7 @@ export const licence = "This page contains three.js, Copyright 2010-2025 three.j
 const keysOfRuns: [string, string][] = [
   ["space", "play or stop"], [", .", "one tick back or on"], ["left, right", "one frame back or on"], ["e", "next event"],
   ["- +", "slower or faster"], ["1 2 3", "camera: sensor, side, follow"], ["t", "true surface on or off"],
-  ["r", "forbidden regions on or off"], ["s", "spheres of the tool on or off"], ["i", "what this is of"], ["h, ?", "this help"],
+  ["r", "forbidden regions on or off"], ["s", "spheres of the tool on or off"], ["i", "configuration and command"], ["h, ?", "this help"],
 ];
 
 // Whether a column has a number other than 0 in any tick; of a live run that has not begun nobody knows.

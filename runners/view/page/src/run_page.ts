@@ -153,7 +153,7 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = ""): { 
   const head = document.createElement("header"), title = document.createElement("h1"), side = document.createElement("aside");
   title.textContent = title.title = heading || run.stored.title || run.stored.file;
   head.append(title, ...(picture.scene ? cameraButtons(picture.scene) : []));
-  head.append(button("What is this of?", "configuration and command (i)", () => dialogs.about.showModal()),
+  head.append(button("What is this?", "configuration and command (i)", () => dialogs.about.showModal()),
     button("Keys", "mouse and keys (h)", () => dialogs.help.showModal()));
   const details = document.createElement("details"), summary = document.createElement("summary");
   summary.textContent = "All columns at this tick";

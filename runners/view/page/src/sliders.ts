@@ -37,7 +37,7 @@ export class Sliders {
 
   constructor(private readonly parameters: LiveParameter[], private readonly send: (changes: Change[]) => void) {
     const legend = document.createElement("legend");
-    legend.append("Parameters ", button("Reset", "as the run began", () => {
+    legend.append("Parameters ", button("Reset", "values at the start of the run", () => {
       for (const group of together(parameters)) this.ask(group.map((i) => ({ parameter: i, value: parameters[i].value })));
     }));
     this.refused.className = "warning";

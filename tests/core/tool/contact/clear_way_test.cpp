@@ -86,7 +86,7 @@ TEST_F(OfABox, FarPointsDoNotStopIt) {
   EXPECT_EQ(fraction({0, 0, 0.0105}, shift({0, 0, 1e-3})), 1);
 }
 
-TEST_F(OfABox, AfterASafeMotionNothingElseIsIn) {
+TEST_F(OfABox, NoOtherPointIsInsideAfterASafeMotion) {
   const double safe_m = way_.safe_motion_m(2e-3);
   EXPECT_GT(safe_m, 1e-3);
   EXPECT_LE(safe_m, 2e-3);

@@ -102,7 +102,7 @@ TEST(ContactList, FewContactsAreAllThere) {
 }
 
 // The answer does not depend on earlier queries. The contacts of searched points are always there.
-TEST(ContactList, WhatIsAskedForIsThereAndNothingFartherAway) {
+TEST(ContactList, HasAllWithinTheAskedDistanceAndNoneFartherAway) {
   const PointCloud cloud = cloud_of(800);
   ContactList list(kTool, {}, scenes::kernels());
   list.on_frame(formatted<TiledCloud>(cloud));
@@ -125,7 +125,7 @@ TEST(ContactList, WhatIsAskedForIsThereAndNothingFartherAway) {
 
 // Most disks are never searched, and still it is the deepest contact of a cell that is kept: the lower bound
 // of a disk holds for a convex tool.
-TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
+TEST(ContactList, HasTheDeepestOfEveryCellOfMany) {
   for (const std::size_t count : {20000u, 100000u}) {
     const PointCloud cloud = cloud_of(count);
     std::map<std::uint64_t, double> deepest;

@@ -27,7 +27,7 @@ TEST(DiskContact, ADiskBelowAFaceIsMetInItsPlane) {
 }
 
 // The same disk with its back to the tool: it is behind the surface.
-TEST(DiskContact, FromBehindThePlaneIsTurned) {
+TEST(DiskContact, TurnsThePlaneIfTheDiskFacesAway) {
   const SurfaceDisk disk = disk_at({0.001, -0.00485, 0.002}, -Vec3::UnitY());
   const ToolContact contact = near_contact(*kPlate, disk, nearest_place(*kPlate, disk), 0);
   EXPECT_EQ(contact.n_T, Vec3(0, 1, 0));
@@ -36,7 +36,7 @@ TEST(DiskContact, FromBehindThePlaneIsTurned) {
 
 // A point that a frame leaves halfway between two faces came from the sensor's side. The field has no clear
 // direction there, so the normal decides.
-TEST(DiskContact, AtTheRidgeOfTheFieldTheNormalTells) {
+TEST(DiskContact, TheNormalDecidesAtTheRidgeOfTheField) {
   for (const double up : {1.0, -1.0}) {
     const SurfaceDisk disk = disk_at({0.001, 0, 0.002}, {0, up, 0});
     ASSERT_LT(disk.at.gradient_T.norm(), 0.1);
@@ -88,7 +88,7 @@ TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
 
 // The field over a disk of one point is flat below a slope; over a disk of many it must not rise by much,
 // too.
-TEST(DiskContact, WhereTheFieldIsFlat) {
+TEST(DiskContact, FlatFieldDependsOnSlopeDepthAndExtent) {
   const double slope = 0.9 * disk_search::kFlatSlope, steep = 1.1 * disk_search::kFlatSlope;
   const double small_m = 0.9 * disk_search::kFlatDepth_m / slope,
                large_m = 1.1 * disk_search::kFlatDepth_m / slope;

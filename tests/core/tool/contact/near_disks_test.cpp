@@ -63,7 +63,7 @@ std::vector<SurfaceDisk> plain_disks(const TiledCloud& cloud, const ToolPose& po
 
 // True if the bound is the field's own distance: the disk is near enough to be searched, and the field is too
 // flat in the disk's plane for a slide to begin.
-bool is_exact(const SurfaceDisk& disk) {
+bool bound_is_distance(const SurfaceDisk& disk) {
   const Vec3 along = disk.at.gradient_T - disk.at.gradient_T.dot(disk.n_T) * disk.n_T;
   return lower_bound_m(disk) <= NearDisks::kSearch_m && is_flat(along.norm(), disk.radius_m, disk.extent_m);
 }
@@ -77,7 +77,7 @@ bool is_exact(const SurfaceDisk& disk) {
     const bool is_same = disk.p_T == plain.p_T && same(disk.n_T, plain.n_T) &&
                          disk.radius_m == plain.radius_m && disk.at.distance_m == plain.at.distance_m &&
                          disk.at.gradient_T == plain.at.gradient_T && found.lower_m(k) == lower_m &&
-                         found.bound_m(k) == (is_exact(plain) ? plain.at.distance_m : lower_m) &&
+                         found.bound_m(k) == (bound_is_distance(plain) ? plain.at.distance_m : lower_m) &&
                          found.cell(k) == cell_and_octant(plain.p_T, -plain.at.gradient_T, 1 / kCell_m);
     if (!is_same) return ::testing::AssertionFailure() << "disk " << k << " is another one";
   }
@@ -177,7 +177,7 @@ TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
 }
 
 // A list that has looked at the pose already, and one that has not.
-TEST(NearDisks, WhatIsTouchedIsTheSameAfterADetection) {
+TEST(NearDisks, ADetectionDoesNotChangeWhatIsTouched) {
   const PointCloud cloud = cloud_with_normals();
   ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());
   looked.on_frame(formatted<TiledCloud>(cloud)), fresh.on_frame(formatted<TiledCloud>(cloud));

@@ -117,7 +117,7 @@ TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
   EXPECT_EQ(count, cloud.size());
 }
 
-TEST(NearPoints, NothingIsNearAToolFarAway) {
+TEST(NearPoints, NoneAreFoundForAToolFarAway) {
   Look look(scenes::random_cloud(2000, 0.03, 25), scenes::kernels());
   std::size_t count = 1;
   EXPECT_TRUE(look.is_right({{0.5, 0, 0}, Eigen::Quaterniond::Identity()}, 1e-3, count));

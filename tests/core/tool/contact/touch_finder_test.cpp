@@ -118,7 +118,7 @@ TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
   for (const auto& list : lists) EXPECT_EQ(list, lists.front());
 }
 
-TEST(TouchFinder, NothingIsFoundInAnEmptyCloudOrFarAway) {
+TEST(TouchFinder, FindsNothingInAnEmptyCloudOrFarAway) {
   TouchFinder finder(scenes::box_tool(kHalf_m), scenes::kernels());
   EXPECT_TRUE(finder.in_tool({}).empty());  // before the first frame
   finder.on_frame(formatted<TiledCloud>({}));

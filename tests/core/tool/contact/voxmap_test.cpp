@@ -35,7 +35,7 @@ TEST(Voxmap, HasTheVoxelsThatHoldAPoint) {
   EXPECT_GT(surface, 500);
 }
 
-TEST(Voxmap, WithoutPointsAllIsFree) {
+TEST(Voxmap, AllIsFreeIfThereAreNoUsablePoints) {
   PointCloud cloud;
   EXPECT_FALSE(Voxmap(cloud, 0.003).surface_middle_W(Vec3::Zero()));
   cloud.append(Vec3::Constant(std::nan("")));

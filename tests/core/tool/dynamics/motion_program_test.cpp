@@ -21,7 +21,7 @@ double gap_speed(const ToolContact& c, const Vector6& a_g) {  // the left side o
   return c.n_T.dot(a_g.head<3>()) + c.r_T.cross(c.n_T).dot(a_g.tail<3>());
 }
 
-TEST(MotionProgram, WithoutContactsTheWishIsGranted) {
+TEST(MotionProgram, GrantsTheDesiredMotionIfThereAreNoContacts) {
   MotionProgram program({}, *kTool);
   const Vector6 wanted = desired({1e-3, -2e-3, 5e-4}, {0.01, 0, -0.02});
   const ConstrainedMotion motion = program.solve(wanted, {});
@@ -78,7 +78,7 @@ TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
   EXPECT_NEAR(motion.a_g[1], 0, 1e-6);
 }
 
-TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
+TEST(MotionProgram, NanContactsAreLeftOut) {
   MotionProgram program({}, *kTool);
   std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::Constant(std::nan("")), 0, 1},
                                        {{0, -0.005, 0}, Vec3::UnitY(), std::nan(""), 1},
@@ -90,7 +90,7 @@ TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
 
 // The coupling turns the blocked rest of the desired motion into a wrench. It is one that a single contact
 // can exert: a force f n and the torque f r x n. With the inertia of the tool as the metric it is not.
-TEST(MotionProgram, OnACornerTheWrenchOfTheCouplingIsThatOfTheContact) {
+TEST(MotionProgram, CouplingWrenchOnACornerIsThatOfTheContact) {
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0.004}, Vec3(0.1, 1, 0.2).normalized(), 0, 1}};
   const Vector6 wish = desired({1e-4, -2e-3, 0}, {0.01, 0, -0.02});
   const auto torque_error = [&](MotionMetric metric) {

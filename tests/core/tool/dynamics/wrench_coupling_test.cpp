@@ -136,7 +136,7 @@ TEST(WrenchCoupling, DoesNoWorkAroundAClosedLoop) {
 
 // While K is the same about all axes, J^-T phi = phi and its Jacobian has no effect. For a diagonal K it is
 // what makes the torque that of an energy.
-TEST(WrenchCoupling, WithoutTheJacobianADiagonalKDoesWork) {
+TEST(WrenchCoupling, ADiagonalKDoesWorkIfTheJacobianIsLeftOut) {
   const ToolPose tool{{0.002, 0, -0.01}, rotation({0.2, -0.4, 0.3})};
   const auto without_jacobian = [](const ToolParameters& p) {
     return [&p](const ToolPose& at, const ToolPose& device) {

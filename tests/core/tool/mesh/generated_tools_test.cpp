@@ -102,7 +102,7 @@ TEST(MarchingTetrahedra, RefusesABodyThatIsCutOff) {
 }
 
 // Zeros exactly at nodes, and two bodies that touch in one.
-TEST(MarchingTetrahedra, StaysClosedWhereTheFunctionVanishesAtNodes) {
+TEST(MarchingTetrahedra, MeshIsClosedIfTheFunctionVanishesAtNodes) {
   const auto diamond = [](const Vec3& p) { return p.cwiseAbs().sum() - 2; };
   const auto two = [](const Vec3& p) {
     return std::min((p - Vec3(1, 0, 0)).norm(), (p + Vec3(1, 0, 0)).norm()) - 1;

@@ -59,7 +59,7 @@ TEST(MeshCheck, PartsAndInsideOut) {
   EXPECT_HAS(text(check), "inside out");
 }
 
-TEST(MeshCheck, WhatCannotBeReadIsCounted) {
+TEST(MeshCheck, CountsBadVerticesAndIndices) {
   TriangleMesh bad = kBox;
   bad.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
   bad.vertices[4].x() = std::numeric_limits<double>::infinity();

@@ -59,7 +59,7 @@ Polygon around(int corners, int step) {
   return polygon;
 }
 
-TEST(PolygonTriangles, OfAConvexPolygonAreAFan) {
+TEST(PolygonTriangles, AreAFanForAConvexPolygon) {
   const auto triangles = polygon_triangles(around(6, 1));
   ASSERT_TRUE(triangles);
   EXPECT_EQ(*triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}));
@@ -71,7 +71,7 @@ TEST(PolygonTriangles, LeaveTheNotchesOfConcavePolygonsEmpty) {
   expect_covered_from_everywhere({{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}});  // an arrow
 }
 
-TEST(PolygonTriangles, OfAStarAndAComb) {
+TEST(PolygonTriangles, CoverAStarAndAComb) {
   Polygon star = around(14, 1), comb{{0, 0, 0}, {21, 0, 0}};
   for (std::size_t i = 0; i < star.size(); i += 2) star[i] *= 0.2;
   expect_covered_from_everywhere(star);
@@ -84,7 +84,7 @@ TEST(PolygonTriangles, HaveNoneWithoutAreaWhereCornersLieOnStraightEdges) {
       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
 }
 
-TEST(PolygonTriangles, OfABentFaceOfFourFollowItsShadow) {
+TEST(PolygonTriangles, FollowTheShadowOfABentFaceOfFour) {
   const auto triangles = polygon_triangles({{0, 0, 0}, {2, 0, 0.1}, {0.5, 0.5, 0}, {0, 2, 0.1}});
   ASSERT_TRUE(triangles);
   for (const auto& triangle : *triangles)
@@ -105,7 +105,7 @@ TEST(PolygonTriangles, DoNotExistWhereEdgesCrossOrTouch) {
       polygon_triangles({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {9, 2, 0}, {4, 2, 0}, {0, 4, 0}}));  // a spike
 }
 
-TEST(PolygonTriangles, WithoutAreaAreAFan) {
+TEST(PolygonTriangles, AreAFanForAPolygonWithoutArea) {
   const auto triangles = polygon_triangles({{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}});
   ASSERT_TRUE(triangles);
   EXPECT_EQ(triangles->size(), 2u);

@@ -90,7 +90,7 @@ TEST(ContinuousMotion, IsCarriedInAnyDirection) {
   }
 }
 
-TEST(ContinuousMotion, OfTheBackOfASurfaceToo) {
+TEST(ContinuousMotion, HoldsAndCarriesTheToolOnTheBackOfASurface) {
   Ride ride({});
   double height_m = 0;
   ride.frame({}, 0.0);
@@ -136,7 +136,7 @@ PointCloud together(const PointCloud& a, const PointCloud& b) {
 }
 
 // Held on the lower of two sheets that face up: whatever its frames do, it is not found on the upper one.
-TEST(ContinuousMotion, StaysOnItsOwnSheet) {
+TEST(ContinuousMotion, KeepsTheToolOnItsOwnSheet) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 2e-4);
   for (const double rise_m : {0.0, 1e-4, 0.001, 0.003}) {
@@ -171,7 +171,7 @@ TEST(ContinuousMotion, NeedsNoNormals) {
 }
 
 // The plate stays between two sheets that close on it, however often frames come.
-TEST(ContinuousMotion, StaysBetweenWallsThatClose) {
+TEST(ContinuousMotion, KeepsTheToolBetweenWallsThatClose) {
   Ride ride({});
   for (int n = 0; n < 20; ++n) {
     const double gap_m = std::max(0.006 - 0.0003 * n, 0.002);

@@ -45,7 +45,7 @@ RenderOutput settled(ToolRenderer& r, const DeviceState& device, int ticks = 20)
   return out;
 }
 
-TEST(GodObjectMotion, InFreeSpaceTheToolIsTheDevice) {
+TEST(GodObjectMotion, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet()));
   for (int i = 0; i < 100; ++i) {
@@ -160,7 +160,7 @@ TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
 }
 
 // Walls with less room than the gap: J a >= 0 still has an answer.
-TEST(GodObjectMotion, BetweenWallsThatAreTooNearItWaits) {
+TEST(GodObjectMotion, WaitsBetweenWallsThatAreTooNear) {
   PointCloud walls = sheet(-0.00502);
   for (int j = -20; j <= 20; ++j)
     for (int i = -20; i <= 20; ++i) walls.append({0.002 * i, 0.00502, 0.002 * j}, -Vec3::UnitY());

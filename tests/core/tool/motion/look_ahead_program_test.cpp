@@ -49,13 +49,14 @@ class Planes final : public NearContactSource {
   std::vector<ToolContact> all_, listed_;
 };
 
-// Contact planes from one side or, with is_wedge, from all around: up to a look-ahead away, and pressed in by
-// depth_m.
-std::vector<ToolContact> planes_around(std::mt19937& random, int count, double depth_m, bool is_wedge) {
+// Contact planes from one side or, with from_all_sides, from all around: up to a look-ahead away, and pressed
+// in by depth_m.
+std::vector<ToolContact> planes_around(std::mt19937& random, int count, double depth_m, bool from_all_sides) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<ToolContact> all;
   for (int i = 0; i < count; ++i) {
-    const Vec3 outside = Vec3(unit(random), unit(random) - (is_wedge ? 0 : 1.5), unit(random)).normalized();
+    const Vec3 outside =
+        Vec3(unit(random), unit(random) - (from_all_sides ? 0 : 1.5), unit(random)).normalized();
     all.push_back({0.007 * outside, -outside, depth_m - std::pow(unit(random), 2) * 2e-3, 1});
   }
   return all;
@@ -149,7 +150,7 @@ PointCloud around(const VoxelTool& tool, std::size_t count, double radius_m) {
 
 // Fewer points than a program takes, so that none is left out. In a fork, which is not convex, a disk can be
 // nearer than its lower bound.
-TEST(LookAheadProgram, OfPointsItFindsTheMotionThatAllAllow) {
+TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
   ToolReport report;
   const auto fork =
       std::make_shared<const VoxelTool>(make_voxel_tool(find_generated_tool("fork")->make(), {}, report));

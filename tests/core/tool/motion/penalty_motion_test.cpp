@@ -43,7 +43,7 @@ RenderOutput pressed(const PointCloud& cloud, double lower_side_m, const ToolPen
   return out;
 }
 
-TEST(PenaltyMotion, InFreeSpaceTheToolIsTheDevice) {
+TEST(PenaltyMotion, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet(40, 40)));
   for (int i = 0; i < 100; ++i) {
@@ -94,7 +94,7 @@ TEST(PenaltyMotion, PressedHardItPassesTheSurface) {
 // The sheet lies on the lower side of a layer of voxels, so the planes go through the voxels' middles:
 // k (y - y_device) = 10 k_p (s / 2 - y)
 // for the lower side y of the tool. Its points are not quite symmetric, so it tilts slightly.
-TEST(PenaltyMotion, OnAVoxmapItRestsOnTheMiddlesOfVoxels) {
+TEST(PenaltyMotion, RestsOnTheMiddlesOfTheVoxelsOfAVoxmap) {
   constexpr double k = 600, k_p = 2400;
   for (const double voxel_m : {0.003, 0.004}) {
     ToolPenaltyParameters p;

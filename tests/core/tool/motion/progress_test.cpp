@@ -5,7 +5,7 @@
 namespace remote_touch::progress_test {
 namespace {
 
-TEST(MotionProgress, GoesOnWhileTheToolComesNearer) {
+TEST(MotionProgress, HasNotEndedWhileTheToolComesNearer) {
   MotionProgress progress(0.125, 2);
   for (double left = 10; left > 0; left -= 0.25) {
     progress.update(left);

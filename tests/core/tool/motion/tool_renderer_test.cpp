@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Tool, EveryRule,
                            }
                          });
 
-TEST_P(EveryRule, InFreeSpaceTheToolIsTheDevice) {
+TEST_P(EveryRule, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer(GetParam());
   r.on_frame(scenes::frame(sheet()));
   for (int i = 0; i < 100; ++i) {
@@ -181,7 +181,7 @@ TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
   }
 }
 
-TEST(ToolRenderer, WithoutADeviceYetTheSlaveIsNotSentAnywhere) {
+TEST(ToolRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
   ToolParameters p;
   p.slave_command = ToolCommand::hip;
   ToolRenderer r = renderer(TouchRule::look_ahead, p);
@@ -222,7 +222,7 @@ TEST(ToolRenderer, SlidesWithoutRipple) {
 }
 
 // A walk through clutter: no output is NaN, and the tool is never deeper than a voxel while the frame rests.
-TEST_P(EveryRule, AWalkThroughClutterStaysOutside) {
+TEST_P(EveryRule, IsNeverDeeperThanAVoxelOnAWalkThroughClutter) {
   PointCloud clutter = sheet();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-0.05, 0.05);

@@ -56,7 +56,7 @@ TEST(MassProperties, InsideOutOnlyTheVolumeChangesItsSign) {
   EXPECT_LT((wrong.inertia_m2 - right.inertia_m2).norm(), 1e-12);
 }
 
-TEST(MassProperties, OfNodesAreThoseOfTheMesh) {
+TEST(MassProperties, AreTheSameFromNodesAndFromTheMesh) {
   const TriangleMesh body = meshes::any_body("husky");
   const VoxelGrid grid = grid_around(body, 1e-3);
   const MassProperties fine = mass_properties(body),

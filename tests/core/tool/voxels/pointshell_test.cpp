@@ -22,7 +22,7 @@ std::size_t shell_cubes(const Vec3& half_m, double voxel_m, double spacing_m) {
   return static_cast<std::size_t>(all - inner);
 }
 
-TEST(Pointshell, OfABoxLiesOnItsFacesWithNormalsInto) {
+TEST(Pointshell, LiesOnTheFacesOfABoxWithNormalsIntoIt) {
   const Vec3 half_m(0.02, 0.005, 0.01);
   constexpr double kVoxel_m = 5e-4;
   const auto tool = scenes::box_tool(half_m, kVoxel_m);

@@ -131,7 +131,7 @@ TEST(VoxelTool, RefusesWhatIsNoBody) {
   bad.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 vertices that are not finite");
   bad = box, bad.triangles[0][0] = 99;
-  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangles with a corner that is no vertex");
+  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangles with a corner that is not a vertex");
   EXPECT_HAS(refusal([] { make(box_mesh({0.03, 0.02, 0})); }), "encloses no volume");
   EXPECT_HAS(refusal([] { make(box_mesh({0, 0, 0})); }), "has no size");
 }
@@ -147,7 +147,7 @@ TEST(VoxelTool, RepairGivesBackTheBox) {
 }
 
 // A fin on an edge of a box cannot be closed; the box stays solid and the fin is shell only.
-TEST(VoxelTool, WhatCannotBeClosedIsSolidByWindingNumbers) {
+TEST(VoxelTool, AMeshThatCannotBeClosedIsSolidByWindingNumbers) {
   TriangleMesh fin = box_mesh({0.03, 0.02, 0.01});
   const Vec3 edge = fin.vertices[1] - fin.vertices[0];
   fin.vertices.push_back(fin.vertices[0] + edge / 2 + Vec3(0, -0.005, -0.005));
@@ -162,7 +162,7 @@ TEST(VoxelTool, WhatCannotBeClosedIsSolidByWindingNumbers) {
   EXPECT_HAS(text(report), "solid by winding numbers");
 }
 
-TEST(VoxelTool, TellsHowMuchIsThin) {
+TEST(VoxelTool, ReportsHowMuchIsThin) {
   EXPECT_EQ(report_of(box_mesh({0.03, 0.02, 0.01})).thin_fraction, 0);
   const TriangleMesh sheet =
       meshes::together(box_mesh({0.03, 0.02, 0.01}), box_mesh({0.03, 0.02, 0.0004}, {0, 0, 0.03}));

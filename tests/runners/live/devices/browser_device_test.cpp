@@ -35,15 +35,15 @@ class BrowserDeviceTest : public testing::Test {
   BrowserDevice device_{poses_, start_, DevicePlacement(LiveSettings{}), kRate_hz, clock_};
 };
 
-TEST_F(BrowserDeviceTest, StaysWhereItStartsUntilItIsMoved) {
+TEST_F(BrowserDeviceTest, IsAtItsStartUntilItIsMoved) {
   EXPECT_EQ(after(50).position_m, start_.position_W);
 }
 
 // x(t) = d (1 - (1 + w t) e^(-w t)), as long as that is slower than the limit. Steps of a millisecond, the
 // velocity first, are ahead of it by a third of w times the step, 2 % of d, where they are worst.
-constexpr double kAhead = BrowserDevice::kStiffness_per_s * 0.001 / 3;
+constexpr double kAhead = BrowserDevice::kNaturalFrequency_rad_per_s * 0.001 / 3;
 TEST_F(BrowserDeviceTest, FollowsAsACriticallyDampedSpringWould) {
-  const double d = 0.004, w = BrowserDevice::kStiffness_per_s;
+  const double d = 0.004, w = BrowserDevice::kNaturalFrequency_rad_per_s;
   after(1);
   want({start_.position_W + Vec3(0, d, 0)});
   for (int ms = 1; ms <= 200; ++ms) {
@@ -72,7 +72,7 @@ TEST_F(BrowserDeviceTest, IsNeverFasterThanItsLimits) {
   EXPECT_LT(fastest, 0.9 * SafetyLimits{}.max_speed_m_per_s) << "the safety gate does not mind";
 }
 
-TEST_F(BrowserDeviceTest, TurnsToThePoseAndTellsTheButtons) {
+TEST_F(BrowserDeviceTest, TurnsToThePoseAndReportsTheButtons) {
   HandPose turned{start_.position_W};
   turned.orientation_W = Eigen::AngleAxisd(0.5, Vec3(1, 2, 2) / 3);
   turned.buttons = 3;
@@ -88,7 +88,7 @@ TEST_F(BrowserDeviceTest, MovesOnWhileTicksAreMissed) {
   clock_.sleep_s(0.03);
   DeviceReading reading;
   device_.read(reading);
-  const double t = 0.03, w = BrowserDevice::kStiffness_per_s;
+  const double t = 0.03, w = BrowserDevice::kNaturalFrequency_rad_per_s;
   EXPECT_NEAR(reading.position_m.y() - 0.2, 0.004 * (1 - (1 + w * t) * std::exp(-w * t)), kAhead * 0.004);
 }
 

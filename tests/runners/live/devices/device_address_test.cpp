@@ -18,7 +18,7 @@ TEST(DeviceAddress, APlaceAndItsSettings) {
   EXPECT_EQ(address.word("force", "none"), "vector");
 }
 
-TEST(DeviceAddress, WithoutSettingsTheyHaveTheirDefaults) {
+TEST(DeviceAddress, MissingSettingsHaveTheirDefaults) {
   const DeviceAddress address("fd", "", kKnown);
   EXPECT_EQ(address.place(), "");
   EXPECT_FALSE(address.has("rate"));
@@ -34,7 +34,7 @@ TEST(DeviceAddress, WrongSettingsAreNamed) {
   EXPECT_HAS(refused("0?moon=1"), "fd:0?moon=1: has no setting \"moon\": expected rate, force");
   EXPECT_HAS(refused("0?rate="), "the setting rate has no value; write rate=VALUE");
   EXPECT_HAS(refused("0?rate"), "the setting rate has no value; write rate=VALUE");
-  EXPECT_HAS(refused("0?rate=5&rate=6"), "the setting rate is there twice: expected once");
+  EXPECT_HAS(refused("0?rate=5&rate=6"), "the setting rate is given twice: expected once");
   for (const char* number : {"0.5", "4001", "x", "nan"})
     EXPECT_HAS(refused(std::string("?rate=") + number), "expected a number from 1 to 4000") << number;
 }

@@ -67,7 +67,7 @@ TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {
 }
 
 // Whatever its library says of a turn.
-TEST_F(ForceDimensionTest, WithoutAWristItDoesNotTurn) {
+TEST_F(ForceDimensionTest, DoesNotTurnIfItHasNoWrist) {
   double_->set([](DeviceDouble::State& state) {
     state.sensed_axes = state.actuated_axes = 3;
     state.rotation = {};

@@ -43,7 +43,7 @@ TEST_F(HaplyFault, ClosedConnectionStaysAFault) {
 }
 
 // A tick with it ends well before the 10 ms after which the loop counts as hung.
-TEST_F(HaplyFault, AHangingServiceIsWaitedForNoLongerThanTold) {
+TEST_F(HaplyFault, WaitsForAHangingServiceForABoundedTime) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device), "");
   service_.hang();
@@ -92,10 +92,10 @@ TEST_F(HaplyFault, GarbageInsteadOfAState) {
   EXPECT_EQ(tick(*device), "");
 }
 
-TEST_F(HaplyFault, ForceThatIsNoNumber) {
+TEST_F(HaplyFault, ReportsANanForceAndSendsZero) {
   const auto device = service_.open();
   const Vec3 none(0, std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_EQ(tick(*device, none), "a force that is no number");
+  EXPECT_EQ(tick(*device, none), "the commanded force is not finite");
   EXPECT_EQ(tick(*device), "");
   for (const auto& sent : service_.sent()) EXPECT_TRUE(sent.command.force_N.isZero());
 }
@@ -122,15 +122,15 @@ TEST_F(HaplyFault, BothForceKeys) {
 
 TEST_F(HaplyFault, ForceThatDoesNotFollow) {
   HaplyWorld& world = service_.world;
-  world.gate = 0.3;  // the gate of the documentation's sample
+  world.force_factor = 0.3;  // the gate of the documentation's sample
   EXPECT_EQ(first_fault(*service_.open(), {0, 3, 0}).tick, -1);
-  world.gate = -1;
+  world.force_factor = -1;
   const FirstFault opposite = first_fault(*service_.open(), {0, 1, 0});
-  EXPECT_HAS(opposite.text, "does not give the force that it is sent");
+  EXPECT_HAS(opposite.text, "does not apply the force that it is sent");
   EXPECT_EQ(opposite.tick, kUnfollowedTick);
-  world.gate = 1;
+  world.force_factor = 1;
   world.other_N = Vec3(0, 0, 2);
-  EXPECT_HAS(first_fault(*service_.open(), {0, 0, 0}).text, "gives a force that it was not sent");
+  EXPECT_HAS(first_fault(*service_.open(), {0, 0, 0}).text, "applies a force that it was not sent");
   world.reports_force = false;
   EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
 }
@@ -155,13 +155,13 @@ TEST_F(HaplyRelease, TheLastCommandIsNoForce) {
   EXPECT_TRUE(service_.is_cut());
 }
 
-TEST_F(HaplyRelease, BetweenTwoTicks) {
+TEST_F(HaplyRelease, ReleaseBetweenTwoTicksSendsZeroForceAtOnce) {
   const auto device = service_.open();
   let_go_at(*device, 0.0207);
   std::string last;
   for (int i = 0; i < 40; ++i) last = tick(*device, {1, 0, 0});
   EXPECT_EQ(took_us_, 200);  // it waits for the service's answer
-  EXPECT_EQ(last, "the device was let go");
+  EXPECT_EQ(last, "the device was released");
   EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
   EXPECT_EQ(newest_force_N(), 0);
   device->release();
@@ -175,7 +175,7 @@ TEST_F(HaplyRelease, WhileATickHangs) {
   ASSERT_EQ(told(device->read(reading_)), "");
   let_go_at(*device, 0.02);
   clock_.sleep_s(0.1);
-  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was let go");
+  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was released");
   EXPECT_EQ(service_.sent().back().at_ns, ms(20));
   EXPECT_EQ(newest_force_N(), 0);
 }
@@ -199,7 +199,7 @@ TEST_F(HaplyRelease, WhileTheServiceHangs) {
   EXPECT_EQ(takes_us([&] { device->release(); }), 20'000);
   EXPECT_EQ(newest_force_N(), 0);
   EXPECT_TRUE(service_.is_cut());
-  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was let go");
+  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was released");
 }
 
 }  // namespace

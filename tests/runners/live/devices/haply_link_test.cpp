@@ -133,7 +133,7 @@ class SilentPort {
   int number_ = 0;
 };
 
-TEST(HaplyLink, WhatCannotBeOpened) {
+TEST(HaplyLink, RefusesAddressesThatCannotBeOpened) {
   const SilentPort silent;
   const std::string gone = "ws://127.0.0.1:" + std::to_string(silent.number());
   EXPECT_HAS(refusal([&] { open_link(gone); }), "haply:" + gone + ": no Haply service at " + gone + "/ (");

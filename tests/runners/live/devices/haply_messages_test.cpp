@@ -72,7 +72,7 @@ std::string with_x(const std::string& x) {
   return R"({"inverse3":[{"state":{"cursor_position":{"x":)" + x + R"(,"y":0,"z":0}}}]})";
 }
 
-TEST(HaplyMessage, WhatIsNone) {
+TEST(HaplyMessage, RefusesWhatIsNotAMessage) {
   HaplyMessage message;
   EXPECT_TRUE(read_haply_message(with_x("-1e-3"), "", "", message));
   for (const char* x :
@@ -123,7 +123,7 @@ TEST(HaplyForceCommand, IsTheCommandOfTheDocumentation) {
   EXPECT_FALSE(command.set_device(std::string(300, 'a'), HaplyForceKey::vector));
 }
 
-TEST(HaplyMessage, NothingIsAllocated) {
+TEST(HaplyMessage, ReadingAndWritingAllocateNothing) {
   HaplyForceCommand command;
   ASSERT_TRUE(command.set_device("049D", HaplyForceKey::vector));
   const double smallest = -std::numeric_limits<double>::denorm_min();

@@ -56,7 +56,7 @@ TEST_F(Haply, OrientationAndButtonsOfTheHandle) {
 
   world.orientation.coeffs().setZero();
   tick(*device);
-  EXPECT_EQ(tick(*device), "the handle sent an orientation that is none");
+  EXPECT_EQ(tick(*device), "the handle sent an orientation that is not a unit quaternion");
   world.has_handle = false;
   tick(*device);
   EXPECT_EQ(tick(*device), "the handle is no longer in the states of the service");
@@ -65,7 +65,7 @@ TEST_F(Haply, OrientationAndButtonsOfTheHandle) {
 TEST_F(Haply, NoHandleAndAWiredOne) {
   service_.world.has_handle = false;
   EXPECT_EQ(service_.open()->traits().sensed_axes, 3);
-  EXPECT_HAS(refusal([&] { service_.open("?handle=61548"); }), "knows no handle \"61548\"; pair it");
+  EXPECT_HAS(refusal([&] { service_.open("?handle=61548"); }), "lists no handle \"61548\"; pair it");
   service_.world.has_handle = service_.world.is_handle_wired = service_.world.a = true;
   const auto device = service_.open();
   ASSERT_EQ(tick(*device), "");
@@ -84,10 +84,10 @@ TEST_F(Haply, DevicesByName) {
     tick(*device);
     EXPECT_EQ(tick(*device), "the Inverse3 is no longer in the states of the service");
   }
-  EXPECT_HAS(refusal([&] { service_.open("?device=04BA"); }), "knows no Inverse3 \"04BA\"; plug it in");
+  EXPECT_HAS(refusal([&] { service_.open("?device=04BA"); }), "lists no Inverse3 \"04BA\"; plug it in");
 }
 
-TEST_F(Haply, WhatCannotBeOpened) {
+TEST_F(Haply, RefusesWhatCannotBeOpened) {
   const auto refused = [&](const HaplyWorld& world, const std::string& settings = "") {
     service_.world = world;
     return refusal([&] { service_.open(settings); });
@@ -97,10 +97,10 @@ TEST_F(Haply, WhatCannotBeOpened) {
   EXPECT_HAS(refused({}, "?rate=nan"), "rate is \"nan\": expected a number from 100 to 8000");
   HaplyWorld world;
   world.devices.clear();
-  EXPECT_HAS(refused(world), "knows no Inverse3; plug it in");
+  EXPECT_HAS(refused(world), "lists no Inverse3; plug it in");
   world = {};
   world.basis = "XZY";
-  EXPECT_HAS(refused(world), "turn its axes to XZY; set the basis");
+  EXPECT_HAS(refused(world), "is set to the basis XZY; set the basis");
   world = {};
   world.answer = "{}";
   EXPECT_HAS(refused(world), "no first state (the Inverse3 is no longer");
@@ -113,7 +113,7 @@ TEST_F(Haply, WhatCannotBeOpened) {
 
 TEST_F(Haply, AServiceThatIsSilentIsRefusedAfterASecond) {
   service_.hang();
-  EXPECT_HAS(refusal([&] { service_.open(); }), "it owes an inventory; is this the Inverse service?");
+  EXPECT_HAS(refusal([&] { service_.open(); }), "an inventory was expected; is this the Inverse service?");
   EXPECT_EQ(clock_.now_ns(), ms(1000));
 }
 

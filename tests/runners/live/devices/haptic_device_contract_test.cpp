@@ -111,7 +111,7 @@ TEST_P(TellsOfMotors, NoTorqueForADeviceWithoutMotorsForIt) {
   EXPECT_EQ(arrived[0][5], 0);
 }
 
-TEST_P(HapticDeviceContract, AThousandTicksASecondUntilToldToStop) {
+TEST_P(HapticDeviceContract, RunsAThousandTicksASecondUntilItIsStopped) {
   const auto device = open();
   std::vector<std::int64_t> at_us;
   run_ticks(*device, 300, [&](int) { at_us.push_back(clock_.now_ns() / 1000); });
@@ -186,11 +186,11 @@ TEST_P(HapticDeviceContract, UnpluggedWhileRunningIsAFault) {
   });
   EXPECT_GE(good, 20);
   EXPECT_GE(reading_faults, 18);
-  EXPECT_EQ(last.code, vendor().gone_error) << last.what;
+  EXPECT_EQ(last.code, vendor().unplugged_code) << last.what;
   EXPECT_EQ(writing_faults, vendor().drives_itself ? 0 : 20);
 }
 
-TEST_P(HapticDeviceContract, WhatIsNoNumberIsAFault) {
+TEST_P(HapticDeviceContract, NanOrInfinityInAReadingIsAFault) {
   const auto device = open();
   const auto fault_with = [&](auto change) {
     double_->set([](DeviceDouble::State& state) { state = {}; });
@@ -214,11 +214,11 @@ TEST_P(HapticDeviceContract, ATurnThatIsNoRotationIsAFault) {
     double_->set([&](DeviceDouble::State& state) { state.rotation = turn; });
     const DeviceFault fault = read_once(*device).fault;
     ASSERT_TRUE(fault);
-    EXPECT_HAS(fault.what, "no rotation");
+    EXPECT_HAS(fault.what, "not a rotation");
   }
 }
 
-TEST_P(HapticDeviceContract, AForceThatIsNoNumberIsNotTold) {
+TEST_P(HapticDeviceContract, ANanForceIsNotSent) {
   const auto device = open();
   run_ticks(*device, 2, [&](int i) {
     DeviceReading reading;
@@ -243,11 +243,11 @@ TEST_P(HapticDeviceContract, ErrorsOfTheVendorArePassedOn) {
     if (i == 5) after = reads;
   });
   ASSERT_TRUE(read);
-  EXPECT_EQ(read.code, vendor().sent_error) << read.what;
+  EXPECT_EQ(read.code, vendor().fault_code) << read.what;
   // OpenHaptics tells of a force in the next frame.
   const DeviceFault& of_force = vendor().drives_itself ? after : written;
   ASSERT_TRUE(of_force);
-  EXPECT_EQ(of_force.code, vendor().sent_error) << of_force.what;
+  EXPECT_EQ(of_force.code, vendor().fault_code) << of_force.what;
 }
 
 std::string name_of(const testing::TestParamInfo<const VendorDevice*>& tested) {

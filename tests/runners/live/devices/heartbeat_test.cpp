@@ -29,12 +29,12 @@ class HeartbeatTest : public testing::Test {
   Heartbeat heartbeat_{device_, 0.01};
 };
 
-TEST_F(HeartbeatTest, NothingIsExpectedBeforeTheFirstBeat) {
+TEST_F(HeartbeatTest, ExpectsNoBeatBeforeTheFirst) {
   heartbeat_.check(ms(1000));
   EXPECT_EQ(device_.times_let_go, 0);
 }
 
-TEST_F(HeartbeatTest, LetsGoAfterMoreThanItsTime) {
+TEST_F(HeartbeatTest, ReleasesTheDeviceAfterMoreThanItsTime) {
   EXPECT_TRUE(heartbeat_.beat(ms(5)));
   heartbeat_.check(ms(15));
   EXPECT_EQ(device_.times_let_go, 0);
@@ -43,7 +43,7 @@ TEST_F(HeartbeatTest, LetsGoAfterMoreThanItsTime) {
   EXPECT_EQ(heartbeat_.stalls(), 1);
 }
 
-TEST_F(HeartbeatTest, LetsGoOnceAStallAndSaysSoAtTheNextBeat) {
+TEST_F(HeartbeatTest, ReleasesOnceAStallAndSaysSoAtTheNextBeat) {
   heartbeat_.beat(0);
   for (int i = 1; i < 100; ++i) heartbeat_.check(ms(i));
   EXPECT_EQ(device_.times_let_go, 1);
@@ -54,7 +54,7 @@ TEST_F(HeartbeatTest, LetsGoOnceAStallAndSaysSoAtTheNextBeat) {
   EXPECT_EQ(heartbeat_.stalls(), 2);
 }
 
-TEST_F(HeartbeatTest, NothingIsExpectedAfterTheLastBeat) {
+TEST_F(HeartbeatTest, ExpectsNoBeatAfterTheLast) {
   heartbeat_.beat(0);
   heartbeat_.rest();
   heartbeat_.check(ms(1000));

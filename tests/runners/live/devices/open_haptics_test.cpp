@@ -31,7 +31,7 @@ TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
 }
 
 // Neither a tick without one nor the last.
-TEST_F(OpenHapticsTest, NoForceStaysBehind) {
+TEST_F(OpenHapticsTest, SendsZeroForceAfterATickWithoutOneAndAfterTheLast) {
   const auto device = open_open_haptics("", clock_);
   std::array<double, 6> sent_in_between{1};
   int ticks = 0;

@@ -63,7 +63,7 @@ TEST_P(Release, MotorsThatDoNotSwitchOnAreAFault) {
   run_ticks(*device, 3, [&](int) {
     const DeviceFault fault = device->write({Vec3(1, 0, 0), Vec3::Zero()});
     ASSERT_TRUE(fault);
-    EXPECT_EQ(fault.code, vendor().sent_error);
+    EXPECT_EQ(fault.code, vendor().fault_code);
   });
   EXPECT_FALSE(double_->now().has_motors_on);
   EXPECT_EQ(double_->now().force(), 0);
@@ -194,7 +194,7 @@ class Pushing {
   std::thread thread_;
 };
 
-TEST_P(ReleaseBesideTicks, AtAnyTimeFromAnyThread) {
+TEST_P(ReleaseBesideTicks, EndsTheForceAtAnyTimeFromAnyThread) {
   const DoubleInstalled behind(*GetParam());
   for (int delay_us = 0; delay_us < 2500; delay_us += 50) {
     behind->reset();

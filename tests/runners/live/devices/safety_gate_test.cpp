@@ -86,7 +86,7 @@ TEST(SafetyGate, AForceOrTorqueEqualToItsThresholdDoesNotBegin) {
 }
 
 // A device that exerts torques only.
-TEST(SafetyGate, WithoutForcesACommandWithoutTorqueBegins) {
+TEST(SafetyGate, ZeroTorqueBeginsForADeviceWithoutForces) {
   SafetyLimits limits;
   limits.max_force_N = 0;
   Loop waiting(limits), begun(limits);
@@ -177,7 +177,7 @@ TEST(SafetyGate, AnOldCommandIsSlewedToNothing) {
   EXPECT_EQ(loop.gate.state(), GateState::waiting);
 }
 
-TEST(SafetyGate, AfterALongPauseItBeginsAnew) {
+TEST(SafetyGate, BeginsAnewAfterALongPause) {
   Loop loop;
   loop.engage();
   for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});

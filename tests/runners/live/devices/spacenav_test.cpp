@@ -105,7 +105,7 @@ TEST_F(Spacenav, BoxOfTheWorkspace) {
 }
 
 // It holds for half a second.
-TEST_F(Spacenav, DeflectionThatIsNotToldAnewEnds) {
+TEST_F(Spacenav, ADeflectionThatIsNotSentAgainEnds) {
   const auto device = open("?speed=1e-3&box=10");
   server_.send({0, 100, 0, 0, 0, 0, 0, 16});
   EXPECT_NEAR(read_for(*device, 1).velocity_m_per_s.x(), 0.1, 1e-9);
@@ -146,12 +146,12 @@ TEST_F(Spacenav, FramesInPieces) {
   EXPECT_FALSE(read_for(*device, 5).velocity_m_per_s.isZero());
 }
 
-TEST_F(Spacenav, WhatIsNoFrame) {
+TEST_F(Spacenav, ReportsAFaultForWhatIsNoFrame) {
   const auto device = open();
   server_.send({-7, 0, 0, 0, 0, 0, 0, 0});
   DeviceReading reading;
   EXPECT_TRUE(device->read(reading));
-  EXPECT_STREQ(device->read(reading).what, "what the socket sends is not what spacenavd sends");
+  EXPECT_STREQ(device->read(reading).what, "the socket sends data that are not spacenavd's messages");
 }
 
 TEST_F(Spacenav, DaemonThatCloses) {
@@ -187,7 +187,7 @@ TEST_F(Spacenav, SocketOfTheEnvironment) {
   ::unsetenv("SPNAV_SOCKET");
 }
 
-TEST(SpacenavAddress, WhatCannotBeOpened) {
+TEST(SpacenavAddress, RefusesWhatCannotBeOpened) {
   SimulatedClock clock;
   const auto open = [&](const std::string& address) {
     return refusal([&] { open_spacenav(address, clock); });
@@ -199,7 +199,7 @@ TEST(SpacenavAddress, WhatCannotBeOpened) {
   EXPECT_HAS(open("/tmp"), "no spacenavd at /tmp (");
   EXPECT_HAS(open("?box=0"), "spnav:?box=0: box is \"0\": expected a number from 0.001 to 10");
   EXPECT_HAS(open("?speed"), "the setting speed has no value; write speed=VALUE");
-  EXPECT_HAS(open("?box=1&box=2"), "the setting box is there twice");
+  EXPECT_HAS(open("?box=1&box=2"), "the setting box is given twice");
 }
 
 // --- the stock daemon: in its own time, of which a busy machine may take much ---

@@ -113,14 +113,14 @@ TEST(CameraFeed, DropsWhatIsIncomplete) {
   EXPECT_EQ(loop.recorded, 1);
 }
 
-TEST(CameraFeed, WhatCannotBeRecordedIsNotRenderedEither) {
+TEST(CameraFeed, FramesThatCannotBeRecordedAreNotRendered) {
   Loop loop(std::make_unique<ListedFrames>(std::vector{frame(1, 1), frame(2, 2)}, SensorState::waiting));
   loop.has_capacity = false;
   EXPECT_EQ(loop.step(2).unrecorded, 2);
   EXPECT_FALSE(loop.frames.take());
 }
 
-TEST(CameraFeed, TellsHowItEnded) {
+TEST(CameraFeed, ReportsHowItEnded) {
   for (const auto& [then, continues, why] : {std::tuple{SensorState::failed, false, "it was pulled out"},
                                              {SensorState::ended, false, CameraFeed::kEnd},
                                              {SensorState::waiting, true, ""}}) {

@@ -77,10 +77,10 @@ class CameraLoss : public testing::Test {
 
 // The frame of 29 / 30 s is there at 967 ms. It is older than 0.2 s from 1167 ms on, and the next look is at
 // 1170.
-TEST_F(CameraLoss, ThatSendsNothingMoreLeavesItsLastCloud) {
+TEST_F(CameraLoss, ACameraThatStopsSendingLeavesItsLastCloud) {
   const LiveResult result = run_with_loss(SensorState::waiting);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no frame for 0.2 s: the last cloud stays");
+  EXPECT_EQ(told_[0].line, "no frame for 0.2 s: the last cloud is still rendered");
   EXPECT_EQ(told_[0].at_ns, ms(1170));
   expect_the_last_cloud_to_hold();
   EXPECT_FALSE(result.failed) << result.ended;
@@ -92,33 +92,33 @@ TEST_F(CameraLoss, ThatSendsNothingMoreLeavesItsLastCloud) {
 }
 
 // There is no last cloud that could stay.
-TEST_F(CameraLoss, ThatSendsNothingAtAllLeavesNothingToTouch) {
+TEST_F(CameraLoss, ACameraThatNeverSendsLeavesNothingToTouch) {
   run_with_loss(SensorState::waiting, 0);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no frame has come yet: there is nothing to touch");
+  EXPECT_EQ(told_[0].line, "no frame has arrived yet: there is nothing to touch");
 }
 
-TEST_F(CameraLoss, ThatFailsBeforeItsFirstFrameLeavesNothingToTouch) {
+TEST_F(CameraLoss, AFailureBeforeTheFirstFrameLeavesNothingToTouch) {
   run_with_loss(SensorState::failed, 0);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): there is nothing to touch");
 }
 
-TEST_F(CameraLoss, ThatIsUnpluggedLeavesItsLastCloudAndAFailure) {
+TEST_F(CameraLoss, AnUnpluggedCameraLeavesItsLastCloudAndAFailure) {
   const LiveResult result = run_with_loss(SensorState::failed);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): the last cloud stays");
+  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): the last cloud is still rendered");
   EXPECT_EQ(told_[0].at_ns, ms(970));
   expect_the_last_cloud_to_hold();
   EXPECT_TRUE(result.failed);
-  EXPECT_EQ(result.ended, "its duration is over");
+  EXPECT_EQ(result.ended, "its duration has elapsed");
 }
 
 TEST_F(CameraLoss, TheEndOfARecordingIsNoFailure) {
   const LiveResult result = run_with_loss(SensorState::ended);
   EXPECT_FALSE(result.failed);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no more frames (the recording has ended): the last cloud stays");
+  EXPECT_EQ(told_[0].line, "no more frames (the recording has ended): the last cloud is still rendered");
   expect_the_last_cloud_to_hold();
 }
 

@@ -8,7 +8,7 @@
 namespace remote_touch::jitter_test {
 namespace {
 
-TEST(Jitter, NothingIsLateWhereEveryTickComesInItsTime) {
+TEST(Jitter, NoTickIsLateIfAllComeInTime) {
   SimulatedClock clock;
   const Jitter jitter = measure_jitter(0.5, 1000, nullptr, clock);
   ASSERT_EQ(jitter.late_s.size(), 500u);
@@ -17,7 +17,7 @@ TEST(Jitter, NothingIsLateWhereEveryTickComesInItsTime) {
 }
 
 // Something else runs from 5.2 to 7.7 ms: the tick of 6 ms comes at 7.7 in place of that of 7 ms.
-TEST(Jitter, WhatComesLateIsLateAndWhatNeverCameIsMissed) {
+TEST(Jitter, ALateTickIsLateAndOneThatNeverCameIsMissed) {
   SimulatedClock clock;
   clock.at(0.0052, [&] { clock.sleep_s(0.0025); });
   const Jitter jitter = measure_jitter(0.01, 1000, nullptr, clock);

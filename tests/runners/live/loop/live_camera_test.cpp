@@ -60,8 +60,8 @@ class LiveCamera : public testing::Test {
   std::atomic<bool> has_frame_ = false;
 };
 
-TEST_F(LiveCamera, ThatSendsNothingMore) {
-  const std::string expected = "no frame for 0.2 s: the last cloud stays";
+TEST_F(LiveCamera, RunContinuesIfTheCameraStopsSending) {
+  const std::string expected = "no frame for 0.2 s: the last cloud is still rendered";
   int ticks_without = 0;
   const LiveResult result = run("flat=500,stop_after=10", [&] {
     if (has_frame_ && sent_frames() == 10 && told() == expected) ++ticks_without;
@@ -75,8 +75,8 @@ TEST_F(LiveCamera, ThatSendsNothingMore) {
   EXPECT_GT(result.log.stale_ticks, 0);
 }
 
-TEST_F(LiveCamera, ThatIsUnplugged) {
-  const std::string expected = "no more frames (openni2: was disconnected): the last cloud stays";
+TEST_F(LiveCamera, RunContinuesAndFailsIfTheCameraIsUnplugged) {
+  const std::string expected = "no more frames (openni2: was disconnected): the last cloud is still rendered";
   const LiveResult result = run("flat=500", [&] {
     if (has_frame_) unplug();
     return told() == expected;

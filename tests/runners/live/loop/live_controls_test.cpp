@@ -52,13 +52,13 @@ TEST_F(LiveControlsTest, ListsTheRenderersAndThenTheScenarios) {
   EXPECT_EQ(on.high, 1);
 }
 
-TEST_F(LiveControlsTest, WithACameraOfItsOwnTheScenarioIsNotShown) {
+TEST_F(LiveControlsTest, ScenarioIsNotShownIfThereIsAnotherCamera) {
   const LiveControls controls(experiment(), scenes::kernels(), LiveControls::Camera::other);
   EXPECT_EQ(controls.parameters().size(), 5u);
   EXPECT_EQ(controls.scenario(), nullptr);
 }
 
-TEST_F(LiveControlsTest, WhatIsAllowedIsHandedToTheLoop) {
+TEST_F(LiveControlsTest, AllowedChangesAreHandedToTheLoop) {
   EXPECT_EQ(controls_.asked().oldest(), nullptr);
   EXPECT_EQ(change({{"renderer.r1_m", 0.00699}, {"renderer.r2_m", 0.00701}}), "");
   const ParameterChanges* const asked = controls_.asked().oldest();
@@ -69,7 +69,7 @@ TEST_F(LiveControlsTest, WhatIsAllowedIsHandedToTheLoop) {
   EXPECT_EQ(value("renderer.r1_m"), 0.00699);
 }
 
-TEST_F(LiveControlsTest, WhatIsNotIsRefusedWithTheReasonAndChangesNothing) {
+TEST_F(LiveControlsTest, OtherChangesAreRefusedWithTheReasonAndChangeNothing) {
   EXPECT_EQ(change({{"renderer.r1_m", 0.2}}), "renderer.r1_m = 0.2: expected below r2_m = 0.00501");
   EXPECT_EQ(value("renderer.r1_m"), 0.00499);
   for (const double wrong : {-1.0, 1e5, std::numeric_limits<double>::quiet_NaN()})
@@ -96,11 +96,11 @@ TEST_F(LiveControlsTest, ALoopThatDoesNotTakeThemIsNotFlooded) {
   int taken = 0;
   while (taken < 1000 && change({{"renderer.r3_m", 0.01 + 1e-5 * taken}}).empty()) ++taken;
   EXPECT_EQ(taken, 64);
-  EXPECT_HAS(change({{"renderer.r3_m", 0.02}}), "not yet made");
+  EXPECT_HAS(change({{"renderer.r3_m", 0.02}}), "not yet applied");
   EXPECT_NE(value("renderer.r3_m"), 0.02);
 }
 
-TEST_F(LiveControlsTest, OnASoftDeviceTheStiffnessDoesNotGrow) {
+TEST_F(LiveControlsTest, StiffnessOfASoftDeviceDoesNotGrow) {
   controls_.limit_stiffness();
   EXPECT_EQ(change({{"renderer.stiffness_N_per_m", 300}}), "");
   EXPECT_EQ(change({{"renderer.stiffness_N_per_m", 600}}), "");

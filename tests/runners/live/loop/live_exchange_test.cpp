@@ -38,7 +38,7 @@ TEST(TripleBuffer, GivesTheNewestWholeAndInOrder) {
   }
 }
 
-TEST(TripleBuffer, TellsWhetherAValueWasOvertaken) {
+TEST(TripleBuffer, ReportsWhetherAValueWasOvertaken) {
   TripleBuffer<int> buffer;
   buffer.back() = 1;
   EXPECT_TRUE(buffer.publish());

@@ -75,7 +75,7 @@ TEST_P(PressedDevice, AReadingThatFailsEndsTheForceInThatTickAndTheRun) {
   EXPECT_EQ(clock_.now_ns(), ms(310));
 }
 
-TEST_P(PressedDevice, NoNumberFromItEndsTheForceInThatTick) {
+TEST_P(PressedDevice, ANanReadingEndsTheForceInThatTick) {
   at(kTrouble_s, [](DeviceDouble& device) {
     device.set(
         [](DeviceDouble::State& state) { state.position[1] = std::numeric_limits<double>::quiet_NaN(); });
@@ -100,7 +100,7 @@ TEST_P(PressedDevice, AStopEndsTheForceInTheNextTick) {
 TEST_P(PressedDevice, TheEndOfItsDurationEndsTheForceInTheNextTick) {
   const LiveResult result = run(kTrouble_s);
   expect_gone_at(ms(300));
-  EXPECT_EQ(result.ended, "its duration is over");
+  EXPECT_EQ(result.ended, "its duration has elapsed");
   EXPECT_EQ(result.log.missed_ticks, 0);
   EXPECT_EQ(result.log.trace.length(), 300u);
 }
@@ -131,7 +131,7 @@ TEST_P(PressedDevice, ALongHangIsReportedWhileItLasts) {
   ASSERT_EQ(run_.told().size(), 2u);
   EXPECT_EQ(run_.told()[0].line, "force is off: the haptic loop hangs, and the device was released");
   EXPECT_EQ(run_.told()[0].at_ns, ms(530));
-  EXPECT_EQ(run_.told()[1].line, "armed again: the force begins when the hand is free");
+  EXPECT_EQ(run_.told()[1].line, "re-armed: the force begins when the hand is free");
 }
 
 TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
@@ -165,7 +165,7 @@ class StiffnessOfADevice : public PressedDevice {
   }
 };
 
-TEST_P(StiffnessOfADevice, ThatIsNotToldLeavesTheForceAsItIs) {
+TEST_P(StiffnessOfADevice, LeavesTheForceAsItIsIfUnknown) {
   const LiveResult result = run();
   EXPECT_EQ(result.force_scale, 1);
   EXPECT_TRUE(run_.told().empty());
@@ -203,7 +203,7 @@ class DeviceThatLeaves final : public HapticDevice {
   DeviceTraits traits_{.name = "a device that leaves"};
 };
 
-TEST(DeviceLoop, ThatEndsByItselfEndsTheRun) {
+TEST(DeviceLoop, EndsTheRunIfItEndsByItself) {
   SimulatedClock clock;
   SimulatedRun run(clock, press_experiment(), [](const Experiment&, Clock& of_device) {
     return std::make_unique<DeviceThatLeaves>(of_device);

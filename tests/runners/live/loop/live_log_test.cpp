@@ -43,7 +43,7 @@ TEST(Samples, AllUpToTheirMaximum) {
   EXPECT_EQ(samples.greatest(), 99);
 }
 
-TEST(Samples, OfMoreAnEvenPart) {
+TEST(Samples, KeepsAnEvenPartIfThereAreTooMany) {
   Samples samples;
   const std::size_t all = 5 * Samples::kMax / 2 + 3;
   for (std::size_t i = 0; i < all; ++i) samples.push_back(static_cast<double>(i));

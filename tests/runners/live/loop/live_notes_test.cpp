@@ -114,10 +114,9 @@ TEST(LiveNotes, ReportFramesThatWereNotUsed) {
   camera.received = 94, camera.passed_over = 6;
   const RunReport report = report_of_counts(camera);
   ASSERT_EQ(kinds_of(report), Kinds{"frames unused"});
-  EXPECT_EQ(
-      report.notes[0].text,
-      "11 of 100 frames were not used: 6 not sent, or replaced too soon, 2 without all pixels or colours, "
-      "3 overtaken before they were taken");
+  EXPECT_EQ(report.notes[0].text,
+            "11 of 100 frames were not used: 6 not sent, or replaced before they were processed, "
+            "2 without all pixels or colours, 3 replaced before the haptic loop used them");
 }
 
 TEST(LiveNotes, ASessionWithoutFramesSaysSo) {

@@ -77,7 +77,7 @@ class RefusedRun : public testing::Test {
 // The user's part looks every 10 ms.
 TEST_F(RefusedRun, AFrameFromAnotherPlaceEndsTheRun) {
   const LiveResult result = run(true);
-  EXPECT_HAS(result.refused, "./scene: frame 6 was seen from another place (0.2 m and 0 deg");
+  EXPECT_HAS(result.refused, "./scene: frame 6 was captured from another pose (0.2 m and 0 deg");
   EXPECT_EQ(result.ended, result.refused);
   EXPECT_LE(clock_.now_ns(), 211'000'000);
   EXPECT_TRUE(told_.empty()) << told_[0].line;
@@ -91,7 +91,7 @@ TEST_F(RefusedRun, AFileThatHasChangedIsAnInputError) {
   check_inputs_ = [] { throw InputError("./scene", "changed while it was read"); };
   const LiveResult result = run(false);
   EXPECT_EQ(result.refused, "./scene: changed while it was read");
-  EXPECT_EQ(result.ended, "its duration is over; ./scene: changed while it was read");
+  EXPECT_EQ(result.ended, "its duration has elapsed; ./scene: changed while it was read");
   EXPECT_EQ(SessionReader(session()).ended(), result.ended);
 }
 
@@ -102,7 +102,7 @@ TEST_F(RefusedRun, OtherwiseNothingIsRefused) {
   EXPECT_EQ(checks, 1);
   EXPECT_EQ(result.refused, "");
   EXPECT_FALSE(result.failed) << result.ended;
-  EXPECT_EQ(SessionReader(session()).ended(), "its duration is over");
+  EXPECT_EQ(SessionReader(session()).ended(), "its duration has elapsed");
 }
 
 }  // namespace

@@ -193,14 +193,14 @@ TEST(LiveRun, FollowsItsDurationAndCountsEveryTick) {
   SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
   run.options.duration_s = 0.5;
   const LiveResult result = run.run();
-  EXPECT_EQ(result.ended, "its duration is over");
+  EXPECT_EQ(result.ended, "its duration has elapsed");
   ASSERT_EQ(result.log.trace.length(), 500u);
   EXPECT_EQ(result.log.missed_ticks, 0);
   for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(result.log.trace.time_s[i], static_cast<double>(i) / 1000);
 }
 
 // A frame is there in the first tick at or after its time, and rendering takes no time here.
-TEST(LiveRun, TellsHowLongAFrameTook) {
+TEST(LiveRun, MeasuresHowLongAFrameTook) {
   SimulatedClock clock;
   SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
   run.options.duration_s = 1;

@@ -64,7 +64,7 @@ TEST_F(PressedInverse3, AServiceThatHangsEndsTheRun) {
   EXPECT_EQ(result.ended, "the device failed: the Haply service does not answer");
 }
 
-TEST_F(PressedInverse3, AStateThatIsNoNumberEndsTheForceAndTheRun) {
+TEST_F(PressedInverse3, AStateWithoutANumberEndsTheForceAndTheRun) {
   clock_.at(0.3, [&] {
     service_.world.answer =
         R"({"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": null}}}]})";

@@ -93,7 +93,7 @@ TEST_P(LiveThreads, ADeviceThatFailsEndsThem) {
   EXPECT_FALSE(double_->now().has_motors_on);
 }
 
-TEST_P(LiveThreads, AHangingLoopIsLetGoByAnotherAndGoesOn) {
+TEST_P(LiveThreads, AnotherThreadReleasesAHangingLoopAndTheRunContinues) {
   double_->hang_next(DeviceDouble::reports_force);
   ASSERT_TRUE(wait_until([&] { return double_->is_hanging(); }));
   EXPECT_TRUE(wait_until([&] { return !double_->now().has_motors_on; }));
@@ -104,7 +104,7 @@ TEST_P(LiveThreads, AHangingLoopIsLetGoByAnotherAndGoesOn) {
   EXPECT_FALSE(result.failed) << result.ended;
 }
 
-TEST_P(LiveThreads, ALatchIsToldAndRearmed) {
+TEST_P(LiveThreads, ALatchIsReportedAndRearmed) {
   const auto turn = [&](double rad_per_s) {
     double_->set([&](DeviceDouble::State& state) { state.turning = {rad_per_s, 0, 0}; });
   };
@@ -113,7 +113,7 @@ TEST_P(LiveThreads, ALatchIsToldAndRearmed) {
   turn(0);
   EXPECT_TRUE(wait_until([&] {
     run_.rearm();
-    return run_.told().find("armed again") != std::string::npos;
+    return run_.told().find("re-armed: ") != std::string::npos;
   }));
   EXPECT_FALSE(run_.ended_by_stop().failed);
 }
@@ -127,7 +127,7 @@ TEST_P(LiveThreads, AReportIsMadeWhileTheyRun) {
 INSTANTIATE_TEST_SUITE_P(Vendors, LiveThreads, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
                          [](const auto& device) { return device.param->name; });
 
-TEST(LiveThreadsEnd, WhenTheUserCannotBeToldAnything) {
+TEST(LiveThreadsEnd, MotorsAreOffIfReportingToTheUserThrows) {
   const DoubleInstalled behind(kForceDimension);
   LiveOptions options;
   options.kernels = &scenes::kernels();

@@ -100,7 +100,7 @@ TEST_P(DepthLibraryContract, RowsWithGaps) {
 
 // Every seventh pixel, in a pattern without rows or columns. Where the lens distorts, a ray is given the
 // depth of the pixel that is nearest to it: of as many rays, but for the image's border.
-TEST_P(DepthLibraryContract, NothingMeasuredIsNoPoint) {
+TEST_P(DepthLibraryContract, APixelWithoutAMeasurementIsNoPoint) {
   camera_->state.hole_every = 7;
   const auto source = open();
   SensorFrame frame;
@@ -158,7 +158,7 @@ TEST_P(DepthLibraryContract, ImagesOfAnotherSize) {
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, 1), SensorState::failed);
   EXPECT_HAS(source->failure(), is_k4a() ? " is 320 x 286 pixels in " : " is 640 x 478 pixels in ");
-  EXPECT_HAS(source->failure(), "; wanted those of the camera's mode");
+  EXPECT_HAS(source->failure(), ": expected those of the camera's mode");
 }
 
 // A frame that the camera sends twice is none; where its clock begins anew, frames go on.
@@ -166,7 +166,9 @@ TEST_P(DepthLibraryContract, FramesThatRepeatOrGoBackInTime) {
   camera_->state.stamp_s = [](int number) {
     return number == 3 ? 5 + 2 / 30.0 : (number < 6 ? 5 : -0.1) + number / 30.0;
   };
-  camera_->state.counted = [](int number) { return number == 3 ? 2 : number < 6 ? number : number - 5; };
+  camera_->state.reported_number = [](int number) {
+    return number == 3 ? 2 : number < 6 ? number : number - 5;
+  };
   const auto source = open();
   SensorFrame frame;
   std::vector<int> numbers;

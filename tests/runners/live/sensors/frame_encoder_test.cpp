@@ -107,7 +107,7 @@ TEST(FrameEncoder, RefusesDepthsBeyondItsUnits) {
 TEST(FrameEncoder, RefusesAnotherPoseOfTheCamera) {
   const RigidTransform shifted = pose() * Eigen::Translation3d(0, 0, 0.2);
   EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, shifted)),
-             "./scene: frame 3 was seen from another place (0.2 m and 0 deg from the first frame)");
+             "./scene: frame 3 was captured from another pose (0.2 m and 0 deg from the first frame)");
   const RigidTransform turned(pose() * rotation(Vec3(0, kRadiansPerDegree, 0)));
   EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, turned)), "(0 m and 1 deg from the first frame)");
 }

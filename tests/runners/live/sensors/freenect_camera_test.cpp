@@ -16,7 +16,7 @@ namespace remote_touch::freenect_camera_test {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
-constexpr double kRotation_s = 4294967296.0 / 60e6;  // period after which the stamps begin anew
+constexpr double kStampPeriod_s = 4294967296.0 / 60e6;  // period after which the stamps begin anew
 
 // Value that the sensor measures: 11 bits, 2047 if it measures nothing. The first pixel encodes the frame's
 // number.
@@ -58,7 +58,7 @@ double taken_s(int number) {
 void write_recording(const TestFolder& folder) {
   std::string index;
   for (int number = 0; number < kFrames; ++number) {
-    const double stamp = std::fmod(kRotation_s - 0.09 + taken_s(number) - 100, kRotation_s) * 60e6;
+    const double stamp = std::fmod(kStampPeriod_s - 0.09 + taken_s(number) - 100, kStampPeriod_s) * 60e6;
     char name[64];
     std::snprintf(name, sizeof name, "d-%.6f-%u.pgm", taken_s(number), static_cast<unsigned>(stamp));
     std::string bytes = "P5 640 480 65535\n";

@@ -85,14 +85,14 @@ TEST_F(K4aCamera, SerialNumbersThatDoNotFit) {
 }
 
 // The reason is the library's first line; those that follow tell who asked for it.
-TEST_F(K4aCamera, TheLibrarysLogTellsWhy) {
+TEST_F(K4aCamera, TheLibrarysLogSaysWhy) {
   camera_->state.fail_name = "k4a_device_start_cameras";
   EXPECT_HAS(
       refusal([&] { open_k4a("", clock_); }),
       "k4a: depth does not start (the library says: depth engine create failed): expected the vendor's depth engine");
   camera_->state.fail_name = "k4a_device_get_calibration";
   EXPECT_HAS(refusal([&] { open_k4a("", clock_); }),
-             "k4a: does not tell its calibration (the library says: no calibration)");
+             "k4a: does not report its calibration (the library says: no calibration)");
   camera_->state.fail_name = "";
   camera_->state.lost_after = 1;
   const auto source = open_k4a("?nfov-binned", clock_);
@@ -125,7 +125,7 @@ TEST_F(K4aCamera, FramesThatAreNotDepth) {
   const auto source = open_k4a("?nfov-binned", clock_);
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, 1), SensorState::failed);
-  EXPECT_HAS(source->failure(), " bytes of format 5; wanted");
+  EXPECT_HAS(source->failure(), " bytes of format 5: expected");
 }
 
 // The camera does not count its frames; its stamps tell how many are missing.

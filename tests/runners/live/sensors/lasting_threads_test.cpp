@@ -22,7 +22,7 @@ TEST(LastingThread, DoesAllThatItIsGivenInOneThreadOfItsOwn) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(id_of(*thread), first);
 }
 
-TEST(LastingThread, ThrowsWhatTheWorkThrowsAndGoesOn) {
+TEST(LastingThread, ThrowsWhatTheWorkThrowsAndContinues) {
   const auto thread = lasting_thread();
   EXPECT_THROW(thread->run([] { throw std::out_of_range("far"); }), std::out_of_range);
   int done = 0;

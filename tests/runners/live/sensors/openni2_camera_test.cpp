@@ -169,7 +169,7 @@ TEST_F(Openni2Camera, FrameOfAnotherSize) {
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
   EXPECT_LE(frames.size(), 20u);
-  EXPECT_HAS(source->failure(), " is 640 x 240 pixels in 307200 bytes; wanted those of the camera's mode");
+  EXPECT_HAS(source->failure(), " is 640 x 240 pixels in 307200 bytes: expected those of the camera's mode");
 }
 
 TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
@@ -292,7 +292,7 @@ TEST_F(Openni2Recording, FramesThatAreZeroed) {
   std::fill(bytes.begin() + 5000, bytes.begin() + static_cast<std::ptrdiff_t>(table), '\0');
   const std::string file = folder_.write("zeroed.oni", bytes).string();
   EXPECT_EXIT(play_zeroed_frames(file), has_ended_or_crashed_at_the_close,
-              "zeroed.oni: plays no further than frame ");
+              "zeroed.oni: cannot be played beyond frame ");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(RealSenseCamera, UnitsOfTheCamera) {
 TEST_F(RealSenseCamera, UnitsThatAreNone) {
   for (const double unit_m : {0.0, -0.001, 2.0, static_cast<double>(NAN), HUGE_VAL}) {
     camera_->state.metres_per_unit = unit_m;
-    EXPECT_HAS(refused(), "realsense: tells depth in units of ");
+    EXPECT_HAS(refused(), "realsense: reports depth in units of ");
   }
 }
 
@@ -121,7 +121,7 @@ TEST_F(RealSenseCamera, OldLibraryDoesNotKnowLenses) {
   old->state.version = 22700;
   old->state.lens.k[0] = 0.1;
   EXPECT_HAS(refusal([&] { open_realsense("", clock); }),
-             "realsense: has a lens that distorts: expected librealsense 2.46 or newer");
+             "realsense: has a lens with distortion: expected librealsense 2.46 or newer");
   EXPECT_EQ(old->held(), 0u);
 }
 
@@ -130,7 +130,7 @@ TEST_F(RealSenseCamera, ImagesThatAreNone) {
        {std::pair(0.0, 320.0), std::pair(-500.0, 320.0), std::pair(static_cast<double>(NAN), 320.0),
         std::pair(HUGE_VAL, 320.0), std::pair(500.0, HUGE_VAL)}) {
     camera_->state.lens.fx = fx, camera_->state.lens.cx = cx;
-    EXPECT_HAS(refused(), "realsense: does not tell where its pixels look");
+    EXPECT_HAS(refused(), "realsense: reports no usable intrinsics: expected");
   }
 }
 
@@ -138,7 +138,7 @@ TEST_F(RealSenseCamera, CamerasWithoutDepth) {
   camera_->state.sends_depth = false;
   EXPECT_HAS(refused(), "realsense: sends no depth in 16 bits");
   camera_->state.sends_depth = true, camera_->state.has_depth_sensor = false;
-  EXPECT_HAS(refused(), "realsense: has no sensor of depth");
+  EXPECT_HAS(refused(), "realsense: has no depth sensor");
 }
 
 TEST_F(RealSenseCamera, DepthThatComesAlone) {
@@ -155,7 +155,7 @@ TEST_F(RealSenseCamera, FramesThatAreTooShort) {
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, 1), SensorState::failed);
   EXPECT_EQ(source->failure(),
-            "realsense: a frame is 640 x 480 pixels in 614399 bytes; wanted those of the camera's mode");
+            "realsense: a frame is 640 x 480 pixels in 614399 bytes: expected those of the camera's mode");
 }
 
 TEST_F(RealSenseCamera, StampsThatAreNone) {
@@ -170,7 +170,7 @@ TEST_F(RealSenseCamera, StampsThatAreNone) {
 
 // The camera's own count, also where it jumps by more than an int holds.
 TEST_F(RealSenseCamera, NumbersFollowTheCount) {
-  camera_->state.counted = [](int number) {
+  camera_->state.reported_number = [](int number) {
     return number == 1 ? 7 : number == 2 ? 8 : number == 3 ? 12 : 2000000000 + number;
   };
   const auto source = open_realsense("", clock_);

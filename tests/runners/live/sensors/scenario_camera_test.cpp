@@ -79,7 +79,7 @@ TEST(ScenarioCamera, ShowsEveryScenarioOfTheCatalog) {
   }
 }
 
-TEST(ScenarioCamera, WaitsNoLongerThanItIsTold) {
+TEST(ScenarioCamera, WaitsNoLongerThanTheGivenTime) {
   SimulatedClock clock;
   ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
   SensorFrame frame;

@@ -17,7 +17,7 @@ double delay_s(int frame) {
   return kMinDelay_s + 0.01 * ((frame * 3) % 7) / 6;
 }
 
-TEST(SensorClock, JitterOfArrivalsIsGoneAfterTheFirstPunctualFrame) {
+TEST(SensorClock, JitterOfArrivalsHasNoEffectAfterTheFirstPunctualFrame) {
   SensorClock clock;
   double before_s = 0;
   for (int frame = 0; frame < 300; ++frame) {

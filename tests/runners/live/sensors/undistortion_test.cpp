@@ -73,7 +73,7 @@ Image pinhole(const CameraLens& lens, const Undistortion& undistortion,
   return depth;
 }
 
-TEST(Undistortion, OfAPinholeCameraChangesNothing) {
+TEST(Undistortion, ChangesNothingForAPinholeCamera) {
   CameraLens lens = narrow_lens();
   lens.k = {}, lens.p1 = lens.p2 = 0;
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
@@ -102,7 +102,7 @@ double expected_depth(const CameraLens& lens, const Vector2d& ray,
 
 // A plane has depth distance / (normal . ray). The camera rounds it, by half a unit at most, and so does the
 // result; between pixels it is nearly linear.
-TEST(Undistortion, APlaneStaysAPlane) {
+TEST(Undistortion, KeepsAPlane) {
   for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
     const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
     for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.1, -0.15, 1)}) {
@@ -136,7 +136,7 @@ TEST(Undistortion, KeepsTheFieldOfView) {
 }
 
 // Two planes, one behind the other: all depths are those of one of them.
-TEST(Undistortion, NothingLiesBetweenTwoSurfaces) {
+TEST(Undistortion, PutsNoDepthBetweenTwoSurfaces) {
   const CameraLens lens = narrow_lens();
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
   const Image depth = pinhole(lens, undistortion,

@@ -64,7 +64,7 @@ class LiveChannelTest : public testing::Test {
   LiveChannel channel_{kRate_hz, DevicePlacement(placed_), scenes::kernels(), poses_, controls_};
 };
 
-TEST_F(LiveChannelTest, TellsTheColumnsAndThenTheTicks) {
+TEST_F(LiveChannelTest, SendsTheColumnsAndThenTheTicks) {
   channel_.open();
   channel_.take(tick(7));
   channel_.take(tick(8));
@@ -88,7 +88,7 @@ TEST_F(LiveChannelTest, TellsTheColumnsAndThenTheTicks) {
 }
 
 // The renderer commands 19 N, the safety gate lets 5 N pass.
-TEST_F(LiveChannelTest, TellsWhatTheDeviceGets) {
+TEST_F(LiveChannelTest, SendsTheForceThatTheDeviceGets) {
   LiveTick limited = tick(1);
   limited.out.force_N = Vec3(0, 19, 0);
   limited.written.force_N = DevicePlacement(placed_).to_device({Vec3(0, 3, 4), Vec3::Zero()}).force_N;
@@ -212,7 +212,7 @@ TEST_F(LiveChannelTest, TheNextPageGetsTheColumnsAndTheNewestFrameAgain) {
   EXPECT_FALSE(has_next());
 }
 
-TEST_F(LiveChannelTest, WithoutAPageNothingIsKept) {
+TEST_F(LiveChannelTest, KeepsNoTicksIfNoPageIsOpen) {
   for (std::int64_t i = 0; i < 100; ++i) channel_.take(tick(i));
   channel_.open();
   EXPECT_FALSE(has_next());
@@ -266,7 +266,7 @@ TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
 }
 
 // A page that is closed while its button is down.
-TEST_F(LiveChannelTest, WithThePageItsButtonIsLetGo) {
+TEST_F(LiveChannelTest, ReleasesTheButtonWhenThePageCloses) {
   channel_.open();
   const std::uint32_t buttons = 1;
   std::string hand("\1\0\0\0", 4);

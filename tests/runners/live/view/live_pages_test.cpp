@@ -119,7 +119,7 @@ TEST_F(LivePagesTest, AllPagesConnectAgainBeforeTheirOlderConnectionsAreClosed) 
   EXPECT_TRUE(pages_.is_full("f"));
 }
 
-TEST_F(LivePagesTest, EveryPageIsToldOfChangedParameters) {
+TEST_F(LivePagesTest, EveryPageGetsChangedParameters) {
   LiveChannel &first = open("a"), &second = open("b");
   texts(first), texts(second);
   EXPECT_TRUE(pages_.receive(first, change_to(450)));
@@ -133,12 +133,12 @@ TEST_F(LivePagesTest, EveryPageIsToldOfChangedParameters) {
   EXPECT_TRUE(texts(second).empty()) << "nothing has changed";
 }
 
-TEST_F(LivePagesTest, EveryPageIsToldWhatDoesNotWorkNow) {
+TEST_F(LivePagesTest, EveryPageGetsWhatDoesNotWorkNow) {
   LiveChannel& first = open("a");
   texts(first);
-  pages_.tell({"no frame for 0.2 s: the last cloud stays", ""});
+  pages_.tell({"no frame for 0.2 s: the last cloud is still rendered", ""});
   const nlohmann::json told = {
-      {"trouble", {{"camera", "no frame for 0.2 s: the last cloud stays"}, {"force", ""}}}};
+      {"trouble", {{"camera", "no frame for 0.2 s: the last cloud is still rendered"}, {"force", ""}}}};
   EXPECT_EQ(texts(first), std::vector{told});
   EXPECT_EQ(texts(open("b")), (std::vector{kWatches, told})) << "a page that comes later, too";
   pages_.tell({"", "\xff is no UTF-8"});
@@ -146,13 +146,13 @@ TEST_F(LivePagesTest, EveryPageIsToldWhatDoesNotWorkNow) {
 }
 
 // Also before the first tick, and to a page that comes, or comes again, before the program ends.
-TEST_F(LivePagesTest, EveryPageIsToldWhyTheRunHasEnded) {
+TEST_F(LivePagesTest, EveryPageGetsWhyTheRunHasEnded) {
   LiveChannel& first = *pages_.open("a");
   EXPECT_EQ(pages_.ended(), "");
-  pages_.end("its duration is over");
+  pages_.end("its duration has elapsed");
   pages_.end("another reason");
-  EXPECT_EQ(pages_.ended(), "its duration is over");
-  const nlohmann::json told = {{"ended", "its duration is over"}};
+  EXPECT_EQ(pages_.ended(), "its duration has elapsed");
+  const nlohmann::json told = {{"ended", "its duration has elapsed"}};
   EXPECT_FALSE(first.is_over());
   EXPECT_EQ(texts(first), std::vector{told});
   EXPECT_TRUE(first.is_over()) << "the server closes the connection";

@@ -74,7 +74,7 @@ TEST(KeepOldBits, NumbersThatAreNone) {
 }
 
 // Whatever the tolerance says.
-TEST(KeepOldBits, WhatIsEqualOrNot) {
+TEST(KeepOldBits, IgnoresTheToleranceForNamesAndHashes) {
   for (const Tolerances& tolerances : {Tolerances{}, Tolerances{{"*", {9}}}}) {
     EXPECT_EQ(kept(names({0, 1, 1}), names({0, 0, 1}), tolerances).values, names({0, 0, 1}).values);
     EXPECT_EQ(kept(hashes({1, 2}), hashes({1, 3}), tolerances).values, hashes({1, 3}).values);
@@ -210,7 +210,7 @@ TEST_F(MeasureSpread, TheLargestDeviationOfEachColumn) {
   EXPECT_EQ(bytes_of(measured.reference), bytes_of(folder_ / "gcc/plain.h5"));
 }
 
-TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
+TEST_F(MeasureSpread, ADifferenceThatNoToleranceCoversIsRefused) {
   const auto programs = two_programs();
   const std::vector<std::pair<std::string, std::function<void(Trace&)>>> changes = {
       {"state: ", [](Trace& made) { made.state[11] = 0; }},
@@ -322,7 +322,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
   EXPECT_HAS(refused([](auto& b) { b.sweep = "fig4.13"; }), "--run, --sweep: both are given");
   for (const char* name : {"", "../x", "a/b", "a b", "gr\xc3\xbcn", "*"})
     EXPECT_HAS(refused([&](auto& b) { b.name = name; }), "expected letters, digits, . - and _");
-  EXPECT_HAS(refused([](auto& b) { b.run = ""; }), "baseline x: there is none: expected --run");
+  EXPECT_HAS(refused([](auto& b) { b.run = ""; }), "baseline x: does not exist: expected --run");
   EXPECT_HAS(refused([](auto& b) { b.run = "moon"; }), "moon: cannot be read");
   EXPECT_HAS(refused([](auto& b) { b.run = "moon.json"; }),
              (folder / "moon.json").string() + ": cannot be read");

@@ -109,7 +109,7 @@ TEST_F(CheckBaseline, TheSameWhoeverMadeIt) {
   EXPECT_TRUE(result.comparison->configuration.empty());
 }
 
-TEST_F(CheckBaseline, WithOverrides) {
+TEST_F(CheckBaseline, AppliesTheOverrides) {
   Baseline baseline = stored_run();
   baseline.overrides = {"renderer.stiffness_N_per_m=450"};
   const BaselineCheck result = check(baseline);
@@ -138,7 +138,7 @@ TEST_F(CheckBaseline, ChangedNumbers) {
   EXPECT_EQ(within.text, "18 columns, every number is within its tolerance");
 }
 
-TEST_F(CheckBaseline, WhatHasNoTolerance) {
+TEST_F(CheckBaseline, ReportsChangesThatNoToleranceCovers) {
   for (const auto& change : std::vector<std::function<void(Trace&)>>{
            [](Trace& trace) { trace.state[100] ^= 1; }, [](Trace& trace) { trace.frame_hash[0] ^= 1; },
            [](Trace& trace) { trace.nearest_distance_m[9] = std::nan(""); },
@@ -184,7 +184,7 @@ TEST_F(CheckBaseline, AChangedFileOfTheExperiment) {
   expect_uncomparable(baseline, place("short.json"), "cannot be read");
 }
 
-TEST_F(CheckBaseline, WhatTheListDoesNotHave) {
+TEST_F(CheckBaseline, UnknownNamesAreNotComparable) {
   Baseline baseline = stored_run();
   baseline.subject = "moon";
   expect_uncomparable(baseline, "moon: cannot be read", "remote-touch list");

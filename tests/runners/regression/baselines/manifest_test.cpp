@@ -202,7 +202,7 @@ TEST(MissingBaselines, NoneWhereTheListNeedNotBeComplete) {
 }
 
 // A file of one's own has a baseline's parts, and is no experiment of the list; nor is a sweep over it.
-TEST(MissingBaselines, WhatCountsAsOne) {
+TEST(MissingBaselines, AnOwnFileOrSweepIsNoExperimentOfTheList) {
   const TestFolder folder("baseline_test");
   folder.write("lift.json", embedded_or_file(embedded_experiments(), "fig4.12", ""));
   const Names lifts = lifts_and_presses(), others = without(all_experiments(), lifts);

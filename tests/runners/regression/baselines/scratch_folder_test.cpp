@@ -39,7 +39,7 @@ class ScratchFolderTest : public testing::Test {
   const TestFolder place_{"scratch_folder_test"};
 };
 
-TEST_F(ScratchFolderTest, IsGoneAfterwardsWithItsFiles) {
+TEST_F(ScratchFolderTest, IsRemovedAfterwardsWithItsFiles) {
   {
     const ScratchFolder one, other;
     EXPECT_NE(one.path(), other.path());

@@ -70,7 +70,7 @@ TEST_F(CompareTraceFiles, TheSameRunTwice) {
 }
 
 // Builds and commands are told, not judged; neither is the title.
-TEST_F(CompareTraceFiles, ProvenanceIsToldAndNotJudged) {
+TEST_F(CompareTraceFiles, ProvenanceIsReportedAndNotJudged) {
   write("a.h5");
   write("b.h5", {"title=another"},
         {{"git_commit", "def"}, {"isa", "x86-64"}, {"input_digests", "scene: sha256 01"}});
@@ -170,7 +170,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
 }
 
 // JSON has no NaN, and no number is written as 0 that is none.
-TEST_F(CompareTraceFiles, WhatJsonDoesNotHaveIsNull) {
+TEST_F(CompareTraceFiles, NanIsNullInJson) {
   write_changed("a.h5", [](Trace&) {});
   write_changed("b.h5", [](Trace& trace) { trace.signed_distance_m[77] = kNaN; });
   const json divergence = json_of(compare("a.h5", "b.h5"))["divergence"];
@@ -191,7 +191,7 @@ TEST_F(CompareTraceFiles, AStateWithoutAName) {
   }
 }
 
-TEST_F(CompareTraceFiles, TinyDifferencesAreTold) {
+TEST_F(CompareTraceFiles, TinyDifferencesAreReported) {
   write_changed("a.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 1e-20; });
   write_changed("b.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 2e-20; });
   const ResultComparison other = compare("a.h5", "b.h5");
@@ -363,7 +363,7 @@ TEST_F(CompareTraceFiles, ReportsOfSeveral) {
   EXPECT_EQ(json::parse(comparison_json(std::vector<ResultComparison>{})), json::array());
 }
 
-TEST(Reports, OfABadNameAreStillReports) {
+TEST(Reports, AreWrittenForANameThatIsNotUtf8) {
   ResultComparison comparison{"bad \xff name", "x", "trace"};
   EXPECT_HAS(json_of(comparison)["baseline"].get<std::string>(), "bad ");
   EXPECT_EQ(json_of(comparison)["outcome"], "not_comparable");

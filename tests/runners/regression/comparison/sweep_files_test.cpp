@@ -151,7 +151,7 @@ TEST_F(CompareSweepFiles, ARunThatFailsNowIsWorse) {
   }
 }
 
-TEST_F(CompareSweepFiles, InPairsAFlipIsNothingAndAShiftIsSomething) {
+TEST_F(CompareSweepFiles, PairedTestsIgnoreAFlipAndReportAShift) {
   write("a.h5");
   write("flip.h5", [](SweepResult& sweep) { flip(sweep, 47); });
   write("shift.h5", [](SweepResult& sweep) {
@@ -180,7 +180,7 @@ TEST_F(CompareSweepFiles, InPairsAFlipIsNothingAndAShiftIsSomething) {
   EXPECT_HAS(junit_of(undecided), counts(3, 0, 2));
 }
 
-TEST_F(CompareSweepFiles, OfAnotherSeedAreNoPairs) {
+TEST_F(CompareSweepFiles, SweepsOfAnotherSeedAreNotComparable) {
   write("a.h5");
   const Sweep other = quick({"seed=5"});
   write_sweep(folder_ / "b.h5", result(), attributes(other));
@@ -207,7 +207,7 @@ TEST_F(CompareSweepFiles, OtherAxesAreNotComparable) {
 }
 
 // The change is reported. The sweeps are comparable because their runs still form pairs.
-TEST_F(CompareSweepFiles, OfAnotherConfigurationAreComparable) {
+TEST_F(CompareSweepFiles, SweepsOfAnotherConfigurationAreComparable) {
   write("a.h5");
   const Sweep other = quick({"renderer.r1_m=0.0045"});
   write_sweep(folder_ / "b.h5", run_sweep(other, {}), attributes(other));

@@ -36,7 +36,7 @@ class CompareMeasuresOfTraces : public Compare {
   }
 };
 
-TEST_F(CompareMeasuresOfTraces, WhatGotWorseIsARegression) {
+TEST_F(CompareMeasuresOfTraces, AWorseMeasureIsARegression) {
   const ResultComparison worse = compare("held.h5", "lost.h5");
   EXPECT_EQ(worse.outcome, Outcome::regressed);
   EXPECT_HAS(worse.verdict, "signed_distance of 18 columns, from tick 866 on");
@@ -54,7 +54,7 @@ TEST_F(CompareMeasuresOfTraces, WhatGotWorseIsARegression) {
   EXPECT_HAS(junit_of(worse), "name=\"max_force\"/>");
 }
 
-TEST_F(CompareMeasuresOfTraces, WhatGotBetterIsAChange) {
+TEST_F(CompareMeasuresOfTraces, ABetterMeasureIsAChange) {
   const ResultComparison better = compare("lost.h5", "held.h5");
   EXPECT_EQ(better.outcome, Outcome::changed);
   EXPECT_HAS(better.verdict, "; better: popped_through");
@@ -99,7 +99,7 @@ TEST_F(CompareMeasuresOfTraces, AreNoneWhereTheTicksAreFartherApart) {
 }
 
 // A proxy that rests on the surface ends a little in front of it or behind it: the configuration tells.
-TEST_F(CompareMeasuresOfTraces, ThatRestOnTheSurfaceDidNotPopThrough) {
+TEST_F(CompareMeasuresOfTraces, SurfelsThatRestOnTheSurfaceDidNotPopThrough) {
   Trace resting = run();
   for (const char* renderer : {"surfels", "proxy"}) {
     const Experiment experiment =

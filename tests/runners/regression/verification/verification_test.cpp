@@ -237,7 +237,7 @@ TEST(Dimension, EveryKindOfParameterFollows) {
   EXPECT_EQ(max_length_m(parameters), 0.02);
 }
 
-TEST(Dimension, WhatCannotFollowIsRefusedByName) {
+TEST(Dimension, RefusalNamesTheParameterThatCannotFollow) {
   double length = 0.6, odd = 1;
   int window = 5;
   const auto changed = [](const Parameter& p) { return refusal([&] { change_units({p}, {2, 1, 1}); }); };

@@ -94,7 +94,7 @@ TEST(Messages, MarkMissingPointsAndKeepColours) {
 }
 
 // NaN as C++ and NumPy write it; that of an opaque colour is a colour.
-TEST(Messages, HaveNoColourWhereItIsNoNumber) {
+TEST(Messages, HaveNoColourWhereItIsNan) {
   std::string data;
   for (const std::uint32_t rgb : {0x00112233u, 0x7FC00000u, 0xFFFF0000u, 0x4A808060u})
     data += raw(std::array{1.0f, 2.0f, 3.0f}) + raw(rgb);

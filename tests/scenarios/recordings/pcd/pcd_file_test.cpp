@@ -189,7 +189,7 @@ TEST_F(PcdFile, GivesNoCameraWhereTheFitFails) {
 
 TEST_F(PcdFile, RefusesBadHeaders) {
   EXPECT_HAS(error(""), "no VERSION entry");
-  EXPECT_HAS(error("hello\n"), ":1: 'hello' is no PCD header entry: expected VERSION FIELDS");
+  EXPECT_HAS(error("hello\n"), ":1: 'hello' is not a PCD header entry: expected VERSION FIELDS");
   EXPECT_HAS(error(std::string("\x89PNG\x01\x02") + std::string(100, '\xff')), "'?PNG??");
   EXPECT_HAS(error("VERSION 0.8\n"), "VERSION = '0.8': expected 0.5, 0.6 or 0.7");
   EXPECT_HAS(error("VERSION 0.7\nDATA ascii\n"), "no FIELDS entry");

@@ -81,7 +81,7 @@ TEST(PcdViewpoint, IsNotUsedWhereTheImageIsSeenFromTheOrigin) {
 }
 
 // A sensor whose axes are not those of the file: the points form an image along x, against z, and so on.
-TEST(PcdViewpoint, AtTheOriginTurnsTheCamera) {
+TEST(PcdViewpoint, ATurnAtTheOriginTurnsTheCamera) {
   const std::vector<std::pair<RigidTransform, std::string>> turns = {
       {RigidTransform(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY())), "0.70710678 0 0.70710678 0"},
       {RigidTransform(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX())), "0 1 0 0"}};
@@ -96,7 +96,7 @@ TEST(PcdViewpoint, AtTheOriginTurnsTheCamera) {
 
 // The image is seen along z, but the VIEWPOINT says that the camera looks elsewhere; points in no order are
 // no image at all.
-TEST(PcdViewpoint, AtTheOriginThatTurnsAwayIsReported) {
+TEST(PcdViewpoint, ATurnAwayFromTheImageIsReported) {
   const CameraIntrinsics camera{16, 12, 20, 25, 7.25, 5.5};
   const PcdCloud turned = read_text(seen_from(organised_pcd(camera, 0), "0 0 0 0.70710678 0 0.70710678 0"));
   EXPECT_HAS(turned.remark, "its VIEWPOINT is not used");
@@ -108,7 +108,7 @@ TEST(PcdViewpoint, AtTheOriginThatTurnsAwayIsReported) {
   EXPECT_EQ(read_text(seen_from(unorganised, "0 0 0 -1 0 0 0")).remark, "") << "no rotation, too";
 }
 
-TEST(PcdViewpoint, OfOtherThanSevenNumbersIsRefused) {
+TEST(PcdViewpoint, IsRefusedIfItIsNotSevenNumbers) {
   const std::string good = xyz_header("1", "ascii") + "1 2 3\n";
   EXPECT_HAS(refusal_of(seen_from(good, "0 0 1")), "VIEWPOINT has 3 values: expected 7");
   EXPECT_HAS(refusal_of(seen_from(good, "0 0 one 1 0 0 0")), "VIEWPOINT has 'one': expected numbers");
