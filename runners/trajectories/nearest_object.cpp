@@ -160,9 +160,9 @@ std::optional<NearerObject> nearer_small_object(const DepthImage& image, const C
   };
   std::vector<char> open(image.z_m.size(), 0);
   for (int i = 0; i < image.width * image.height; ++i) {
+    const int u = i % image.width, v = i / image.width;
     const double z = image.z_m[static_cast<std::size_t>(i)];
-    open[static_cast<std::size_t>(i)] =
-        std::isfinite(z) && is_in_front(unproject(camera, i % image.width, i / image.width, z));
+    open[static_cast<std::size_t>(i)] = std::isfinite(z) && is_in_front(unproject(camera, u, v, z));
   }
   for (const int pixel : touched)
     if (open[static_cast<std::size_t>(pixel)]) take_patch(image, pixel, open, Joined::also_diagonally);

@@ -68,7 +68,8 @@ double FrameTimes::captured_s(int frame) const {
   if (playback_ == Playback::hold) return since_first_s;
   if (!follows_stamps()) return frame / rate_hz_;  // a steady rate, without the rounding of sums
   const double length_s = since_first_s_.back();
-  if (playback_ == Playback::loop) return frame / count_ * (length_s + 1 / rate_hz_) + since_first_s;
+  const int rounds = frame / count_;
+  if (playback_ == Playback::loop) return rounds * (length_s + 1 / rate_hz_) + since_first_s;
   const int turns = frame / (count_ - 1);
   return turns * length_s + (turns % 2 == 0 ? since_first_s : length_s - since_first_s);
 }
