@@ -118,7 +118,8 @@ TEST_F(K4aCamera, FramesThatAreNotDepth) {
     SensorFrame frame;
     EXPECT_EQ(source->next(frame, 1), SensorState::failed);
     EXPECT_HAS(source->failure(), "a frame is 320 x 288 pixels in " +
-                                      std::to_string(320 * 288 * 2 - missing) + " bytes of format 4: expected");
+                                      std::to_string(320 * 288 * 2 - missing) +
+                                      " bytes of format 4: expected");
   }
   camera_->state.missing_bytes = 0;
   camera_->state.format = 5;  // infrared
