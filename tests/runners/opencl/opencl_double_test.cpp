@@ -45,9 +45,12 @@ class OpenClDoubleTest : public testing::Test {
     for (const OpenClDevice& device : opencl_devices(opencl_library()))
       forget_trials(device), forget_kernels(device.id);
   }
-  std::unique_ptr<DevicePipeline> opened() {
-    return std::make_unique<DevicePipeline>(opencl_devices(opencl_library()).at(0), Settings{}, best(),
-                                            [this](const std::string& line) { told_.push_back(line); });
+  // A busy machine may stop a test for seconds, so that only the test of a limit has one.
+  static constexpr std::chrono::minutes kNoLimit{10};
+  std::unique_ptr<DevicePipeline> opened(std::chrono::milliseconds frame_limit = kNoLimit) {
+    return std::make_unique<DevicePipeline>(
+        opencl_devices(opencl_library()).at(0), Settings{}, best(),
+        [this](const std::string& line) { told_.push_back(line); }, frame_limit);
   }
   std::string refusal(const std::string& device, bool exact = true) {
     DepthDeviceSettings settings;
@@ -81,7 +84,7 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
   for (int window = 3; window <= 15; window += 2)
     for (const bool filter : {true, false}) {
       Settings settings{filter, window, 0.006, 18 - window, 0.014};
-      DevicePipeline pipeline(opencl_devices(opencl_library()).at(0), settings, best(), nullptr);
+      DevicePipeline pipeline(opencl_devices(opencl_library()).at(0), settings, best(), nullptr, kNoLimit);
       EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, some_pose()),
                             processed(scene, settings, some_pose())));
       EXPECT_EQ(coloured_frames::differs(pipeline, settings, scene, some_pose()), "");
@@ -131,7 +134,7 @@ TEST_F(OpenClDoubleTest, CloudsThatCannotBeProcessedAtOnceAreUnchanged) {
 }
 
 TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
-  auto pipeline = opened();
+  auto pipeline = opened(DevicePipeline::kFrameLimit);
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
   const double begin_s = steady_clock().now_s();

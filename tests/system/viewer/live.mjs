@@ -182,7 +182,7 @@ test("the page shows the force that the device gets, and that it is limited", li
   assert.ok(touched.force > 0.3 && touched.sent <= 0.2 + 1e-9, `limited to 0.2 N: ${JSON.stringify(touched)}`);
   await page.waitForFunction(() => /The device receives 0\.2 N of .*: limited for safety/.test(document.querySelector("footer .limited").textContent));
   assert.equal(await page.evaluate(() => window.remoteTouch.run.forceName), "device_force", "the arrow and the sound");
-  assert.match(await page.textContent("figcaption"), /force of the device 0\.\d+ N.*commanded/);
+  await page.waitForFunction(() => /force of the device 0\.\d+ N.*commanded/.test(document.querySelector("figcaption").textContent));
   assert.equal((await stop()).code, 0);
   assert.deepEqual(complaints, []);
 });
