@@ -24,8 +24,8 @@
 //   1 - t f_c / v         from there to v = (2 e - t) f_c,
 //   2 (1 - e f_c / v)     from there to v = 2 e f_c,
 //   1                     above.
-// In terms of the phase at which the motion starts, the two lost intervals of d are one interval: d = t +
-// delta and d = t are the same phase.
+// The two lost intervals of d are one interval of the phase at which the motion starts: d = t + delta and
+// d = t are the same phase.
 //
 // A hand that touches the moving surface between two frames finds it at d = e, at every phase. Then step 1
 // alone decides: the proxy is lost above e f_c.

@@ -6,10 +6,10 @@
 // squares through its filtered neighbours: weights psi of (4.2) fall from 1 at the point to 0 at the radius,
 // and the normal is the eigenvector of the smallest eigenvalue of the covariance, turned towards the sensor.
 //
-// With sharp_edges (not in the dissertation) a pixel may use the normal of one of eight windows around its
-// own. Each of them is shifted by half the width of the normal's window plus half that of the filter's. The
-// pixel uses the window that fits best, provided that it fits clearly better than its own: its mean square
-// error plus the squared distance of the pixel's own point from its plane is less than a quarter of the own
+// sharp_edges (not in the dissertation): a pixel may use the normal of one of eight windows around its own.
+// Each of them is shifted by half the width of the normal's window plus half that of the filter's. The pixel
+// uses the window that fits best, provided that it fits clearly better than its own: its mean square error
+// plus the squared distance of the pixel's own point from its plane is less than a quarter of the own
 // window's error. At an edge the own window averages both sides; a window that ends there has one side only.
 //
 // A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: it gives no point and has no

@@ -26,7 +26,7 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
 
 // Returns the step (4.6), (4.7), (4.11), (4.12): in the tangent plane if the HIP is below it (u.n < 0), else
 // straight to the HIP. (4.7) leaves d_k undefined; the rule of (4.11), (4.12) is applied to the length of u.
-// With the exit rule (5.17) a HIP that is not below the plane, nor at P, frees the proxy by r2 - r1 along the
+// The exit rule (5.17): a HIP that is not below the plane, nor at P, frees the proxy by r2 - r1 along the
 // normal.
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p);
 

@@ -1,7 +1,7 @@
 // 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
 // frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
 //
-// In each frame the sheet in front of the proxy is found again where its motion predicts it, and registered
+// The sheet in front of the proxy is found again in each frame, where its motion predicts it, and registered
 // to the frame before. A proxy that it holds back moves with it; a free one moves only if the sheet swept
 // over it. The sheet's points are moved onto the local planes that fit them, as far as noise explains. Ticks
 // are those of the proxy, with the measured velocity in (4.15).

@@ -1,10 +1,10 @@
 // 6-DOF rendering of tracked sheets: the tool of chapter 6 on surfaces that are followed from frame to frame
 // and freed of their noise. Not in the dissertation; its inputs are those of the tool, points and times.
 //
-// In each frame the sheets around the tool are found again where their motion predicts them. A tool that they
-// hold moves with them, rotation included; a free one moves only if a sheet swept over it. The sheets' points
-// are moved onto the sheets and get normals from them. Ticks are those of the tool on these points, with the
-// measured velocity and rotation rate in (4.15).
+// The sheets around the tool are found again in each frame, where their motion predicts them. A tool that
+// they hold moves with them, rotation included; a free one moves only if a sheet swept over it. The sheets'
+// points are moved onto the sheets and get normals from them. Ticks are those of the tool on these points,
+// with the measured velocity and rotation rate in (4.15).
 #pragma once
 
 #include <limits>

@@ -85,8 +85,7 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
     std::printf("%s: %zu scenes, %zu methods, digest %s\n",
                 (std::filesystem::path(request.folder) / kScorecardFile).c_str(), report.card.scenes.size(),
                 report.card.methods.size(), sum.c_str());
-    report_notes(sweeps);
-    const int code = report_failed_runs(sweeps);
+    const int code = report_runs(sweeps);
     std::printf("make the page: scripts/plot %s\n", request.folder.c_str());
     return code;
   } catch (const Interrupted&) {

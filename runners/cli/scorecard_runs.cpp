@@ -18,6 +18,22 @@ namespace {
 
 constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes: there may be hundreds
 
+struct NoteOfRuns {
+  std::string kind, first;  // first: a run that has it, as arguments of `replay`
+  std::size_t runs;
+};
+
+void add_notes(const SweepResult& result, const std::string& file, std::vector<NoteOfRuns>& notes) {
+  for (const NoteCount& count : note_counts(result)) {
+    const auto found = std::find_if(notes.begin(), notes.end(),
+                                    [&](const NoteOfRuns& note) { return note.kind == count.kind; });
+    if (found != notes.end())
+      found->runs += count.runs;
+    else
+      notes.push_back({count.kind, file + " " + option_of_run(result, count.first), count.runs});
+  }
+}
+
 }  // namespace
 
 void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps) {
@@ -46,42 +62,23 @@ void make_failure_pages(const CommandLine& line, const std::string& folder, Scor
   }
 }
 
-void report_notes(const std::vector<BenchmarkSweep>& sweeps) {
-  struct OfKind {
-    std::string name, first;
-    std::size_t runs;
-  };
-  std::vector<OfKind> kinds;
-  std::size_t done = 0;
+int report_runs(const std::vector<BenchmarkSweep>& sweeps) {
+  std::vector<NoteOfRuns> notes;
+  std::size_t done = 0, failed = 0;
+  std::string first_error;
   for (const BenchmarkSweep& sweep : sweeps) {
     const SweepResult result = read_sweep(sweep.file).result;
     done += result.runs_in(RunState::done).size();
-    for (const NoteCount& count : note_counts(result)) {
-      const auto found = std::find_if(kinds.begin(), kinds.end(),
-                                      [&](const OfKind& kind) { return kind.name == count.kind; });
-      if (found != kinds.end())
-        found->runs += count.runs;
-      else
-        kinds.push_back(
-            {count.kind, sweep.file.string() + " " + option_of_run(result, count.first), count.runs});
-    }
-  }
-  for (const OfKind& kind : kinds)
-    std::printf("note: %zu of %zu runs: %s (the first: replay %s)\n", kind.runs, done,
-                text_of_kind(kind.name).c_str(), printable(kind.first).c_str());
-}
-
-int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
-  std::size_t failed = 0;
-  std::string first;
-  for (const BenchmarkSweep& sweep : sweeps) {
-    const StoredSweep stored = read_sweep(sweep.file);
-    const auto runs = stored.result.runs_in(RunState::failed);
-    if (!runs.empty() && first.empty()) first = sweep.name + ": " + stored.result.error[runs.front()];
+    add_notes(result, sweep.file.string(), notes);
+    const auto runs = result.runs_in(RunState::failed);
+    if (!runs.empty() && first_error.empty()) first_error = sweep.name + ": " + result.error[runs.front()];
     failed += runs.size();
   }
+  for (const NoteOfRuns& note : notes)
+    std::printf("note: %zu of %zu runs: %s (the first: replay %s)\n", note.runs, done,
+                text_of_kind(note.kind).c_str(), printable(note.first).c_str());
   if (failed == 0) return kDone;
-  std::printf("%zu runs failed; the first: %s\n", failed, first.c_str());
+  std::printf("%zu runs failed; the first: %s\n", failed, first_error.c_str());
   return kCheckFailed;
 }
 

@@ -15,11 +15,10 @@ void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep
 // Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted, and
 // InputError in a program without the viewer.
 void make_failure_pages(const CommandLine& line, const std::string& folder, ScorecardReport& report);
-// Prints for each kind of note how many runs have it, and the command that shows the first.
-void report_notes(const std::vector<BenchmarkSweep>& sweeps);
-// Prints how many runs ended with an error, and the first one; they count as no success. Returns kDone, or
-// kCheckFailed if there are any.
-int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps);
+// Prints for each kind of note how many runs have it, and the command that shows the first run. Prints how
+// many runs ended with an error, and the first one; they count as no success. Returns kDone, or kCheckFailed
+// if runs ended with an error.
+int report_runs(const std::vector<BenchmarkSweep>& sweeps);
 // Prints that the runs are kept. Returns kInterrupted.
 int report_interrupted(const std::string& folder);
 

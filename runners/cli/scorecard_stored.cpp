@@ -24,8 +24,7 @@ Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
   make_scorecard_folder(plan.benchmark.folder.string());
   do_scorecard_runs(line, sweeps);
   for (const auto& [name, why] : plan.skipped) std::printf("skipped: %s: %s\n", name.c_str(), why.c_str());
-  report_notes(sweeps);
-  if (report_failed_runs(sweeps) != kDone) std::printf("runs that failed count as no success\n");
+  if (report_runs(sweeps) != kDone) std::printf("runs that failed count as no success\n");
   return scores_of(plan);
 }
 

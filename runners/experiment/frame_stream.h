@@ -57,6 +57,7 @@ class FrameStream {
   // oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks what
   // the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
   void deliver_until(double time_s, Renderer& renderer);
+  const FixtureAssignment& fixtures() const { return processing_.fixtures; }
   // Hash of the newest frame delivered; 0 before the first or without hash_frames.
   std::uint64_t newest_hash() const { return hash_; }
 

@@ -3,7 +3,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 #include "runners/provenance/provenance.h"
-#include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
@@ -38,8 +38,7 @@ std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const Sto
     if (result.state[run] == RunState::failed)
       return FailureTrace{level, result.replicate_of(run), {}, {}, result.error[run]};
     FailureTrace failure{level, result.replicate_of(run), "traces/" + sweep.name + ".h5", {}};
-    failure.command = program_text() + " replay runs/" + sweep.name + ".h5 --cell " +
-                      cell_text(result, level) + " --replicate " + std::to_string(failure.replicate) +
+    failure.command = program_text() + " replay runs/" + sweep.name + ".h5 " + option_of_run(result, run) +
                       " -o " + failure.file;
     const std::filesystem::path file = folder / failure.file;
     SimulationOptions options;

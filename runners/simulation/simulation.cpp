@@ -173,7 +173,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     std::vector<Note>& notes = options.report->notes;
     add_missed_phases(experiment.phases(), end_s, notes);
     add_missed_phases(experiment.operator_phases(), end_s, notes);
-    add(fixture_notes(experiment.build_fixtures(), observed.first_points(), observed.newest_points()), notes);
+    add(fixture_notes(frames.fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
     if (!trace.has_tool())
       add(contact_notes(contacts, scenario->without_faults(), contact, has_fixtures, kernels), notes);

@@ -29,7 +29,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::size_t size = 0;  // number of bytes before the first element's data
   bool ends = false;
-  std::optional<std::string> bad_count;  // count of an element if it is no number
+  std::optional<std::string> bad_count;  // count of an element if it is not a number
   bool is_ascii() const { return format == "ascii" || format.empty(); }
 };
 // Returns the header that begins the bytes. Lines end in \n, \r\n or \r. If the header has no end, all lines

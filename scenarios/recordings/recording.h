@@ -78,11 +78,11 @@ std::string description(const RecordingIndex& index, const std::string& rate);
 // Name of a frame for a message about it: its file, or its message in a bag.
 std::string frame_name(const RecordingIndex& index, std::size_t frame);
 
-// One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
-// What is missing is NaN, and so are pixels whose depth is above max_depth_m. A PCD file or a bag may also
-// hold a cloud that is not organised, or no image: max_depth_m does not apply to it. camera, if any,
-// becomes that of the frame. Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not
-// of the camera's size.
+// Returns one frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point
+// v * width + u. Missing pixels are NaN, and so are pixels whose depth is above max_depth_m. A PCD file or a
+// bag may also hold a cloud that is no image: max_depth_m does not apply to it. Writes the camera of the
+// frame to `camera` unless it is null. Pre: frame < index.frames.size(). Throws InputError if a file is
+// unusable or not of the camera's size.
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
                       FrameCamera* camera = nullptr);
 

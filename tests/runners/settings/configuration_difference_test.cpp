@@ -17,7 +17,7 @@ TEST(ConfigurationDifferences, AreOneTextEach) {
       (Texts{"seed 1 against absent", "renderer.r1_m 1 against 2"}));
 }
 
-// A title tells what a configuration is; what it does is told by the rest.
+// A title describes a configuration and does not change what it does.
 TEST(ConfigurationDifferences, LeaveOutTitles) {
   EXPECT_TRUE(configuration_differences(R"({"title": "a"})", R"({"title": "b"})").empty());
   EXPECT_TRUE(configuration_differences(R"({"title": "a", "experiment": {"title": "c", "seed": 1}})",

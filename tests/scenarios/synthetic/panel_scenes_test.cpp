@@ -50,7 +50,7 @@ TEST(OpenBox, HasItsSizeAndSpacing) {
   // Above the opening: the nearest place is a rim.
   EXPECT_NEAR(box.signed_distance({0.015, 0.05, 0}, 0), 0.05, 1e-15);
   EXPECT_GT(box.signed_distance({0, 1, 0}, 0), 0.9);
-  // Behind walls and floor, up to the rim; beside the box, beyond its rim, it has no back.
+  // The distance is negative behind walls and floor, up to the rim. Beyond the rim the box has no back.
   EXPECT_NEAR(box.signed_distance({0.059, -0.023, 0}, 0), -0.005, 1e-15);
   EXPECT_NEAR(box.signed_distance({0.4, 0.019, 0}, 0), -0.345, 1e-15);
   EXPECT_TRUE(std::isnan(box.signed_distance({0.4, 0.021, 0}, 0)));

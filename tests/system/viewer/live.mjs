@@ -258,10 +258,7 @@ async function recordStates(page) {
 const says = (page, part, text) => page.waitForFunction(([selector, pattern]) => new RegExp(pattern).test(document.querySelector(selector).textContent),
   [`footer ${part}`, text.source]);
 
-// Once in a few runs of everything it waited for a line that did not come, for a reason that is not known yet: only with
-// all pages, until it is found.
-const onlyWithAll = all ? test : () => undefined;
-onlyWithAll("each page says who has the hand, and what is with the run and the connection", limit, async () => {
+test("each page says who has the hand, and what is with the run and the connection", limit, async () => {
   const { address, signal, ended } = await startLive("fig4.16");
   const { page } = await openLive(address), { page: watching } = await openLive(address);
   await says(watching, "span", /^Another page controls the hand\. This page only watches/);
@@ -286,15 +283,18 @@ onlyWithAll("each page says who has the hand, and what is with the run and the c
   await dragMovesTheHand(watching);
 
   signal("SIGSTOP"); // as when the machine sleeps
-  await says(watching, ".status", /^No tick has arrived for \d+ s: the picture is the last one\. $/);
+  // The first statement gives way to the second after four seconds, which may be less than a picture takes.
+  await says(watching, ".status", /^No (tick has arrived for \d+ s: the picture is the last one\. $|data has arrived for \d+ s: the program or the connection to it hangs\.)/);
   signal("SIGCONT");
   await says(watching, ".status", /^$/);
-  await watching.evaluate(() => window.remoteTouch.page.showTrouble({ camera: "no frame for 0.2 s: the last cloud is still rendered", force: "the hand is too fast" }));
-  await says(watching, ".status", /^No frame for 0\.2 s: the last cloud is still rendered\. Force is off: the hand is too fast\. $/);
+  assert.equal(await watching.evaluate(() => { // at once, before the run says that all is well
+    window.remoteTouch.page.showTrouble({ camera: "no frame for 0.2 s: the last cloud is still rendered", force: "the hand is too fast" });
+    return document.querySelector("footer .status").textContent;
+  }), "No frame for 0.2 s: the last cloud is still rendered. Force is off: the hand is too fast. ");
 
   signal("SIGKILL");
   await ended;
-  await says(watching, ".status", /^Nothing answers at 127\.0\.0\.1:\d+: the program was ended or killed.* Trying again.* \(attempt 2\)\.$/);
+  await says(watching, ".status", /^Nothing answers at 127\.0\.0\.1:\d+: the program was ended or killed.* Trying again.* \(attempt ([2-9]|\d\d+)\)\.$/);
   assert.ok(await watching.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nothing is left to set");
   await watching.route("**/state*", (route) => route.fulfill({ status: 404 }));
   await says(watching, ".status", /^Another run or program is at 127\.0\.0\.1:\d+ now/);
