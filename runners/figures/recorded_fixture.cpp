@@ -79,7 +79,7 @@ std::vector<FrameOutcome> last_ticks(const Trace& trace) {
 
 int places(const Experiment& experiment) {
   const RecordingPart part = experiment.inputs().front();
-  const FrameRange frames = frames_of(part, list_recording(find_recording(part.path)));
+  const FrameRange frames = frames_of(part, index_recording(find_recording(part.path)));
   return frames.last - frames.first + 1;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_topics.h"
+#include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/messages/cloud_from_message.h"
 #include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/static_transforms.h"
@@ -29,13 +30,6 @@ bool same_camera(const CameraInfoMessage& a, const CameraInfoMessage& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
          a.distortion == b.distortion && a.K == b.K && a.P == b.P && a.binning_x == b.binning_x &&
          a.binning_y == b.binning_y && a.region == b.region;
-}
-
-void drop_beyond(double max_depth_m, PointCloud& cloud) {
-  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
-    if (!(cloud.z[i] > max_depth_m)) continue;
-    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-  }
 }
 
 }  // namespace

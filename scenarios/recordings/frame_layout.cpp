@@ -5,13 +5,11 @@
 #include <limits>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/recordings/pcd/pinhole_fit.h"
 
 namespace remote_touch {
 
 namespace {
-
-constexpr double kMaxOwnResidual_px = 0.5;  // limit of fit_pinhole()
-constexpr double kRounding_px = 1e-6;       // rounding that a fit adds to its ImageLayout::pixel_slack
 
 int rows_of(const PointCloud& cloud) {
   return cloud.columns() == 0 ? 0 : static_cast<int>(cloud.size()) / cloud.columns();
@@ -55,11 +53,12 @@ void conform_to_camera(const CameraIntrinsics& camera, const std::string& subjec
   // A depth image has the recording's camera, and a lens may bend its rays by more than a pixel.
   if (cloud.image && same_intrinsics(cloud.image->camera, camera)) return;
   const double residual = residual_px(camera, cloud);
-  if (!(residual < (cloud.image ? 2 * kMaxOwnResidual_px : kMaxOwnResidual_px)))
+  if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))
     throw InputError(subject,
                      "has another camera than the first frame that is used, or none: expected points at the "
                      "pixels of the same camera");
-  if (!cloud.image) cloud.image = ImageLayout{camera, RigidTransform::Identity(), residual + kRounding_px};
+  if (!cloud.image)
+    cloud.image = ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
 }
 
 }  // namespace
@@ -81,6 +80,13 @@ void conform(const FrameLayout& layout, const std::string& subject, PointCloud& 
     conform_to_camera(*layout.camera, subject, cloud);
   else
     cloud.image.reset();
+}
+
+void drop_beyond(double max_depth_m, PointCloud& cloud) {
+  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
+    if (!(cloud.z[i] > max_depth_m)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 }  // namespace remote_touch

@@ -41,8 +41,8 @@ std::uint64_t cell_of(const Vec3& p) {
 bool is_near(std::uint64_t cell, const std::vector<std::uint64_t>& cells) {
   constexpr std::uint64_t kStepX = std::uint64_t{1} << (2 * kAxisBits),
                           kStepY = std::uint64_t{1} << kAxisBits;
-  for (const std::uint64_t along_x : {cell - kStepX, cell, cell + kStepX})
-    for (const std::uint64_t row : {along_x - kStepY, along_x, along_x + kStepY}) {
+  for (const std::uint64_t along_x : {cell, cell - kStepX, cell + kStepX})  // the likeliest first
+    for (const std::uint64_t row : {along_x, along_x - kStepY, along_x + kStepY}) {
       const auto found = std::lower_bound(cells.begin(), cells.end(), row - 1);
       if (found != cells.end() && *found <= row + 1) return true;
     }

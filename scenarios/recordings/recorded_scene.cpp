@@ -168,9 +168,7 @@ PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) 
     layout_ = layout_of(cloud);
   if (camera.has_unused_viewpoint && !statistics_.has(source)) ++unused_viewpoints_;
   statistics_.add(source, cloud, settings_.max_depth_m);
-  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i)
-    if (cloud.z[i] > settings_.max_depth_m)
-      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  drop_beyond(settings_.max_depth_m, cloud);
   return cloud;
 }
 
@@ -213,7 +211,7 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
 
 // A grid search stores the points in another order than the file, so that the file is read again.
 PointCloud RecordedScene::cloud(int frame) const {
-  if (recording_.camera.width > 0) {
+  if (!layout_ || layout_->camera) {
     const auto points = measured(frame);
     const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
     if (image) return image->cloud();

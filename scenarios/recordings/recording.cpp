@@ -227,26 +227,14 @@ void check_size(const fs::path& file, int width, int height, const CameraIntrins
 
 }  // namespace
 
-RecordingIndex list_recording(const fs::path& path, const BagChoice& choice) {
+RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
   try {
-    return index_any(path, choice);
+    RecordingIndex index = index_any(path, choice);
+    index.name = name_of(path);
+    return index;
   } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
     refuse(error.path1(), "cannot be read: " + error.code().message());
   }
-}
-
-RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
-  RecordingIndex index = list_recording(path, choice);
-  if (index.kind == RecordingIndex::Kind::pcd) {
-    const PcdCloud first = read_pcd(index.frames.front().depth);
-    if (first.cloud.image) index.camera = first.cloud.image->camera;
-  }
-  if (index.bag && index.camera.width == 0) {
-    const PointCloud first = index.bag->cloud(0, kNoLimit_m);
-    if (first.image) index.camera = first.image->camera;
-  }
-  index.name = name_of(path);
-  return index;
 }
 
 std::string description(const RecordingIndex& index, const std::string& rate) {
@@ -275,12 +263,8 @@ PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max
   if (index.kind == RecordingIndex::Kind::pcd) {
     PcdCloud file = read_pcd(source.depth);
     if (camera) *camera = {file.X_FC, file.has_unused_viewpoint};
-    PointCloud& cloud = file.cloud;
-    for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
-      if (!(cloud.z[i] > max_depth_m)) continue;
-      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-    }
-    return std::move(cloud);
+    drop_beyond(max_depth_m, file.cloud);
+    return std::move(file.cloud);
   }
   const DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, max_depth_m);
   check_size(source.depth, depth.width, depth.height, index.camera);

@@ -34,7 +34,7 @@ struct FrameCamera {
 struct RecordingIndex {
   enum class Kind { depth_png, pcd, bag };
   Kind kind = Kind::depth_png;
-  // pcd, and clouds of a bag: as fitted to the first frame; all 0 where that has no image layout.
+  // All 0 for pcd and for clouds of a bag: the camera of each frame is fitted to it by read_frame().
   CameraIntrinsics camera;
   double metres_per_unit = 0;  // size of one unit of a depth PNG; 1 for other kinds
   double frame_rate_hz = 0;
@@ -49,8 +49,7 @@ struct RecordingIndex {
 };
 
 // The layout of path is the first of these that fits:
-// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_frames.h. The frame
-// rate
+// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_frames.h. Its rate
 //   is the mean rate of the stamps (one: 30 Hz).
 // - DIR/depth.txt (TUM RGB-D): its lists as in tum_layout.h, at the mean rate of the stamps (one: 30 Hz).
 //   Without DIR/camera.json the camera is the benchmark's: 640 x 480 pixels, f = 525, c = (319.5, 239.5),
@@ -66,11 +65,9 @@ struct RecordingIndex {
 // camera.json: {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, optionally colour_registered
 // (default false); other keys are refused. Pixels, metres per unit, hertz.
 //
-// Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Depth images
-// are opened by read_frame only; of PCD files and clouds of a bag the first is read here.
+// Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Frames
+// are opened by read_frame() only.
 RecordingIndex index_recording(const std::filesystem::path& path, const BagChoice& choice = {});
-// The same without opening any PCD file: no name, and no camera for kind pcd or clouds of a bag.
-RecordingIndex list_recording(const std::filesystem::path& path, const BagChoice& choice = {});
 
 // One line for the user: "office: 71 frame(s) from depth PNG at RATE, 640 x 480 pixels".
 std::string description(const RecordingIndex& index, const std::string& rate);

@@ -66,7 +66,7 @@ std::vector<InputFile> files_of(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);
   if (is_single_file(found)) return {{found.filename().generic_string(), found}};
   if (is_bag(found)) return bag_files(found);
-  const RecordingIndex recording = list_recording(found);
+  const RecordingIndex recording = index_recording(found);
   const FrameRange frames = frames_of(part, recording);
   // Absolute, because a list may name files by absolute paths: those come as ../../...
   const fs::path place = fs::absolute(found);

@@ -43,6 +43,7 @@ double steepest_deg(const Shape::Settings& s) {
 
 Shape::Shape(const Settings& settings, const Grid& grid)
     : settings_(settings),
+      grid_(grid),
       x0_(grid.x(0)),
       x1_(grid.x(grid.columns - 1)),
       z0_(grid.z(0)),
@@ -134,8 +135,7 @@ double Shape::signed_distance(const Vec3& p_S) const {
 }
 
 bool Shape::covers(const Vec3& p_S) const {
-  return p_S.x() >= x0_ - kSame_m && p_S.x() <= x1_ + kSame_m && p_S.z() >= z0_ - kSame_m &&
-         p_S.z() <= z1_ + kSame_m;
+  return grid_.covers(p_S.x(), p_S.z());
 }
 
 // Distance to the nearest flank, without a sign.

@@ -61,6 +61,7 @@ class Shape {
   double distance_to_corner(const Vec3& p_S) const;
 
   const Settings settings_;
+  const Grid grid_;
   const double x0_, x1_, z0_, z1_;  // the border
   double slope_ = 0;                // rise of a flank along x, at x > 0
   std::vector<FlatPanel> flanks_;   // panels of flat, ridge and valley

@@ -10,7 +10,7 @@ void read(std::string_view bytes) {
   static const auto image = scratch_file("camera/depth/0.png", "");
   const auto folder = scratch_file("camera/camera.json", bytes).parent_path();
   accepts(bytes, [&] {
-    const RecordingIndex index = list_recording(folder);
+    const RecordingIndex index = index_recording(folder);
     require(index.camera.width > 0 && index.camera.height > 0 && index.camera.fx > 0 &&
                 index.metres_per_unit > 0 && index.frame_rate_hz > 0,
             "a camera has pixels, a focal length and a rate");

@@ -13,7 +13,7 @@ void read(std::string_view bytes) {
   scratch_file("tum/rgb.txt", colour);
   const auto folder = scratch_file("tum/depth.txt", depth).parent_path();
   accepts(bytes, [&] {
-    const RecordingIndex index = list_recording(folder);
+    const RecordingIndex index = index_recording(folder);
     for (std::size_t i = 1; i < index.frames.size(); ++i)
       require(index.frames[i].captured_s >= index.frames[i - 1].captured_s, "frames are in order");
     require(index.frame_rate_hz > 0, "a recording has a rate");

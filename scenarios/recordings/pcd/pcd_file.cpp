@@ -239,7 +239,10 @@ void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
     const RigidTransform about_face(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()));
     if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
   }
-  file.has_unused_viewpoint = X_FV.has_value();
+  const PointCloud& cloud = file.cloud;
+  const bool has_points =
+      std::any_of(cloud.z.begin(), cloud.z.end(), [](double z_m) { return !std::isnan(z_m); });
+  file.has_unused_viewpoint = X_FV.has_value() && has_points;
   if (is_organised) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
 }
 

@@ -8,9 +8,6 @@
 namespace remote_touch {
 namespace {
 
-constexpr double kMaxResidual_px = 0.5;  // beyond it a point would belong to a neighbour pixel
-constexpr double kRounding_px = 1e-6;    // margin for a reader that evaluates the projection in another order
-
 // An image axis: pixel = focal * ratio + centre, where ratio is x/z or y/z.
 struct AxisFit {
   double focal = 0, centre = 0;
@@ -64,9 +61,9 @@ std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int h
   const auto v = fit_axis(ratios(cloud.y, cloud.z), columns, false);
   if (!u || !v || !(u->focal > 0) || !(v->focal > 0)) return std::nullopt;
   const double residual = std::max(u->residual, v->residual);
-  if (!(residual < kMaxResidual_px)) return std::nullopt;
+  if (!(residual < kMaxFitResidual_px)) return std::nullopt;
   const CameraIntrinsics camera{width, height, u->focal, v->focal, u->centre, v->centre};
-  return ImageLayout{camera, RigidTransform::Identity(), residual + kRounding_px};
+  return ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
 }
 
 }  // namespace remote_touch

@@ -52,10 +52,10 @@ TEST(RecordedData, BoxesOnATable) {
   const PointCloud cloud = read_frame(index, 0, kNoLimit);
   expect_organised(cloud);
   EXPECT_NEAR(valid_percent(cloud), 67.1, 0.05);
-  EXPECT_NEAR(index.camera.fx, 525, 0.01);
-  EXPECT_NEAR(index.camera.fy, 525, 0.01);
-  EXPECT_NEAR(index.camera.cx, 319.5, 0.01);
-  EXPECT_NEAR(index.camera.cy, 239.5, 0.01);
+  EXPECT_NEAR(cloud.image->camera.fx, 525, 0.01);
+  EXPECT_NEAR(cloud.image->camera.fy, 525, 0.01);
+  EXPECT_NEAR(cloud.image->camera.cx, 319.5, 0.01);
+  EXPECT_NEAR(cloud.image->camera.cy, 239.5, 0.01);
   double nearest_distance_m = kNoLimit, max_depth_m = 0;
   for (const double z : cloud.z) {
     if (z < nearest_distance_m) nearest_distance_m = z;

@@ -285,8 +285,10 @@ TEST_F(Recording, StreamsPcdFiles) {
   EXPECT_EQ(index.frames[1].captured_s, 1 / 30.0);
   EXPECT_EQ(index.frames[1].depth, folder_ / "frame_2.pcd");
   // u = fx x/z + cx with u = 0, 1 at x/z = -1/2, 1/2 in the first file.
-  EXPECT_NEAR(index.camera.fx, 1, 1e-12);
-  EXPECT_NEAR(index.camera.cx, 0.5, 1e-12);
+  const PointCloud first = read_frame(index, 0, 2);
+  ASSERT_TRUE(first.image);
+  EXPECT_NEAR(first.image->camera.fx, 1, 1e-12);
+  EXPECT_NEAR(first.image->camera.cx, 0.5, 1e-12);
   const PointCloud second = read_frame(index, 1, 2);
   ASSERT_TRUE(second.image);
   EXPECT_NEAR(second.image->camera.fx, 0.5, 1e-12);  // each file has its own fit

@@ -80,6 +80,11 @@ TEST(PcdViewpoint, IsNotUsedWhereTheImageIsSeenFromTheOrigin) {
       read_text(seen_from(xyz_header("1", "ascii") + "1 2 3\n", "0 0 1 1 0 0 0")).has_unused_viewpoint);
 }
 
+TEST(PcdViewpoint, FramesWithoutAnyPointHaveNothingToTurn) {
+  const std::string holes = xyz_header("2", "ascii") + "nan nan nan\nnan nan nan\n";
+  EXPECT_FALSE(read_text(seen_from(holes, "0 0.5 -2 1 0 0 0")).has_unused_viewpoint);
+}
+
 // A sensor whose axes are not those of the file: the points form an image along x, against z, and so on.
 TEST(PcdViewpoint, ATurnAtTheOriginTurnsTheCamera) {
   const std::vector<std::pair<RigidTransform, std::string>> turns = {
