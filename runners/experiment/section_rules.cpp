@@ -55,7 +55,11 @@ void make(const RendererChange& change, const Parameters& live, const std::strin
 
 // The first tick at or after a time, which is the one that makes a change of that time.
 double first_tick(const ExperimentConfiguration& configuration, const RendererChange& change) {
-  return std::ceil(change.time_s * configuration.run.haptic_rate_hz);
+  const double rate_hz = configuration.run.haptic_rate_hz;
+  double tick = std::floor(change.time_s * rate_hz);
+  while (tick / rate_hz < change.time_s)
+    ++tick;  // the comparison of the run: the product above may be rounded up
+  return tick;
 }
 
 // Throws InputError if an earlier change sets the same parameter in the same tick: the earlier one would have

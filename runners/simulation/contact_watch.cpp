@@ -46,23 +46,18 @@ void ContactWatch::add(double time_s, const Vec3& hand_W, const RenderOutput& ou
   if (!start_) start_ = Site{time_s, hand_W, points};
   const bool is_new_frame = out.frame_index != frame_;
   frame_ = out.frame_index;
-  const Site now{time_s, out.proxy_W, points};
+  const auto now = [&] { return Site{time_s, out.proxy_W, points}; };
   if (contact_) {
     frames_ += is_new_frame ? 1 : 0;
   } else if (out.contact_count > 0) {
-    contact_ = now;
+    contact_ = now();
   } else if (out.nearest_distance_m < nearest_m_) {
-    nearest_m_ = out.nearest_distance_m, nearest_ = now;
+    nearest_m_ = out.nearest_distance_m, nearest_ = now();
   }
-  follow_crossing(now, proxy_distance_m);
-}
-
-void ContactWatch::follow_crossing(const Site& now, double proxy_distance_m) {
-  if (!(proxy_distance_m < 0))
+  if (side_.add(proxy_distance_m))
+    crossing_ = Crossing{now(), contact_.has_value(), frames_};
+  else if (side_.popped_through() != 1)
     crossing_.reset();
-  else if (distance_m_ >= 0)
-    crossing_ = Crossing{now, contact_.has_value(), frames_};
-  distance_m_ = proxy_distance_m;
 }
 
 std::vector<Note> ContactWatch::spacing_notes(double ball_radius_m, const Kernels& kernels) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/measures/surface_side.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/rendered_contact.h"
@@ -20,6 +21,9 @@ class NeighbourSearch;
 class ContactWatch {
  public:
   using Points = std::shared_ptr<const NeighbourSearch>;
+
+  // held_depth_m: how far behind the true surface the renderer holds its proxy, see held_depth_m().
+  explicit ContactWatch(double held_depth_m = 0) : side_(held_depth_m) {}
 
   // Must be called after each tick of a run without a tool. points: the newest frame that the renderer has;
   // null before the first. proxy_distance_m: distance of the proxy to the true surface, NaN if it is not
@@ -57,13 +61,11 @@ class ContactWatch {
     bool touched;  // there was a contact before
     int frames;    // number of frames that came after the first contact
   };
-  void follow_crossing(const Site& now, double proxy_distance_m);
-
   std::optional<Site> start_, contact_, nearest_;
-  std::optional<Crossing> crossing_;  // the proxy has stayed behind the true surface since
+  SurfaceSide side_;
+  std::optional<Crossing> crossing_;  // set from the tick in which the proxy popped through until it is back
   double nearest_m_ = std::numeric_limits<double>::infinity();
-  double distance_m_ = std::numeric_limits<double>::quiet_NaN();  // proxy_distance_m of the tick before
-  int frame_ = -1, frames_ = 0;                                   // newest frame; frames since the contact
+  int frame_ = -1, frames_ = 0;  // newest frame; frames since the contact
 };
 
 }  // namespace remote_touch

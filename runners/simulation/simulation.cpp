@@ -137,7 +137,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
 
   SurfaceWatch surface(scenario->without_faults(), *trajectory);
-  ContactWatch contacts;
+  ContactWatch contacts(held_depth_m(contact));
   Trace trace;
   trace.reserve(ticks);
   trace.held_depth_m = held_depth_m(contact);
@@ -162,7 +162,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     trace.append(time_s, device, out, known, hand.state());
     if (options.report) {
       surface.add(device.position_W, time_s);
-      contacts.add(time_s, device.position_W, out, observed.newest_points(), known.proxy_distance_m);
+      if (!out.tool)
+        contacts.add(time_s, device.position_W, out, observed.newest_points(), known.proxy_distance_m);
     }
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));

@@ -145,7 +145,7 @@ const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   std::string bytes = opening_of(file, std::filesystem::file_size(file));
   if (bytes.starts_with(kMark)) bytes.erase(0, kMark.size());
   if (ending == ".obj") bytes = only_shape(bytes);
-  if (ending == ".ply") bytes = with_first_byte_kept(with_vertices_first(bytes));
+  if (ending == ".ply") bytes = with_vertices_first(bytes);
   if (ending == ".stl" && is_stl_text(bytes)) bytes = plain_stl(bytes);
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
 }

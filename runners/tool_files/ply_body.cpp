@@ -166,7 +166,10 @@ std::string in_order(const PlyHeader& header, Rows rows) {
     (is_vertex(element) ? vertex_data : data) += rows.pass(element);
   }
   rows.finish();
-  return with_line_feeds(header.opening + vertex_lines + lines) + "end_header\n" + vertex_data + data;
+  const std::string body = vertex_data + data;
+  // The library takes a line feed that begins binary data for the end of the header.
+  const char* const kept = !header.is_ascii() && body.starts_with('\n') ? "\n" : "";
+  return with_line_feeds(header.opening + vertex_lines + lines) + "end_header\n" + kept + body;
 }
 
 }  // namespace

@@ -100,13 +100,4 @@ std::string ply_problem(const std::filesystem::path& file) {
   return {};
 }
 
-std::string with_first_byte_kept(std::string ply) {
-  const PlyHeader header = ply_header_in(ply);
-  const std::size_t size = header.size;
-  const bool is_taken = header.ends && !header.is_ascii() && size < ply.size() && ply[size] == '\n' &&
-                        ply.compare(size - 2, 2, "\r\n") != 0;
-  if (is_taken) ply.insert(size, 1, '\n');
-  return ply;
-}
-
 }  // namespace remote_touch

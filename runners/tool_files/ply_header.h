@@ -42,8 +42,4 @@ std::size_t size_of_ply(std::string_view type);
 // Returns the problem of the header in one line; empty if there is none.
 std::string ply_problem(const std::filesystem::path& file);
 
-// Returns the bytes of a file as the library needs them. If binary data begin with a line feed, the library
-// takes that byte for the end of the header; one more is then inserted before it.
-std::string with_first_byte_kept(std::string ply);
-
 }  // namespace remote_touch

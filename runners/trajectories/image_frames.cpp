@@ -20,6 +20,10 @@ std::string size_text(const CameraIntrinsics& camera) {
   return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
 }
 
+bool same_intrinsics(const CameraIntrinsics& a, const CameraIntrinsics& b) {
+  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
+}
+
 bool has_measured_point(const PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.is_measured(i)) return true;
@@ -83,6 +87,8 @@ void require_image_of(const ImageLayout& first, const PointCloud& frame, int num
   if (!has_size || frame.size() != pixel_count(camera))
     refuse("has " + (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
            ": expected " + size_text(camera) + ", as frame 0 has");
+  if (frame.image && same_intrinsics(frame.image->camera, camera))
+    return;  // its layout says that the points fit
   const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
   const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
   if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;

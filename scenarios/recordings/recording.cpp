@@ -11,6 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/folder_files.h"
+#include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "scenarios/recordings/png/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"

@@ -87,6 +87,17 @@ TEST(RendererChanges, RefusesTwoOfOneParameterInOneTick) {
   EXPECT_EQ(why(two("0.1001", "0.1011", kStiffness)), "no InputError");
 }
 
+// 1000 * 2.007 is rounded to a number above 2007, but the run changes the parameter at its tick 2007.
+TEST(RendererChanges, AllowsOneParameterInSuccessiveTicks) {
+  for (int tick = 2000; tick < 2050; ++tick) {
+    const auto at = [](int number) {
+      const std::string time_s = "2." + std::to_string(number).substr(1);
+      return change(time_s.c_str(), "renderer.r3_m", "0.02");
+    };
+    EXPECT_EQ(why("[" + at(tick) + ", " + at(tick + 1) + "]"), "no InputError");
+  }
+}
+
 TEST(RendererChanges, SurviveWritingAndReading) {
   const Experiment experiment = lift("[" + change("0.25", "renderer.velocity_estimate", "0") + "]");
   EXPECT_EQ(Experiment::from_json(experiment.to_json(), "again").to_json(), experiment.to_json());

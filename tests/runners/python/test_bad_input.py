@@ -106,6 +106,13 @@ def test_a_file_of_others_is_replaced_when_asked(in_folder):
     assert rt.compare("other.txt", "trace.h5").same
 
 
+def test_a_file_of_others_that_appears_during_a_run_is_kept(in_folder):
+    other = in_folder / "late.h5"
+    with pytest.raises(rt.InputError, match="late.h5"):
+        rt.run(PRESS, output=other, progress=lambda fraction: other.write_text("not a result"))
+    assert other.read_text() == "not a result"
+
+
 def test_an_input_is_never_replaced(in_folder):
     (in_folder / "press.json").write_text(json.dumps(PRESS))
     with pytest.raises(rt.InputError, match="press.json"):

@@ -7,7 +7,9 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/theory/first_touch.h"
+#include "core/search/neighbour_search.h"
 #include "runners/simulation/simulation.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::contact_watch_test {
@@ -108,6 +110,26 @@ TEST(ContactWatch, ReportsWideSpacingWithoutAContact) {
   EXPECT_HAS(made.report.notes.back().text, "where the proxy came nearest to them");
   EXPECT_EQ(run(flat("0.0015"), straight_down(0.04, 0)).kinds(), std::vector<std::string>{"no contact"})
       << "beside the grid";
+}
+
+// A renderer that holds its proxy up to 1 mm behind the surface loses it only beyond that, see
+// surface_side.h.
+TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
+  PointCloud corners;
+  for (const double x : {-0.006, 0.006})
+    for (const double z : {-0.006, 0.006}) corners.append({x, 0, z});
+  const ContactWatch::Points points = make_search(std::move(corners));
+  RenderOutput out;
+  out.nearest_distance_m = std::numeric_limits<double>::infinity();
+  ContactWatch watch(0.001);
+  const auto notes_at = [&](double distance_m) {
+    watch.add(0, out.proxy_W, out, points, distance_m);
+    return watch.spacing_notes(0.005, scenes::kernels()).size();
+  };
+  EXPECT_EQ(notes_at(0.0001), 0u);
+  EXPECT_EQ(notes_at(-0.0009), 0u);
+  EXPECT_EQ(notes_at(-0.0011), 1u);
+  EXPECT_EQ(notes_at(-0.0009), 0u) << "it is back";
 }
 
 TEST(ContactWatch, AProxyThatSinglePointsDoNotHoldHasNoNoteOnSpacing) {

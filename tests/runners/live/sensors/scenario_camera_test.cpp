@@ -5,7 +5,9 @@
 
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
+#include "runners/live/sensors/replaceable_scenario.h"
 #include "runners/sessions/sensor_cloud.h"
+#include "scenarios/faults/sensor_faults.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 
@@ -13,7 +15,7 @@ namespace remote_touch::scenario_camera_test {
 namespace {
 
 // Recorded by a host that was slow to start and got fewer frames than the sensor's rate.
-class SlowRecording final : public Scenario {
+class SlowRecording : public Scenario {
  public:
   static constexpr double kFirst_s = 0.12, kPeriod_s = 0.05;
 
@@ -48,6 +50,22 @@ TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
     EXPECT_NEAR(frame.captured_s, 5 + after_s, 1e-9);
     EXPECT_NEAR(clock.now_s(), 5 + after_s, 1e-9);
   }
+}
+
+class PosedRecording final : public SlowRecording {
+ public:
+  std::optional<RigidTransform> sensor_pose() const override {
+    return RigidTransform(Eigen::Translation3d(0, 0, 2));
+  }
+};
+
+// The faults of a sensor do not hide where it is.
+TEST(ReplaceableScenario, ReportsThePoseOfASensorWithFaults) {
+  const auto sensor = std::make_shared<const FaultySensor>(std::make_unique<PosedRecording>(), SensorFaults{},
+                                                           NoiseKey{1}, scenes::kernels());
+  const ReplaceableScenario scenario(std::make_shared<const ShownScenario>(sensor));
+  ASSERT_TRUE(scenario.sensor_pose());
+  EXPECT_EQ(scenario.sensor_pose()->translation(), Vec3(0, 0, 2));
 }
 
 // Depths are rounded to 0.1 mm, and lie on the ray of their pixel; the points of clouds are rounded to
