@@ -109,10 +109,16 @@ TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
 
 TEST_F(Recording, HasTheNameOfTheCurrentFolder) {
   write_recording();
-  const fs::path before = fs::current_path();
-  fs::current_path(folder_.path());
-  const std::string name = index_recording(".").name, below = index_recording("depth/..").name;
-  fs::current_path(before);
+  struct InFolder {
+    explicit InFolder(const fs::path& folder) { fs::current_path(folder); }
+    ~InFolder() { fs::current_path(before); }
+    const fs::path before = fs::current_path();
+  };
+  std::string name, below;
+  {
+    const InFolder here(folder_.path());
+    name = index_recording(".").name, below = index_recording("depth/..").name;
+  }
   EXPECT_EQ(name, folder_.path().filename().string());
   EXPECT_EQ(below, name);
 }

@@ -97,9 +97,16 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
     int beyond = 0, below = 0;
     for (int k = 0; k < 150; ++k) {
       const Vec3 p(0.06 * even(), 0.035 * even(), 0.03 * even());
-      beyond += std::abs(p.x()) > 0.04 || std::abs(p.z()) > 0.02;
+      const bool is_over = kind == Kind::sphere ? std::hypot(p.x(), p.z()) <= s.radius_m
+                                                : std::abs(p.x()) <= 0.04 && std::abs(p.z()) <= 0.02;
       const double brute = nearest_sample_m(samples, p), got = std::abs(shape.signed_distance(p));
-      if (std::isnan(got)) continue;  // beside it, see below
+      if (std::isnan(got)) {  // below its plane and beside it
+        EXPECT_FALSE(is_over) << p.transpose();
+        if (kind == Kind::flat) EXPECT_LT(p.y(), 0) << p.transpose();
+        if (kind == Kind::sphere) EXPECT_LT(p.y(), -s.radius_m) << p.transpose();
+        continue;
+      }
+      beyond += std::abs(p.x()) > 0.04 || std::abs(p.z()) > 0.02;
       // The nearest place of the surface lies within half a gap of a sample.
       EXPECT_LE(got, brute + 1e-12) << p.transpose();
       EXPECT_GE(std::sqrt(got * got + 0.25 * samples.max_gap_m * samples.max_gap_m) +
