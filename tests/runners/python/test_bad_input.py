@@ -5,6 +5,7 @@ import os
 import numpy as np
 import pytest
 import remote_touch as rt
+from class_scripts import PENALTY
 from conftest import PRESS
 
 CIRCLE = {}
@@ -106,11 +107,25 @@ def test_a_file_of_others_is_replaced_when_asked(in_folder):
     assert rt.compare("other.txt", "trace.h5").same
 
 
-def test_a_file_of_others_that_appears_during_a_run_is_kept(in_folder):
-    other = in_folder / "late.h5"
-    with pytest.raises(rt.InputError, match="late.h5"):
-        rt.run(PRESS, output=other, progress=lambda fraction: other.write_text("not a result"))
-    assert other.read_text() == "not a result"
+WRITES_LATE = PENALTY + '''
+class Late(Penalty):
+    def step(self, device, time_s):
+        with open("late.h5", "w") as other:
+            other.write("not a result")
+        return super().step(device, time_s)
+
+rt.register(Late, "late")
+try:
+    rt.run(PRESS | {"renderer": {"name": "late"}}, output="late.h5")
+except rt.InputError as refused:
+    print(refused)
+'''
+
+
+def test_a_file_of_others_that_appears_during_a_run_is_kept(in_python, tmp_path):
+    said = in_python(WRITES_LATE)
+    assert "late.h5: was written by another program while this one computed" in said
+    assert (tmp_path / "late.h5").read_text() == "not a result"
 
 
 def test_an_input_is_never_replaced(in_folder):
