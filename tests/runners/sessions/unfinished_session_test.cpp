@@ -34,7 +34,7 @@ class UnfinishedSessionFile : public testing::Test {
  protected:
   const TestFolder folder_{"unfinished_session"};
   const SessionLayout layout_ = layout_of(SmallSession{}.view);
-  const SmallSession session_;
+  const SmallSession session_{};
 
   JournalBlock start() const {
     return block(SessionBlock::start,
