@@ -55,11 +55,13 @@ TEST(ImagePress, LiftsInFrontOfWhatComesBetween) {
   EXPECT_FALSE(hand.surface_plan(0.2)->touches) << "30 mm take until 0.25 s";
 }
 
+// A flat ring around the axis of the camera, 5 cm wide.
+double ring(double x, double y) {
+  const double r = std::hypot(0.5 * x, 0.5 * y);
+  return r > 0.05 && r < 0.1 ? 0.5 : kNaN;
+}
+
 TEST(ImagePress, ChoosesATouchablePixelOnlyWhereNoneIsGiven) {
-  const Surface ring = [](double x, double y) {
-    const double r = std::hypot(0.5 * x, 0.5 * y);
-    return r > 0.05 && r < 0.1 ? 0.5 : kNaN;
-  };
   const Views scene({photographed(ring, everywhere)});
   ImagePress::Settings s;
   s.row = 240, s.column = 320;
@@ -165,10 +167,6 @@ TEST(ImageTrajectories, ReportWhichPixelsTheyFollow) {
 
 // Both proposals of the message can be used: the pixel, and -1 for both.
 TEST(ImagePress, ProposesAPixelThatCanBeTouched) {
-  const Surface ring = [](double x, double y) {
-    const double r = std::hypot(0.5 * x, 0.5 * y);
-    return r > 0.05 && r < 0.1 ? 0.5 : kNaN;
-  };
   const Views scene({photographed(ring, everywhere)});
   ImagePress::Settings s;
   s.row = 240, s.column = 320;
