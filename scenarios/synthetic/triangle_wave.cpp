@@ -37,7 +37,7 @@ double TriangleWave::surface_height(double x, double, double) const {
 
 // Exact distance to the polyline across x; the wave does not change along z.
 double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
-  constexpr double kSame_m = 1e-9;
+  constexpr double kAtEnd_m = 1e-9;
   const double start = settings_.grid.x(0), end = settings_.grid.x(settings_.grid.columns - 1);
   const double half = 0.5 * settings_.period_m;
   const int corners = static_cast<int>(std::ceil((end - start) / half)) + 1;
@@ -52,7 +52,7 @@ double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
     const double distance = std::sqrt(dx * dx + dy * dy);  // not hypot: its bits depend on the machine
     if (!(distance < nearest)) continue;
     const double foot_x = x0 + t * ex;
-    nearest = distance, is_at_end = foot_x <= start + kSame_m || foot_x >= end - kSame_m;
+    nearest = distance, is_at_end = foot_x <= start + kAtEnd_m || foot_x >= end - kAtEnd_m;
   }
   if (p_W.y() >= surface_height(p_W.x(), 0, time_s)) return nearest;
   // Beyond the ends of the grid in x the foot may still be on a flank.

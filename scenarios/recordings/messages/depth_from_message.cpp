@@ -13,8 +13,6 @@
 namespace remote_touch {
 namespace {
 
-constexpr std::uint64_t kMaxPixels = 1u << 26;
-
 // NaN where nothing was measured, also where z_m is NaN or infinite.
 double measured_or_nan(double z_m, double max_depth_m) {
   const bool measured = z_m > 0 && z_m <= max_depth_m && z_m <= std::numeric_limits<double>::max();
@@ -25,9 +23,9 @@ template <class Value>
 DepthImage depth_of_rows(const ImageMessage& message, double scale, double max_depth_m,
                          const std::string& subject) {
   const std::uint64_t width = message.width, height = message.height, row = width * sizeof(Value);
-  if (width * height == 0 || width * height > kMaxPixels)
+  if (width * height == 0 || width * height > kMaxImagePixels)
     throw InputError(subject, "has " + std::to_string(width) + " x " + std::to_string(height) +
-                                  " pixels: expected 1 to " + std::to_string(kMaxPixels));
+                                  " pixels: expected 1 to " + std::to_string(kMaxImagePixels));
   if (message.step < row)
     throw InputError(subject, "step = " + std::to_string(message.step) + ": expected " + std::to_string(row) +
                                   " or more, a row of pixels");

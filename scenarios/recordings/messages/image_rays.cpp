@@ -136,12 +136,11 @@ ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) 
 }
 
 ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
-  constexpr std::uint64_t kMaxPixels = 1u << 26;
   const ImageSize size = image_size(info, subject);
   const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
-  if (pixels == 0 || pixels > kMaxPixels)
+  if (pixels == 0 || pixels > kMaxImagePixels)
     throw InputError(subject, "has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                                  " pixels: expected 1 to " + std::to_string(kMaxPixels));
+                                  " pixels: expected 1 to " + std::to_string(kMaxImagePixels));
   const auto& K = info.K;
   const auto& P = info.P;
   const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];

@@ -12,6 +12,9 @@
 
 namespace remote_touch {
 
+// The most pixels that an image may have: 8192 x 8192, 0.5 GB as depths.
+inline constexpr std::uint64_t kMaxImagePixels = 1u << 26;
+
 struct MessageHeader {
   std::int64_t stamp_ns = 0;  // time at which the sensor measured; 0: not stated
   std::string frame_id;       // the name of the coordinate frame

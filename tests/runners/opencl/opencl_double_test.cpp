@@ -43,7 +43,7 @@ class OpenClDoubleTest : public testing::Test {
   static void begin_anew() {
     library().reset();
     for (const OpenClDevice& device : opencl_devices(opencl_library()))
-      forget_trials(device), forget_kernels(device.id);
+      forget_trials(device), static_cast<void>(forget_kernels(device.id));
   }
   // A busy machine may stop a test for seconds, so that only the test of a limit has one.
   static constexpr std::chrono::minutes kNoLimit{10};

@@ -36,7 +36,8 @@ TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
     EXPECT_EQ(same.captured_s(frame), plane->captured_s(frame));
     EXPECT_FALSE(same.arrives_s(frame));
     const auto same_points = same.points(frame), plane_points = plane->points(frame);
-    EXPECT_TRUE(typeid(*same_points) == typeid(*plane_points));
+    const auto &same_type = *same_points, &plane_type = *plane_points;
+    EXPECT_TRUE(typeid(same_type) == typeid(plane_type));
   }
 }
 
