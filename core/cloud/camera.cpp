@@ -6,6 +6,10 @@ Vec3 unproject(const CameraIntrinsics& camera, double u, double v, double z_m) {
   return {(u - camera.cx) * z_m / camera.fx, (v - camera.cy) * z_m / camera.fy, z_m};
 }
 
+std::string size_text(const CameraIntrinsics& camera) {
+  return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
+}
+
 PointCloud cloud_from_depth(const DepthImage& depth, const CameraIntrinsics& camera,
                             const RigidTransform& X_WC) {
   PointCloud cloud;

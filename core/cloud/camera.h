@@ -2,6 +2,7 @@
 // pixel (u, v) = (column, row), the centre of the first pixel is (0, 0).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/cloud/point_cloud.h"
@@ -18,6 +19,9 @@ struct DepthImage {
 
 // The point that pixel (u, v) sees at depth z_m: x = (u - cx) z / fx, y = (v - cy) z / fy.
 Vec3 unproject(const CameraIntrinsics& camera, double u, double v, double z_m);
+
+// Such as "640 x 480 pixels".
+std::string size_text(const CameraIntrinsics& camera);
 
 // The organised cloud of a depth image, in the world frame. A hole stays a hole: its point is NaN, never the
 // origin.

@@ -17,6 +17,9 @@ struct CameraIntrinsics {
   int height = 0;
   double fx = 0, fy = 0;
   double cx = 0, cy = 0;
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  bool operator==(const CameraIntrinsics&) const = default;
 };
 
 // Promises that point v * width + u lies on the viewing ray of pixel (u, v), within pixel_slack pixels.
@@ -44,6 +47,11 @@ struct PointCloud {
   std::size_t size() const { return x.size(); }
   bool is_measured(std::size_t i) const {
     return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
+  }
+  bool has_measured_point() const {
+    for (std::size_t i = 0; i < size(); ++i)
+      if (is_measured(i)) return true;
+    return false;
   }
   bool has_normals() const { return !nx.empty(); }
   // Number of columns of the image or grid; 0: unorganised.

@@ -59,7 +59,7 @@ void check_sizes(const DepthImage& depth, const CameraIntrinsics& camera) {
 }
 
 void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const RigidTransform& X_WC) {
-  const std::size_t count = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const std::size_t count = camera.pixels();
   for (std::vector<double>* column : {&cloud.x, &cloud.y, &cloud.z}) column->resize(count);
   cloud.fixture_radius_m.clear(), cloud.stiffness_N_per_m.clear(), cloud.colour.clear();
   cloud.image = ImageLayout{camera, X_WC, 1e-6};  // same value as in cloud_from_depth

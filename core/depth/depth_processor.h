@@ -47,9 +47,7 @@ struct DepthFrame {
   RigidTransform X_WC;       // registration of the camera in the base frame
   bool keep_points = false;  // the cloud has its points already, and they are not filtered
 
-  std::size_t pixels() const {
-    return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  }
+  std::size_t pixels() const { return camera.pixels(); }
 };
 
 // A whole depth image as sensors send it.

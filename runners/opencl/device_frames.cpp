@@ -157,8 +157,7 @@ void DeviceFrames::assign_fixtures(const DeviceFrame& frame) {
 }
 
 void DeviceFrames::download(DeviceFrame& frame) {
-  const std::size_t pixels =
-      static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  const std::size_t pixels = camera_.pixels();
   const int first = frame.keep_points ? DeviceFrame::nx : DeviceFrame::x;
   int end = DeviceFrame::fixture_radius;
   if (!frame.colour.empty()) end = frame.has_stiffness() ? DeviceFrame::kColumns : DeviceFrame::stiffness;

@@ -34,9 +34,7 @@ PointCloud cloud_of_points(const SensorFrame& frame, const CloudLayout& layout, 
 
 bool is_complete(const SensorFrame& frame, const SensorView& view) {
   const std::size_t step = view.cloud ? view.cloud->numbers_per_point() : 1;
-  const std::size_t points =
-      view.cloud ? frame.points.size() / step
-                 : static_cast<std::size_t>(view.camera.width) * static_cast<std::size_t>(view.camera.height);
+  const std::size_t points = view.cloud ? frame.points.size() / step : view.camera.pixels();
   const bool has_points = view.cloud ? frame.points.size() % step == 0 : frame.depth.size() == points;
   return has_points && (!view.has_colour || frame.colour.size() == points);
 }

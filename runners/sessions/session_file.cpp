@@ -316,8 +316,7 @@ SensorFrame SessionReader::frame(std::size_t i) const {
   if (view_.cloud) {
     read_points(i, frame);
   } else {
-    const auto pixels =
-        static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
+    const auto pixels = view_.camera.pixels();
     read_numbers<std::int32_t>("/frames/depth", {i, 1}, pixels, frame.depth);
     if (view_.has_colour) read_numbers<double>("/frames/colour", {i, 1}, pixels, frame.colour);
   }

@@ -46,7 +46,7 @@ const PointCloud* SurfaceWatch::image_at(double time_s) {
   const auto is_image = [](const PointCloud& cloud) {
     if (!cloud.image) return false;
     const CameraIntrinsics& camera = cloud.image->camera;
-    return cloud.size() == static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    return cloud.size() == camera.pixels();
   };
   if (!is_image(*cloud_)) return cloud_ = nullptr;
   X_CW_ = cloud_->image->X_WC.inverse();

@@ -12,24 +12,6 @@ namespace remote_touch {
 
 namespace {
 
-std::size_t pixel_count(const CameraIntrinsics& camera) {
-  return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-}
-
-std::string size_text(const CameraIntrinsics& camera) {
-  return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
-}
-
-bool same_intrinsics(const CameraIntrinsics& a, const CameraIntrinsics& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
-}
-
-bool has_measured_point(const PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.is_measured(i)) return true;
-  return false;
-}
-
 // The largest distance, in pixels along one axis, between the pixel of a measured point and the pixel at
 // which the camera sees that point. Infinite if a point is behind the camera. pre: the cloud has a point per
 // pixel.
@@ -51,7 +33,7 @@ double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, con
 DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {
   const CameraIntrinsics& camera = layout.camera;
   const RigidTransform X_CW = layout.X_WC.inverse();
-  DepthImage depth{camera.width, camera.height, std::vector<double>(pixel_count(camera), std::nan(""))};
+  DepthImage depth{camera.width, camera.height, std::vector<double>(camera.pixels(), std::nan(""))};
   if (cloud.size() != depth.z_m.size()) return depth;
   for (std::size_t i = 0; i < cloud.size(); ++i) depth.z_m[i] = (X_CW * cloud.point(i)).z();
   return depth;
@@ -68,7 +50,7 @@ FrameImage first_image(const Scenario& scenario, const std::string& subject) {
                            "each point at its pixel: expected clouds in the frame of the camera that are "
                            "not mirrored"
                          : "the frames are not images: expected a scenario with a camera");
-  if (cloud.size() != pixel_count(cloud.image->camera))
+  if (cloud.size() != cloud.image->camera.pixels())
     throw InputError(subject, "frame 0 has " + std::to_string(cloud.size()) + " points: expected " +
                                   size_text(cloud.image->camera));
   return {*cloud.image, depth_of(cloud, *cloud.image)};
@@ -81,14 +63,13 @@ void require_image_of(const ImageLayout& first, const PointCloud& frame, int num
     throw InputError(subject, "frame " + std::to_string(number) + " " + problem);
   };
   const CameraIntrinsics& camera = first.camera;
-  if (!has_measured_point(frame)) return;
+  if (!frame.has_measured_point()) return;
   const bool has_size = !frame.image || (frame.image->camera.width == camera.width &&
                                          frame.image->camera.height == camera.height);
-  if (!has_size || frame.size() != pixel_count(camera))
+  if (!has_size || frame.size() != camera.pixels())
     refuse("has " + (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
            ": expected " + size_text(camera) + ", as frame 0 has");
-  if (frame.image && same_intrinsics(frame.image->camera, camera))
-    return;  // its layout says that the points fit
+  if (frame.image && frame.image->camera == camera) return;  // its layout says that the points fit
   const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
   const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
   if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;

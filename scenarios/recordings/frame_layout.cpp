@@ -19,10 +19,6 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + " x " + std::to_string(rows) + " points";
 }
 
-bool same_intrinsics(const CameraIntrinsics& a, const CameraIntrinsics& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
-}
-
 // Returns the largest distance of a point from its pixel; infinite if a point is not in front of the camera.
 double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
   double worst = 0;
@@ -38,7 +34,7 @@ double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
 
 PointCloud image_of_holes(const CameraIntrinsics& camera) {
   PointCloud cloud;
-  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const auto pixels = camera.pixels();
   cloud.x.assign(pixels, std::nan("")), cloud.y = cloud.x, cloud.z = cloud.x;
   cloud.grid_columns = camera.width;
   return cloud;
@@ -51,7 +47,7 @@ void conform_to_camera(const CameraIntrinsics& camera, const std::string& subjec
                                   size_text(camera.width, camera.height) +
                                   ", as the first frame that is used has");
   // A depth image has the recording's camera, and a lens may bend its rays by more than a pixel.
-  if (cloud.image && same_intrinsics(cloud.image->camera, camera)) return;
+  if (cloud.image && cloud.image->camera == camera) return;
   const double residual = residual_px(camera, cloud);
   if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))
     throw InputError(subject,

@@ -24,7 +24,7 @@ void check_rays(const MessageCursor& cursor, bool rectified) {
   if (std::uint64_t{info.width} * info.height > kMaxPixels) return;
   const ImageRays rays(info, rectified, "m");
   const CameraIntrinsics& camera = rays.camera();
-  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const std::size_t pixels = camera.pixels();
   const PointCloud cloud = rays.cloud({camera.width, camera.height, std::vector<double>(pixels, 1.0)});
   require(cloud.size() == pixels, "every pixel has a point or none");
   for (std::size_t i = 0; i < pixels; ++i)

@@ -19,9 +19,7 @@ void read(std::string_view bytes) {
       session.device(i);
     }
     for (std::size_t i = 0; i < session.frame_count(); ++i)
-      require(session.frame(i).depth.size() ==
-                  static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height),
-              "every pixel has a depth");
+      require(session.frame(i).depth.size() == camera.pixels(), "every pixel has a depth");
     Experiment::from_json(session_experiment(session, "fuzz.h5"), "fuzz.h5");
   });
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/cloud/camera.h"
 #include "core/cloud/colour.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
@@ -29,14 +30,6 @@ std::string number(double value) {
   return text;
 }
 
-std::string size_text(const CameraIntrinsics& camera) {
-  return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
-}
-
-std::size_t pixels_of(const CameraIntrinsics& camera) {
-  return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-}
-
 std::string columns_text(int columns) {
   return columns > 0 ? "rows of " + std::to_string(columns) + " points" : "no rows and columns";
 }
@@ -51,12 +44,6 @@ double unit_for(const FrameEncoder::Settings& settings, const PointCloud& first)
   for (const double unit_m : kUnits_m)
     if (reach_m <= kMaxUnits * unit_m) return unit_m;
   return *std::rbegin(kUnits_m);
-}
-
-bool has_measured_point(const PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.is_measured(i)) return true;
-  return false;
 }
 
 // Writes the points, rounded to floats, so that a replay reads the same values.
@@ -92,7 +79,7 @@ FrameEncoder::FrameEncoder(const Settings& settings, const PointCloud& first)
 std::string FrameEncoder::image_problem(const PointCloud& cloud) const {
   const bool has_size = !cloud.image || (cloud.image->camera.width == view_.camera.width &&
                                          cloud.image->camera.height == view_.camera.height);
-  if (!has_size || cloud.size() != pixels_of(view_.camera))
+  if (!has_size || cloud.size() != view_.camera.pixels())
     return "has " + (has_size ? std::to_string(cloud.size()) + " points" : size_text(cloud.image->camera)) +
            ": expected " + size_text(view_.camera) + ", as the first frame has";
   if (!cloud.image) return {};
@@ -150,7 +137,7 @@ std::string FrameEncoder::write_depth(const PointCloud& cloud, SensorFrame& fram
 }
 
 void FrameEncoder::write_nothing(SensorFrame& frame) const {
-  const std::size_t pixels = view_.cloud ? 0 : pixels_of(view_.camera);
+  const std::size_t pixels = view_.cloud ? 0 : view_.camera.pixels();
   frame.depth.assign(pixels, 0);
   frame.colour.assign(view_.has_colour ? pixels : 0, kNoColour);
   frame.points.clear();
@@ -162,7 +149,7 @@ void FrameEncoder::encode(const PointCloud& cloud, int index, SensorFrame& frame
     write_points(cloud, frame);
   else if (problem.empty())
     problem = write_depth(cloud, frame);
-  if (!problem.empty() && !has_measured_point(cloud)) return write_nothing(frame);
+  if (!problem.empty() && !cloud.has_measured_point()) return write_nothing(frame);
   if (!problem.empty()) throw InputError(name_, "frame " + std::to_string(index) + " " + problem);
   if (require_ && cloud.size() > 0) require_(cloud);
   frame.colour = view_.has_colour ? cloud.colour : std::vector<std::uint32_t>();

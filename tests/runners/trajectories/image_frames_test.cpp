@@ -22,7 +22,7 @@ constexpr CameraIntrinsics kCamera{100, 80, 100, 100, 49.5, 39.5};
 // A plane at a depth, as the camera sees it from X_WC.
 PointCloud plane(double depth_m, const CameraIntrinsics& camera = kCamera,
                  const RigidTransform& X_WC = RigidTransform::Identity()) {
-  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const auto pixels = camera.pixels();
   return cloud_from_depth({camera.width, camera.height, std::vector<double>(pixels, depth_m)}, camera, X_WC);
 }
 

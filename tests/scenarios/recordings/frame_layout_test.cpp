@@ -15,7 +15,7 @@ constexpr CameraIntrinsics kCamera = {4, 3, 10, 10, 1.5, 1};
 
 PointCloud image(const CameraIntrinsics& camera, double depth_m) {
   DepthImage depth{camera.width, camera.height, {}};
-  depth.z_m.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), depth_m);
+  depth.z_m.assign(camera.pixels(), depth_m);
   return cloud_from_depth(depth, camera, RigidTransform::Identity());
 }
 

@@ -27,7 +27,7 @@ RigidTransform pose() {
 PointCloud wall(double depth_m, const CameraIntrinsics& camera = kCamera,
                 const RigidTransform& X_WC = pose()) {
   DepthImage depth{camera.width, camera.height, {}};
-  depth.z_m.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), depth_m);
+  depth.z_m.assign(camera.pixels(), depth_m);
   depth.z_m[5] = std::nan("");
   return cloud_from_depth(depth, camera, X_WC);
 }
