@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
-#include "analysis/columns/tolerance.h"
+#include "analysis/trace/column.h"
+#include "analysis/trace/tolerance.h"
 
 namespace remote_touch {
 

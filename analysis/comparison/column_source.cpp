@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/columns/hash64.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/trace/hash64.h"
 
 namespace remote_touch {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "analysis/columns/tolerance.h"
 #include "analysis/measures/better.h"
+#include "analysis/trace/tolerance.h"
 
 namespace remote_touch {
 

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/columns/tolerance.h"
 #include "analysis/comparison/judgement.h"
 #include "analysis/measures/better.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/sweep_regions.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/tolerance.h"
 
 namespace remote_touch {
 

@@ -1,8 +1,8 @@
 #include "analysis/comparison/tick_hashes.h"
 
-#include "analysis/columns/hash64.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
+#include "analysis/trace/hash64.h"
 
 namespace remote_touch {
 

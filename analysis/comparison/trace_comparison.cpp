@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/columns/hash64.h"
+#include "analysis/trace/hash64.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
 #include "analysis/figures/scene.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

@@ -58,7 +58,7 @@ struct Measure {
   Better better = Better::neither;
 };
 // The measures of this program, in the order in which summaries print them. A program may have more, see
-// runners/experiment/catalog.h.
+// runners/experiment/catalog/catalog.h.
 const std::vector<Measure>& built_in_measures();
 bool applies(const Measure& measure, const Trace& trace);
 // True if the measure needs Trace::contact or Trace::true_normal, which are not stored as columns.

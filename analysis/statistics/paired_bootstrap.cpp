@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/random/noise.h"
+#include "core/numeric/noise.h"
 
 namespace remote_touch {
 

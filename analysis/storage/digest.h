@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/columns/column.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

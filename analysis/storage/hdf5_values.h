@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "analysis/columns/column.h"
 #include "analysis/storage/hdf5_handle.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

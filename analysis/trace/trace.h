@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
+#include "analysis/trace/column.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 

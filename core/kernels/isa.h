@@ -1,5 +1,6 @@
 // The levels of the kernels that the running machine supports. A program may use kernels_for(best_isa());
-// only a measurement (runners/kernel_choice) shows which level is the fastest. All give the same bits.
+// only a measurement (runners/experiment/provenance/kernel_choice.h) shows which level is the fastest. All
+// give the same bits.
 #pragma once
 
 #include <span>

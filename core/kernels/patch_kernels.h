@@ -1,5 +1,5 @@
-// The points of a tracked patch of surface, and sums over them, core/tracked_sheet. Lengths are in units of
-// the patch (PatchAxes::unit_m) unless they carry _m.
+// The points of a tracked patch of surface, and sums over them, core/beyond/tracked_surface. Lengths are in
+// units of the patch (PatchAxes::unit_m) unless they carry _m.
 #pragma once
 
 #include <cstdint>

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/geometry/vector.h"
 #include "core/search/neighbour_search.h"
-#include "core/virtual_fixtures/guidance_target.h"
 
 namespace remote_touch {
 

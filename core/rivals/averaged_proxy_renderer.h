@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/rivals/frame_average.h"
 
 namespace remote_touch {

@@ -16,7 +16,7 @@
 
 #include <string>
 
-#include "core/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/rivals/nearest_points.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "core/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/rendering/elapsed_ticks.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "core/search/gathered_points.h"
 
 namespace remote_touch {

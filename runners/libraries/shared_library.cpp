@@ -37,7 +37,7 @@ std::string failed_names(const std::vector<std::pair<std::string, std::string>>&
 }  // namespace
 
 SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
-  // Asked here and not in runners/cli: it belongs to the loading of libraries, as the loader's
+  // Asked here and not in runners/interfaces/cli: it belongs to the loading of libraries, as the loader's
   // LD_LIBRARY_PATH does, and which variables there are only the devices know.
   const char* named = std::getenv(variable_);
   const bool is_named = named != nullptr && *named != '\0';

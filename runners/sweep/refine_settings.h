@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
-#include "runners/settings/json_parameters.h"
+#include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
 

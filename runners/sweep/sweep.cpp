@@ -9,10 +9,10 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
-#include "runners/settings/changed_settings.h"
-#include "runners/settings/json_parameters.h"
-#include "runners/settings/renamed_names.h"
-#include "runners/simulation/note_kinds.h"
+#include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
 #include "runners/sweep/sweep_statements.h"

@@ -9,7 +9,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/sweeps/refinement.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/shard.h"
 
 namespace remote_touch {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
-#include "runners/settings/json_parameters.h"
+#include "analysis/trace/column.h"
+#include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 #include "runners/sweep/sweep_notes.h"
 
 #include "core/parameters/input_error.h"
-#include "runners/simulation/note_kinds.h"
+#include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/cell_text.h"
 
 namespace remote_touch {

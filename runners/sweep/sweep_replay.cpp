@@ -3,8 +3,8 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
 #include "core/kernels/isa.h"
-#include "runners/provenance/input_hashes.h"
-#include "runners/provenance/provenance.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/sweep/cell_text.h"
 
 namespace remote_touch {

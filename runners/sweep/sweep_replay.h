@@ -6,7 +6,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

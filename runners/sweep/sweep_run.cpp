@@ -6,8 +6,8 @@
 #include <new>
 
 #include "core/parameters/input_error.h"
-#include "runners/simulation/note_kinds.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {
 

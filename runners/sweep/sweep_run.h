@@ -6,7 +6,7 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "core/kernels/kernels.h"
-#include "runners/schedule/side_by_side.h"
+#include "runners/sweep/side_by_side.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "core/parameters/input_error.h"
-#include "runners/provenance/input_hashes.h"
-#include "runners/settings/configuration_difference.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/settings/changed_settings.h"
+#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 

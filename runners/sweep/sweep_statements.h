@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
-#include "runners/settings/json_parameters.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/settings/json_parameters.h"
 #include "runners/sweep/sweep_axis.h"
 
 namespace remote_touch {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
+#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
-#include "core/random/noise.h"
 
 namespace remote_touch {
 

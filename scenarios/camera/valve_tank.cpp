@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/cloud/colour.h"
+#include "core/geometry/colour.h"
 
 namespace remote_touch {
 

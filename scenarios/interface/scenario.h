@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
-#include "core/random/noise.h"
+#include "core/numeric/noise.h"
 #include "core/search/neighbour_search.h"
 #include "scenarios/interface/note.h"
 

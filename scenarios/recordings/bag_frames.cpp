@@ -7,9 +7,9 @@
 
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_topics.h"
+#include "scenarios/recordings/bags/cloud_from_message.h"
+#include "scenarios/recordings/bags/depth_from_message.h"
 #include "scenarios/recordings/frame_layout.h"
-#include "scenarios/recordings/messages/cloud_from_message.h"
-#include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/static_transforms.h"
 
 namespace remote_touch {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/recordings/bag_choice.h"
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/recordings/messages/depth_from_message.h"
-#include "scenarios/recordings/messages/image_rays.h"
+#include "scenarios/recordings/bags/depth_from_message.h"
+#include "scenarios/recordings/bags/image_rays.h"
 
 namespace remote_touch {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/messages/depth_from_message.h"
-#include "scenarios/recordings/messages/messages.h"
+#include "scenarios/recordings/bags/depth_from_message.h"
+#include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/pcd/pinhole_fit.h"
+#include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
 
 namespace remote_touch {
 

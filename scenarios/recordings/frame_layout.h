@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/cloud/colour.h"
+#include "core/geometry/colour.h"
 
 namespace remote_touch {
 

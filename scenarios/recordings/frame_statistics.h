@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/interface/note.h"
 
 namespace remote_touch {

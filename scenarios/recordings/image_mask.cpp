@@ -1,7 +1,7 @@
 #include "scenarios/recordings/image_mask.h"
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/png/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
 
 namespace remote_touch {
 

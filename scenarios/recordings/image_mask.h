@@ -1,7 +1,7 @@
 // The points whose pixels a mask marks: the result of any segmentation, as an image.
 #pragma once
 
-#include "core/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_rule.h"
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {

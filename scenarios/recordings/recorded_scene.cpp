@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/cloud/near_origin.h"
+#include "core/geometry/near_origin.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"

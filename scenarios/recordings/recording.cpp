@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/folder_files.h"
 #include "scenarios/recordings/frame_layout.h"
-#include "scenarios/recordings/pcd/pcd_file.h"
-#include "scenarios/recordings/png/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/pcd_file.h"
 #include "scenarios/recordings/tum_layout.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/json_text.h"

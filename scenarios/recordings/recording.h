@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/recordings/bag_choice.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/messages/messages.h"
+#include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {
 

@@ -4,11 +4,11 @@
 #include <limits>
 #include <memory>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
-#include "core/random/noise.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 // A flat grid whose noise is computed only where a query needs it.
 #pragma once
 
-#include "core/random/noise.h"
+#include "core/numeric/noise.h"
 #include "core/search/neighbour_search.h"
 #include "scenarios/synthetic/grid.h"
 

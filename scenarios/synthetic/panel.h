@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/vector.h"
 
 namespace remote_touch {

@@ -34,7 +34,7 @@ foreach(top core scenarios analysis runners)
   list(FILTER rooms_of_${top} INCLUDE REGEX "^${top}/")
   get_property(links_of_${top} GLOBAL PROPERTY LINKS_OF_${top})
 endforeach()
-list(REMOVE_ITEM rooms_of_runners runners/contract runners/python)
+list(REMOVE_ITEM rooms_of_runners runners/evaluation/contract runners/interfaces/python)
 # CLI11: headers only, in no header of ours
 list(REMOVE_ITEM links_of_runners GTest::gtest CLI11::CLI11 pybind11::headers Python::Module)
 
@@ -47,8 +47,8 @@ installed_library(scenarios ROOMS ${rooms_of_scenarios} USES core LINKS ${links_
 installed_library(analysis ROOMS ${rooms_of_analysis} USES core LINKS ${links_of_analysis} Threads::Threads)
 installed_library(runners ROOMS ${rooms_of_runners} USES scenarios analysis core
                   LINKS ${links_of_runners} Threads::Threads -Wl,--as-needed)
-if(TARGET runners_contract)
-  installed_library(contract_tests ROOMS runners/contract USES runners LINKS GTest::gtest)
+if(TARGET runners_evaluation_contract)
+  installed_library(contract_tests ROOMS runners/evaluation/contract USES runners LINKS GTest::gtest)
 endif()
 
 reached_headers(installed_headers ${public_headers})

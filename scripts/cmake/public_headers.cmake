@@ -1,18 +1,19 @@
 # The public headers: those that are named here, and what they include. Only these are installed.
-# runners/program/README.md says what they are for.
+# runners/interfaces/program/README.md says what they are for.
 
 set(public_headers
-  core/cloud/point_cloud.h core/cloud/camera.h core/geometry/vector.h core/geometry/rotation.h core/kernels/isa.h
-  core/parameters/input_error.h core/parameters/parameter.h core/proxy/proxy_renderer.h core/random/noise.h
-  core/rendering/frame.h core/rendering/frame_order.h core/rendering/frame_preparation.h core/rendering/renderer.h
-  core/search/neighbour_search.h core/tracked_sheet/tracked_sheet_renderer.h core/virtual_fixtures/fixture_rule.h
-  scenarios/interface/scenario.h
   analysis/comparison/column_source.h analysis/figures/result_file.h analysis/measures/measures.h
-  analysis/storage/hdf5_file.h analysis/trace/trace.h
-  runners/cli/program.h runners/experiment/catalog.h runners/experiment/experiment.h
-  runners/plugins/plugin_library.h runners/plugins/remote_touch_plugin.h runners/simulation/simulation.h runners/trajectories/trajectory.h)
-if(TARGET runners_contract)
-  list(APPEND public_headers runners/contract/contract_tests.h)
+  analysis/storage/hdf5_file.h analysis/trace/trace.h core/beyond/tracked_surface/tracked_sheet_renderer.h
+  core/dissertation/proxy/proxy_renderer.h core/dissertation/virtual_fixtures/fixture_rule.h core/geometry/camera.h
+  core/geometry/point_cloud.h core/geometry/rotation.h core/geometry/vector.h core/kernels/isa.h core/numeric/noise.h
+  core/parameters/input_error.h core/parameters/parameter.h core/rendering/frame.h core/rendering/frame_order.h
+  core/rendering/frame_preparation.h core/rendering/renderer.h core/search/neighbour_search.h
+  runners/experiment/catalog/catalog.h runners/experiment/catalog/experiment.h runners/experiment/hand/trajectory.h
+  runners/experiment/simulation/simulation.h runners/interfaces/cli/program.h
+  runners/interfaces/plugins/plugin_library.h runners/interfaces/plugins/remote_touch_plugin.h
+  scenarios/interface/scenario.h)
+if(TARGET runners_evaluation_contract)
+  list(APPEND public_headers runners/evaluation/contract/contract_tests.h)
 endif()
 
 # Sets `result` to the headers of the project that are reached from the given ones by #include "...", themselves included.

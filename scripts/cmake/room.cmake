@@ -3,7 +3,7 @@
 
 set_property(GLOBAL PROPERTY ROOMS "")
 
-# The name of the library of a room: core/tool/mesh is core_tool_mesh.
+# The name of the library of a room: core/dissertation/tool/shape is core_dissertation_tool_shape.
 function(room_target path result)
   string(REPLACE "/" "_" name ${path})
   set(${result} ${name} PARENT_SCOPE)
@@ -18,7 +18,7 @@ function(without_coverage name path)
   endif()
 endfunction()
 
-# room(USES core/cloud core/geometry ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...] [COLD])
+# room(USES core/geometry core/kernels ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...] [COLD])
 #   USES     the rooms whose headers this folder includes
 #   LINKS    libraries from outside; they stay private, since no public header includes one
 #   SOURCES  files beyond the .cpp files of the folder
@@ -44,13 +44,13 @@ function(room)
   links_of(${path} ${ROOM_LINKS})
 endfunction()
 
-# links_of(runners/view ZLIB::ZLIB ...): what a program has to link that uses this room installed.
+# links_of(runners/presentation/view ZLIB::ZLIB ...): what a program has to link that uses this room installed.
 function(links_of path)
   string(REGEX MATCH "^[a-z]+" top ${path})
   set_property(GLOBAL APPEND PROPERTY LINKS_OF_${top} ${ARGN})
 endfunction()
 
-# rooms(core geometry kernels ... tool/mesh): the rooms below this folder, and `core`, which links them all.
+# rooms(core geometry kernels ... rivals): the rooms below this folder, and `core`, which links them all.
 function(rooms name)
   add_library(${name} INTERFACE)
   foreach(path ${ARGN})

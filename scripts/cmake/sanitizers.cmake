@@ -5,12 +5,12 @@ option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers"
 
 # Rooms that read what others wrote or call libraries of others, and rooms where a sanitizer or a crash found a mistake.
 set(rooms_under_address
-  analysis/storage core/search runners/live/devices runners/live/sensors runners/opencl runners/plugins
-  runners/tool_files scenarios/recordings scenarios/recordings/bags scenarios/recordings/messages scenarios/recordings/pcd
-  scenarios/recordings/png)
+  analysis/storage core/search runners/experiment/opencl runners/experiment/tool_files runners/interfaces/plugins
+  runners/live/devices runners/live/sensors scenarios/recordings scenarios/recordings/bags
+  scenarios/recordings/images_and_clouds)
 # Rooms whose threads share memory.
 set(rooms_under_thread
-  runners/live/devices runners/live/loop runners/live/sensors runners/live/timing runners/opencl)
+  runners/experiment/opencl runners/live/devices runners/live/loop runners/live/sensors)
 # The other checks take a third of the time to compile, and the fuzz targets have them.
 set(flags_for_address -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
   -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/virtual_fixtures/everywhere.h"
-#include "core/virtual_fixtures/fixture_assignment.h"
-#include "core/virtual_fixtures/half_space.h"
-#include "core/virtual_fixtures/hue_range.h"
-#include "core/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/everywhere.h"
+#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
+#include "core/dissertation/virtual_fixtures/half_space.h"
+#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/near_point.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 

@@ -30,7 +30,7 @@ add_executable(tracked_sheet_benchmark benchmarks/checked_benchmark.cpp benchmar
 target_link_libraries(tracked_sheet_benchmark PRIVATE core scenarios benchmark::benchmark)
 
 add_executable(depth_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/dissertation/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(opencl_benchmark benchmarks/checked_benchmark.cpp benchmarks/opencl_benchmark.cpp)

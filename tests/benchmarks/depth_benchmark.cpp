@@ -10,7 +10,7 @@
 
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/core/depth/reference_depth_pipeline.h"
+#include "tests/core/dissertation/depth/reference_depth_pipeline.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {

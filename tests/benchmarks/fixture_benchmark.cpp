@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/isa.h"
-#include "core/proxy/proxy_renderer.h"
-#include "core/proxy/proxy_step.h"
 #include "core/search/neighbourhood.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/fixture_scene.h"

@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "core/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::benchmarks {

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "runners/live/devices/real_time.h"
+#include "runners/live/devices/steady_clock.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/servo.h"
-#include "runners/live/timing/real_time.h"
-#include "runners/live/timing/steady_clock.h"
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/scenes.h"
 #ifdef REMOTE_TOUCH_HAPLY_SERVICE

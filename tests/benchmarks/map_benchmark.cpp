@@ -18,7 +18,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/storage/digest.h"
 #include "core/kernels/isa.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/benchmarks/full_lift.h"
 #include "tests/benchmarks/naive_lift.h"

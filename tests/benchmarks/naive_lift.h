@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/geometry/vector.h"
-#include "core/proxy/proxy_parameters.h"
 #include "scenarios/synthetic/moving_lift.h"
 
 namespace remote_touch::naive {

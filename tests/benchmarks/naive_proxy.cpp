@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::naive {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
-#include "core/proxy/proxy_parameters.h"
+#include "core/dissertation/proxy/proxy_parameters.h"
+#include "core/geometry/point_cloud.h"
 #include "core/rendering/renderer.h"
 #include "core/search/gathered_points.h"
 

@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/dissertation/virtual_fixtures/hue_range.h"
 #include "core/kernels/isa.h"
-#include "core/virtual_fixtures/hue_range.h"
-#include "runners/experiment/frame_stream.h"
-#include "runners/opencl/depth_device.h"
+#include "runners/experiment/catalog/frame_stream.h"
+#include "runners/experiment/opencl/depth_device.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/support/depth_scenes.h"
 

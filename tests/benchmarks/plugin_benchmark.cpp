@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "runners/plugins/plugin_library.h"
+#include "runners/interfaces/plugins/plugin_library.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/support/scenes.h"
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "core/solve/quadratic_program.h"
+#include "core/numeric/quadratic_program.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
-#include "tests/core/solve/program_peers.h"
+#include "tests/core/numeric/program_peers.h"
 #ifdef REMOTE_TOUCH_NLOPT
-#include "tests/core/solve/nlopt_program.h"
+#include "tests/core/numeric/nlopt_program.h"
 #endif
 
 namespace remote_touch::benchmarks {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
-#include "core/sphere_tree/sphere_tree.h"
-#include "core/sphere_tree/tree_collision.h"
-#include "core/tool/dynamics/tool_pose.h"
-#include "core/tool/voxels/voxel_tool.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
+#include "core/dissertation/sphere_tree/tree_collision.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch::benchmarks {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/proxy/proxy_renderer.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::benchmarks {

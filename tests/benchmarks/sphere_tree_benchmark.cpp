@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/dissertation/sphere_tree/region_contacts.h"
+#include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/kernels/isa.h"
-#include "core/sphere_tree/region_contacts.h"
-#include "core/tool/motion/look_ahead_motion.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
 #include "tests/support/formatted.h"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/isa.h"
-#include "core/proxy/proxy_step.h"
 #include "core/search/neighbourhood.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
-#include "core/proxy/proxy_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 

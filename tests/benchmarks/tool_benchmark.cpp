@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/tool/contact/contact_list.h"
+#include "core/dissertation/tool/motion/look_ahead_program.h"
+#include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/kernels/isa.h"
 #include "core/search/neighbour_search.h"
-#include "core/tool/contact/contact_list.h"
-#include "core/tool/motion/look_ahead_program.h"
-#include "core/tool/motion/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_landing.h"
 #include "tests/benchmarks/tool_scene.h"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/kernels/isa.h"
 #include "core/search/neighbour_search.h"
-#include "core/tool/motion/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
 namespace remote_touch::benchmarks {

@@ -1,7 +1,7 @@
 // Ticks after a frame whose points lie in the tool.
 #pragma once
 
-#include "core/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "tests/benchmarks/tool_scene.h"
 
 namespace remote_touch::benchmarks {

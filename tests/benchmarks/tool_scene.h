@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/tool/contact/touch_finder.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/rendering/frame.h"
-#include "core/tool/contact/touch_finder.h"
-#include "core/tool/dynamics/tool_parameters.h"
-#include "core/tool/dynamics/tool_pose.h"
-#include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch::benchmarks {
 

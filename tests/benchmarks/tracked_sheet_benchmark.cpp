@@ -16,8 +16,8 @@
 #include <tuple>
 #include <vector>
 
+#include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
 #include "core/kernels/isa.h"
-#include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
@@ -32,7 +32,7 @@ constexpr double kPressDepth_m = 0.03;
 constexpr int kFirstTimedFrame = 2;         // the two before begin a track
 constexpr double kStandsNoise_rc = 2;       // largest noise at which the sheet may not pop through
 constexpr double kMinHeight_rc = -0.5;      // least height of its last proxy above the cloud
-constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/tracked_sheet/patch_frame.h
+constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/beyond/tracked_surface/patch_frame.h
 
 // --- a lift, and what is answered on it ---
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "runners/plugins/remote_touch_plugin.h"
+#include "runners/interfaces/plugins/remote_touch_plugin.h"
 
 static double stiffness(const double* values) { return values[0]; }
 static void* create(const double* values, double rate_hz, char* problem, size_t size) {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
-#include "core/proxy/proxy_renderer.h"
 #include "core/search/neighbour_search.h"
-#include "runners/plugins/remote_touch_plugin.h"
+#include "runners/interfaces/plugins/remote_touch_plugin.h"
 
 namespace {
 

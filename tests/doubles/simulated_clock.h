@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "runners/live/timing/clock.h"
+#include "runners/live/devices/clock.h"
 
 namespace remote_touch {
 

@@ -1,5 +1,5 @@
 // Experiments as JSON. What is accepted is written complete, and comes back the same.
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"
 

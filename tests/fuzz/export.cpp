@@ -1,7 +1,7 @@
 // The content of result files as tables for other programs.
-#include "runners/export/csv_files.h"
-#include "runners/export/npy_array.h"
-#include "runners/export/result_tables.h"
+#include "runners/presentation/export/csv_files.h"
+#include "runners/presentation/export/npy_array.h"
+#include "runners/presentation/export/result_tables.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

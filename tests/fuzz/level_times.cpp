@@ -1,7 +1,7 @@
 // The measured times of the kernels' levels in the cache. What is read is sound, and is written as it was.
 #include <cmath>
 
-#include "runners/kernel_choice/kernel_choice.h"
+#include "runners/experiment/provenance/kernel_choice.h"
 #include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::level_times {

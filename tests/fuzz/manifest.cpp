@@ -1,5 +1,5 @@
 // The list of baselines. What is accepted is written, and comes back the same.
-#include "runners/regression/baselines/manifest.h"
+#include "runners/evaluation/regression/manifest.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"

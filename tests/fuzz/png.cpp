@@ -1,5 +1,5 @@
 // PNG files, read as a depth image and as a colour image.
-#include "scenarios/recordings/png/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

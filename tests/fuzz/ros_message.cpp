@@ -1,9 +1,9 @@
 // Messages of ROS: the first byte says of which type, and whether of ROS 1 or 2.
 #include <cmath>
 
-#include "scenarios/recordings/messages/cloud_from_message.h"
-#include "scenarios/recordings/messages/depth_from_message.h"
-#include "scenarios/recordings/messages/image_rays.h"
+#include "scenarios/recordings/bags/cloud_from_message.h"
+#include "scenarios/recordings/bags/depth_from_message.h"
+#include "scenarios/recordings/bags/image_rays.h"
 #include "scenarios/recordings/static_transforms.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

@@ -1,5 +1,5 @@
 // Methods and scenes of the scorecard as JSON; the first byte chooses.
-#include "runners/scorecard/benchmark.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::scorecard_part {

@@ -1,8 +1,8 @@
 // Recorded sessions (content_text.h): view, ticks and frames.
-#include "runners/sessions/session_file.h"
+#include "runners/experiment/sessions/session_file.h"
 
-#include "runners/experiment/experiment.h"
-#include "runners/sessions/session_scene.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/sessions/session_scene.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

@@ -1,7 +1,7 @@
 // --set: each line is one key=value, applied to a whole experiment.
 #include <sstream>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::setting {

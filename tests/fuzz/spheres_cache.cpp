@@ -1,5 +1,5 @@
 // Sphere trees of tools in the cache. What is read is written as it was.
-#include "runners/tool_files/spheres_cache.h"
+#include "runners/experiment/tool_files/spheres_cache.h"
 
 #include "tests/fuzz/shared/cache_target.h"
 

@@ -1,7 +1,7 @@
 // Tools in the cache. What is read is sound, and is written as it was.
-#include "runners/tool_files/tool_cache.h"
+#include "runners/experiment/tool_files/tool_cache.h"
 
-#include "core/tool/mesh/mesh_corners.h"
+#include "core/dissertation/tool/shape/mesh_corners.h"
 #include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::tool_cache {

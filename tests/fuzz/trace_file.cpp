@@ -1,5 +1,5 @@
 // Traces in result files: hashed, and compared within tolerances.
-#include "runners/regression/comparison/result_comparison.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/result_target.h"

@@ -1,6 +1,6 @@
 // Unfinished recordings: the bytes as they are, and with the numbers and checksums of the blocks as they
 // should be.
-#include "runners/sessions/unfinished_session.h"
+#include "runners/experiment/sessions/unfinished_session.h"
 
 #include <unistd.h>
 #include <zlib.h>

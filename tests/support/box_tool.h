@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "core/cloud/point_cloud.h"
-#include "core/tool/voxels/voxel_tool.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch::scenes {
 

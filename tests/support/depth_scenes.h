@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 
 namespace remote_touch::scenes {
 

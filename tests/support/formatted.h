@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch {
 

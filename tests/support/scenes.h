@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "core/proxy/proxy_renderer.h"
-#include "runners/contract/flat_scene.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
+#include "runners/evaluation/contract/flat_scene.h"
 
 namespace remote_touch::scenes {
 

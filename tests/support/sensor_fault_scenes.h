@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenarios/camera/camera_scene.h"
-#include "scenarios/faults/sensor_faults.h"
+#include "scenarios/camera/sensor_faults.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "tests/support/scenes.h"
 
@@ -42,7 +42,7 @@ inline FaultySensor faulty(const SensorFaults& faults, std::unique_ptr<Scenario>
 inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
-inline bool same_bits(const PointCloud& a, const PointCloud& b) {
+inline bool same_points(const PointCloud& a, const PointCloud& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

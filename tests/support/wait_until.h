@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "runners/live/timing/steady_clock.h"
+#include "runners/live/devices/steady_clock.h"
 
 namespace remote_touch {
 

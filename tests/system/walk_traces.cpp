@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <random>
 
-#include "analysis/columns/hash64.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/trace/hash64.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "runners/live/timing/clock.h"
+#include "runners/live/devices/clock.h"
 
 namespace remote_touch {
 

@@ -1,10 +1,10 @@
 // A device in the world: poses from it, forces to it.
 #pragma once
 
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/rendering/frame.h"
-#include "core/tool/dynamics/wrench_coupling.h"
+#include "runners/experiment/sessions/live_settings.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/sessions/live_settings.h"
 
 namespace remote_touch {
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/entact.h"
 #include "runners/live/devices/force_dimension.h"
@@ -9,9 +10,8 @@
 #include "runners/live/devices/open_haptics.h"
 #include "runners/live/devices/simulated_device.h"
 #include "runners/live/devices/spacenav.h"
+#include "runners/live/devices/steady_clock.h"
 #include "runners/live/devices/uri.h"
-#include "runners/live/timing/steady_clock.h"
-#include "runners/sessions/session_scene.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/availability.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/haptic_device.h"

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string>
 
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/geometry/vector.h"
-#include "core/tool/dynamics/wrench_coupling.h"
-#include "runners/live/timing/clock.h"
+#include "runners/live/devices/clock.h"
 
 namespace remote_touch {
 

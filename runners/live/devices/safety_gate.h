@@ -3,8 +3,8 @@
 
 #include <atomic>
 
+#include "runners/experiment/sessions/safety_limits.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/sessions/safety_limits.h"
 
 namespace remote_touch {
 

@@ -6,10 +6,10 @@
 #include <exception>
 #include <memory>
 
+#include "runners/experiment/hand/simulated_hand.h"
+#include "runners/experiment/hand/trajectory.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/operator/simulated_hand.h"
-#include "runners/trajectories/trajectory.h"
 
 namespace remote_touch {
 

@@ -28,8 +28,8 @@ using Frame = std::array<std::int32_t, 8>;
 
 std::string socket_of(const DeviceAddress& address) {
   if (!address.place().empty()) return address.place();
-  // The variable is read here and not in runners/cli, because it has the same meaning in libspnav, and so in
-  // every program that uses spacenavd.
+  // The variable is read here and not in runners/interfaces/cli, because it has the same meaning in libspnav,
+  // and so in every program that uses spacenavd.
   const char* from_environment = std::getenv("SPNAV_SOCKET");
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
 }

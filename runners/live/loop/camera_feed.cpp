@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_cloud.h"
 
 namespace remote_touch {
 

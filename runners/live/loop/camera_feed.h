@@ -8,10 +8,10 @@
 #include <mutex>
 #include <string>
 
-#include "runners/experiment/frame_stream.h"
+#include "runners/experiment/catalog/frame_stream.h"
+#include "runners/experiment/sessions/sensed_points.h"
 #include "runners/live/loop/servo.h"
 #include "runners/live/sensors/depth_source.h"
-#include "runners/sessions/sensed_points.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/timing/real_time.h"
+#include "runners/live/devices/real_time.h"
 
 namespace remote_touch {
 

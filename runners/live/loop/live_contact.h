@@ -5,9 +5,9 @@
 #include <mutex>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/contact_watch.h"
 #include "runners/live/loop/servo.h"
-#include "runners/simulation/contact_watch.h"
 
 namespace remote_touch {
 

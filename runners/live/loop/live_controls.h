@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/live/loop/parameter_changes.h"
 #include "runners/live/loop/ring.h"
 #include "runners/live/sensors/replaceable_scenario.h"

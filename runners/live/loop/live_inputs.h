@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "runners/experiment/sessions/session_recorder.h"
 #include "runners/live/loop/live_log.h"
-#include "runners/sessions/session_recorder.h"
 
 namespace remote_touch {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/run_report.h"
 #include "runners/live/loop/live_log.h"
-#include "runners/simulation/run_report.h"
 
 namespace remote_touch {
 

@@ -1,5 +1,5 @@
-// The live loop: sensor, renderer and device in real time. runners/simulation/simulation.cpp does the same in
-// simulated time.
+// The live loop: sensor, renderer and device in real time. runners/experiment/simulation/simulation.cpp does
+// the same in simulated time.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_notes.h"

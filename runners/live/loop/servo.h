@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/rendering/renderer.h"
-#include "runners/experiment/renderer_changes.h"
+#include "runners/experiment/catalog/renderer_changes.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/heartbeat.h"
 #include "runners/live/devices/safety_gate.h"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "runners/live/timing/clock.h"
-#include "runners/sessions/sensor_frame.h"
+#include "runners/experiment/sessions/sensor_frame.h"
+#include "runners/live/devices/clock.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/cloud/camera.h"
-#include "core/cloud/colour.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/colour.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
 

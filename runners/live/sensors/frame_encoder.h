@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "runners/sessions/sensor_frame.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {
 

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/uri.h"
 #include "runners/live/sensors/freenect_camera.h"
 #include "runners/live/sensors/k4a_camera.h"
 #include "runners/live/sensors/openni2_camera.h"
 #include "runners/live/sensors/realsense_camera.h"
 #include "runners/live/sensors/scenario_camera.h"
-#include "runners/sessions/session_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/availability.h"
 #include "runners/live/sensors/depth_source.h"
 

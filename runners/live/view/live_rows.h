@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "analysis/columns/column.h"
+#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/loop/servo.h"

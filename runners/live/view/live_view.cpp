@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runners/provenance/provenance.h"
-#include "runners/view/page_file.h"
-#include "runners/view/shown_sensor.h"
-#include "runners/view/shown_tool.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/presentation/view/page_file.h"
+#include "runners/presentation/view/shown_sensor.h"
+#include "runners/presentation/view/shown_tool.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/text_files/json_text.h"
 

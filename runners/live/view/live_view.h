@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/view/live_pages.h"
 #include "runners/live/view/view_server.h"

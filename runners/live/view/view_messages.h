@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/columns/column.h"
-#include "core/cloud/point_cloud.h"
+#include "analysis/trace/column.h"
+#include "core/geometry/point_cloud.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_trouble.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/messages/message_cursor.h"
+#include "scenarios/recordings/bags/message_cursor.h"
 
 namespace remote_touch {
 

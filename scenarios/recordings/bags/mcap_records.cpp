@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/messages/message_cursor.h"
+#include "scenarios/recordings/bags/message_cursor.h"
 
 namespace remote_touch {
 

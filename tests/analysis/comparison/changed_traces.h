@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/comparison/trace_comparison.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::changed_traces {
 

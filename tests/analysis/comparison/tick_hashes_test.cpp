@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/schema.h"
+#include "analysis/trace/hash64.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

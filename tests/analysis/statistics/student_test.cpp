@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "analysis/statistics/paired_bootstrap.h"
-#include "core/random/noise.h"
+#include "core/numeric/noise.h"
 
 namespace remote_touch::student_test {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/theory/lift_noise.h"
-#include "runners/experiment/experiment.h"
-#include "runners/figures/figures.h"
-#include "runners/figures/pop_through_map.h"
-#include "runners/simulation/simulation.h"
+#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::lift_updates_test {
 namespace {

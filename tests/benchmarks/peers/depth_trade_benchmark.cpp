@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/depth/depth_pipeline.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/depth_trade_scene.h"

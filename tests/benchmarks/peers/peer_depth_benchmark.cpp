@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/depth/depth_pipeline.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_depth.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/cloud/point_cloud.h"
+#include "core/geometry/point_cloud.h"
 #include "tests/benchmarks/peers/peer_depth.h"
 
 namespace remote_touch::benchmarks {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cloud/point_cloud.h"
-#include "core/tool/dynamics/tool_pose.h"
-#include "core/tool/voxels/voxel_tool.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/geometry/point_cloud.h"
 
 namespace remote_touch::benchmarks {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/region_kernels.h"
-#include "core/sphere_tree/sphere_tree.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::region_leaves_test {

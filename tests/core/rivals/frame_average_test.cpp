@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "core/rivals/averaged_proxy_renderer.h"
 #include "tests/support/scenes.h"
 

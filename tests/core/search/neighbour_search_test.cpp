@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::neighbour_search_test {

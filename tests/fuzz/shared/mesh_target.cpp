@@ -1,7 +1,7 @@
 #include "tests/fuzz/shared/mesh_target.h"
 
-#include "core/tool/mesh/mesh_corners.h"
-#include "runners/tool_files/mesh_file.h"
+#include "core/dissertation/tool/shape/mesh_corners.h"
+#include "runners/experiment/tool_files/mesh_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/lasting_child.h"
 #include "tests/fuzz/shared/scratch_file.h"

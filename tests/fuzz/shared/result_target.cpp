@@ -1,6 +1,6 @@
 #include "tests/fuzz/shared/result_target.h"
 
-#include "runners/regression/comparison/comparison_report.h"
+#include "runners/evaluation/regression/comparison_report.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

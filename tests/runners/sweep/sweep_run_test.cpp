@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "core/parameters/input_error.h"
-#include "runners/simulation/note_kinds.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_run_test {

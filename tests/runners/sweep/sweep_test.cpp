@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/settings/json_parameters.h"
+#include "runners/experiment/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_test {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <limits>
 
-#include "core/cloud/colour.h"
-#include "core/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/geometry/colour.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::valve_tank_test {

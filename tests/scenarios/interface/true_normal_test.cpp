@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/geometry/rotation.h"
-#include "scenarios/faults/sensor_faults.h"
+#include "scenarios/camera/sensor_faults.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/moving_plane.h"

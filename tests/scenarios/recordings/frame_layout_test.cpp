@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/cloud/camera.h"
+#include "core/geometry/camera.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::frame_layout_test {

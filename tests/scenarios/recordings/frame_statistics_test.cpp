@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/cloud/colour.h"
+#include "core/geometry/colour.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::frame_statistics_test {

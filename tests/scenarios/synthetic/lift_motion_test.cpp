@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
-#include "runners/simulation/simulation.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "tests/support/scenes.h"

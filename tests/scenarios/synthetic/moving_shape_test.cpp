@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
-#include "runners/simulation/simulation.h"
-#include "runners/trajectories/press.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/hand/press.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/noisy_grid_search.h"
 #include "tests/support/scenes.h"

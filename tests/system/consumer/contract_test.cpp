@@ -1,6 +1,6 @@
 // The contracts, held against what this laboratory adds.
 #include <gtest/gtest.h>
-#include <runners/contract/contract_tests.h>
+#include <runners/evaluation/contract/contract_tests.h>
 
 #include "entries.h"
 

@@ -1,6 +1,6 @@
 // The method alone in a loop of one's own: no experiment, no file.
+#include <core/dissertation/proxy/proxy_renderer.h>
 #include <core/kernels/isa.h>
-#include <core/proxy/proxy_renderer.h>
 
 #include <cstdio>
 

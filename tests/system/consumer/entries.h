@@ -1,7 +1,7 @@
 // The entries that this laboratory adds: a renderer, a scenario, a hand and a measure.
 #pragma once
 
-#include <runners/experiment/catalog.h>
+#include <runners/experiment/catalog/catalog.h>
 
 namespace lab {
 

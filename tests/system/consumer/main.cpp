@@ -1,4 +1,4 @@
-#include <runners/cli/program.h>
+#include <runners/interfaces/cli/program.h>
 
 #include "entries.h"
 

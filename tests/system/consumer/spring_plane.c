@@ -4,7 +4,7 @@
  *   remote-touch --plugin ./spring_plane.so run fig4.11 --set renderer.name=spring-plane -o spring.h5
  */
 #include <math.h>
-#include <runners/plugins/remote_touch_plugin.h>
+#include <runners/interfaces/plugins/remote_touch_plugin.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <core/parameters/parameter.h>
-#include <runners/trajectories/trajectory.h>
+#include <runners/experiment/hand/trajectory.h>
 #include <scenarios/interface/scenario.h>
 
 #include <algorithm>

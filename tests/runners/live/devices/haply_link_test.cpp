@@ -10,9 +10,9 @@
 #include <string>
 #include <thread>
 
-#include "runners/contract/allocation_counter.h"
+#include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/live/devices/haply.h"
-#include "runners/live/timing/steady_clock.h"
+#include "runners/live/devices/steady_clock.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"

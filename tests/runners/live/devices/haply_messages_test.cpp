@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "runners/contract/allocation_counter.h"
+#include "runners/evaluation/contract/allocation_counter.h"
 
 namespace remote_touch::haply_messages_test {
 namespace {

@@ -12,8 +12,8 @@
 #include <limits>
 #include <vector>
 
-#include "runners/contract/allocation_counter.h"
-#include "runners/live/timing/steady_clock.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "runners/live/devices/steady_clock.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/doubles/spacenav_daemon.h"
 #include "tests/doubles/spacenav_socket.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "runners/experiment/catalog.h"
+#include "runners/experiment/catalog/catalog.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 

@@ -8,8 +8,8 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/simulation/simulation.h"
 #include "tests/doubles/opencl_double.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/test_files.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/tool/contact/tiled_cloud.h"
+#include "core/dissertation/tool/contact/tiled_cloud.h"
 #include "runners/live/devices/device_table.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/parameters/input_error.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/sessions/session_file.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 

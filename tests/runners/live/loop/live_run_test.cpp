@@ -11,8 +11,8 @@
 #include <string>
 
 #include "analysis/storage/digest.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/simulation/simulation.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

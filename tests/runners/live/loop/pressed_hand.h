@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "tests/runners/live/loop/simulated_run.h"
 
 namespace remote_touch {

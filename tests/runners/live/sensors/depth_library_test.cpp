@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "runners/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_cloud.h"
 #include "tests/doubles/depth_libraries.h"
 #include "tests/support/loaded_libraries.h"
 #include "tests/support/test_files.h"

@@ -1,8 +1,8 @@
 // The adapter on the real libfreenect where no Kinect is plugged in.
 #include <gtest/gtest.h>
 
+#include "runners/live/devices/steady_clock.h"
 #include "runners/live/sensors/freenect_camera.h"
-#include "runners/live/timing/steady_clock.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::freenect_absent_test {

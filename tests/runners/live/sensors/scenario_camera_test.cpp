@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "runners/experiment/catalog.h"
-#include "runners/experiment/experiment.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/sessions/sensor_cloud.h"
 #include "runners/live/sensors/replaceable_scenario.h"
-#include "runners/sessions/sensor_cloud.h"
-#include "scenarios/faults/sensor_faults.h"
+#include "scenarios/camera/sensor_faults.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 

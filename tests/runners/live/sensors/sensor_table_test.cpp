@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "runners/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_cloud.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

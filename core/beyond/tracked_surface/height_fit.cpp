@@ -1,0 +1,162 @@
+#include "core/beyond/tracked_surface/height_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "core/numeric/order_statistic.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kCells = HeightMap::kCells;
+constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
+
+constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
+constexpr double kConfidence = 3;                // half width of an interval, in standard errors
+constexpr double kTooUnsure = 0.25;              // larger standard errors determine no height, contact radii
+constexpr double kMinNoise = 0.01;               // deviations that the planes cannot follow count as noise
+constexpr double kMinWindowPoints = 5;           // minimum number of points in a window
+
+int corner(double coordinate) {
+  return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
+}
+
+}  // namespace
+
+void HeightFit::take(const PatchPoints& points, const Trend& trend) {
+  trend_ = trend;
+  for (Sums& s : sums_) s.fill(0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.is_member(i)) continue;
+    const PatchPlace p = points.place(i);
+    const int cu = static_cast<int>((p.u + kHalf) / kCell), cv = static_cast<int>((p.v + kHalf) / kCell);
+    Sums& s = sums_[static_cast<std::size_t>((cv + 1) * kCorners + cu + 1)];
+    const double h = PatchFrame::rounded(p.h - trend.height(p.u, p.v));
+    const Sums terms = {1, p.u, p.v, h, p.u * p.u, p.u * p.v, p.v * p.v, p.u * h, p.v * h, h * h};
+    for (std::size_t m = 0; m < kMoments; ++m) s[m] += terms[m];
+  }
+  for (int j = 1; j < kCorners; ++j) {
+    Sums row{};
+    for (int i = 1; i < kCorners; ++i) {
+      Sums& s = sums_[static_cast<std::size_t>(j * kCorners + i)];
+      const Sums& under = below(i, j - 1);
+      for (std::size_t m = 0; m < kMoments; ++m) row[m] += s[m], s[m] = row[m] + under[m];
+    }
+  }
+  density_ = median_density();
+}
+
+HeightFit::Sums HeightFit::window(int cu, int cv, int half) const {
+  const int u0 = std::max(0, cu - half), u1 = std::min(kCells, cu + half);
+  const int v0 = std::max(0, cv - half), v1 = std::min(kCells, cv + half);
+  const Sums &a = below(u1, v1), &b = below(u0, v1), &c = below(u1, v0), &d = below(u0, v0);
+  Sums s;
+  for (std::size_t m = 0; m < kMoments; ++m) s[m] = a[m] - b[m] - c[m] + d[m];
+  return s;
+}
+
+double HeightFit::count(int cu, int cv, int half) const {
+  const int u0 = std::max(0, cu - half), u1 = std::min(kCells, cu + half);
+  const int v0 = std::max(0, cv - half), v1 = std::min(kCells, cv + half);
+  return below(u1, v1)[n] - below(u0, v1)[n] - below(u1, v0)[n] + below(u0, v0)[n];
+}
+
+PlaneFit HeightFit::plane(const Sums& s, double u, double v) {
+  PlaneFit fit;
+  fit.count = s[n];
+  if (s[n] < 3) return fit;
+  const double one = 1 / s[n], mu = s[su] * one, mv = s[sv] * one, mh = s[sh] * one;
+  const double cuu = s[uu] - s[su] * mu, cuv = s[uv] - s[su] * mv, cvv = s[vv] - s[sv] * mv;
+  const double cuh = s[uh] - s[su] * mh, cvh = s[vh] - s[sv] * mh, chh = s[hh] - s[sh] * mh;
+  const double det = cuu * cvv - cuv * cuv;
+  if (!(det > 1e-3 * cuu * cvv) || !(cuu > 1e-3) || !(cvv > 1e-3)) return fit;
+  const double per = 1 / det, du = u - mu, dv = v - mv;
+  fit.slope_u = (cvv * cuh - cuv * cvh) * per;
+  fit.slope_v = (cuu * cvh - cuv * cuh) * per;
+  fit.height = mh + fit.slope_u * du + fit.slope_v * dv;
+  fit.variance = one + (cvv * du * du - 2 * cuv * du * dv + cuu * dv * dv) * per;
+  fit.residual = std::max(0.0, chh - fit.slope_u * cuh - fit.slope_v * cvh);
+  fit.valid = true;
+  return fit;
+}
+
+PlaneFit HeightFit::plane_around(double u, double v, double half_side) const {
+  return plane(window(corner(u), corner(v), static_cast<int>(std::lround(half_side / kCell))), u, v);
+}
+
+double HeightFit::noise() const {
+  constexpr double kEnough = 9, kMinOfBlock = 6, kLow = 0.4;
+  // The variance at that quantile in units of the mean variance, for a chi square with about 8 degrees of
+  // freedom.
+  constexpr double kOfMean = 0.85;
+  double covered = 0;
+  for (int j = 1; j < kCells; j += 2)
+    for (int i = 1; i < kCells; i += 2) covered += count(i, j, 1) > 0 ? 1 : 0;
+  if (covered == 0) return 0;
+  const double density = below(kCells, kCells)[n] / covered;
+  int half = 1;
+  while (half < 4 && density * half * half < kEnough) ++half;
+  std::array<double, kCells * kCells / 4> variances;
+  std::size_t blocks = 0;
+  for (int j = half; j + half <= kCells; j += 2 * half)
+    for (int i = half; i + half <= kCells; i += 2 * half) {
+      if (count(i, j, half) < kMinOfBlock) continue;
+      const PlaneFit fit = plane(window(i, j, half), 0, 0);
+      if (fit.valid) variances[blocks++] = fit.residual / (fit.count - 3);
+    }
+  if (blocks == 0) return 0;
+  return std::sqrt(quantile_in_place(std::span(variances).first(blocks), kLow) / kOfMean);
+}
+
+double HeightFit::median_density() const {
+  std::array<double, HeightMap::kNodes * HeightMap::kNodes> counts;
+  std::size_t some = 0;
+  for (int j = 0; j <= kCells; j += 2)
+    for (int i = 0; i <= kCells; i += 2)
+      if (const double c = count(i, j, 2); c > 0) counts[some++] = c;
+  if (some == 0) return 0;
+  return median_in_place(std::span(counts).first(some)) / 4;
+}
+
+void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  node = {};
+  const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
+  double low = -kInfinity, high = kInfinity;
+  for (const int half : kWindows) {
+    if (count(2 * i, 2 * j, half) < kMinWindowPoints) continue;
+    const PlaneFit fit = plane(window(2 * i, 2 * j, half), u, v);
+    if (!fit.valid) continue;
+    const double error = sigma * std::sqrt(fit.variance);
+    if (node.known && error > node.error) continue;  // the window is one-sided: at the border of the points
+    if (node.known && node.error > kTooUnsure) low = -kInfinity, high = kInfinity;
+    low = std::max(low, fit.height - kConfidence * error);
+    high = std::min(high, fit.height + kConfidence * error);
+    if (low > high) break;
+    node = {fit.height, fit.slope_u, fit.slope_v, error, true, false};
+  }
+}
+
+void HeightFit::fit(double sigma, HeightMap& map) const {
+  const double typical = 4 * typical_density();
+  for (int j = 0; j < HeightMap::kNodes; ++j)
+    for (int i = 0; i < HeightMap::kNodes; ++i) {
+      HeightMap::Node& node = map.node(i, j);
+      if (count(2 * i, 2 * j, 3) < 1) {
+        node = {};
+        continue;
+      }
+      choose(i, j, std::max(sigma, kMinNoise), node);
+      const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
+      node.height += trend_.height(u, v);
+      node.slope_u += trend_.slope_u(u, v), node.slope_v += trend_.slope_v(u, v);
+      const double around = count(2 * i, 2 * j, 2);
+      node.covered = node.known && around >= 1 && 3 * around >= typical;
+    }
+  map.fill_cells();
+}
+
+}  // namespace remote_touch

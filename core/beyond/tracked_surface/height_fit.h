@@ -1,0 +1,60 @@
+// Fit of the heights of a sheet to points with noise: local planes of least squares.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/beyond/tracked_surface/height_map.h"
+#include "core/beyond/tracked_surface/patch_points.h"
+#include "core/beyond/tracked_surface/trend.h"
+
+namespace remote_touch {
+
+// A plane through the points of a window.
+struct PlaneFit {
+  double height = 0, slope_u = 0, slope_v = 0;  // values at the queried position
+  double variance = 0;                          // variance of the height, in units of the noise's variance
+  double residual = 0;                          // sum of squares
+  double count = 0;                             // number of points
+  bool valid = false;                           // the points do not lie on a line
+};
+
+// Sums over the members of a patch, from which the sums over any window of whole cells follow in constant
+// time.
+class HeightFit {
+ public:
+  HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
+  // Sums over the members of points, which all lie on the map's square, after the trend is subtracted: planes
+  // are fitted to the rest.
+  void take(const PatchPoints& points, const Trend& trend = {});
+
+  // half_side of the window, in contact radii, is rounded to whole cells.
+  PlaneFit plane_around(double u, double v, double half_side) const;
+  // Standard deviation of the heights about the planes of small blocks, a low quantile over the blocks, so
+  // that blocks with edges have no effect.
+  double noise() const;
+  // Sets each node of the map to the plane of the widest window that differs from the narrower ones by no
+  // more than noise of standard deviation sigma explains (Lepski's rule, by intersecting confidence
+  // intervals: Goldenshluger and Nemirovski 1997). Windows too narrow to determine a height are skipped.
+  void fit(double sigma, HeightMap& map) const;
+  // Number of members in a square of one contact radius, the median over the squares that have any.
+  double typical_density() const { return density_; }
+
+ private:
+  static constexpr int kCorners = HeightMap::kCells + 1;
+  enum Moment { n, su, sv, sh, uu, uv, vv, uh, vh, hh, kMoments };
+  using Sums = std::array<double, kMoments>;
+  const Sums& below(int cu, int cv) const { return sums_[static_cast<std::size_t>(cv * kCorners + cu)]; }
+  Sums window(int corner_u, int corner_v, int half) const;
+  double count(int corner_u, int corner_v, int half) const;
+  static PlaneFit plane(const Sums& sums, double u, double v);
+  void choose(int i, int j, double sigma, HeightMap::Node& node) const;
+
+  double median_density() const;
+
+  Trend trend_;
+  double density_ = 0;
+  std::vector<Sums> sums_;  // sums at each corner of cells, over all points with smaller u and v
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,142 @@
+#include "core/beyond/tracked_surface/height_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/beyond/tracked_surface/shrinkage.h"
+
+namespace remote_touch {
+
+const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
+  const auto along = [](double x) {
+    return static_cast<int>(std::clamp((x + kHalf) / kNodePitch + 0.5, 0.0, kNodes - 1.0));
+  };
+  return node(along(u), along(v));
+}
+
+// The height at a corner between nodes is the mean of the planes of the known nodes beside it.
+void HeightMap::fill_cells() {
+  struct Mean {
+    double sum = 0, count = 0;
+    void add(const Node& n, double du, double dv) {
+      const double height = n.height + n.slope_u * du + n.slope_v * dv;
+      sum += n.known ? height : 0, count += n.known ? 1 : 0;
+    }
+    double value() const { return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN(); }
+  };
+  constexpr double kUp = kCell, kDown = -kCell;  // offsets from the nodes before and behind
+  for (int j = 0; j < kCorners; ++j) {
+    const bool between = j % 2 != 0;
+    const Node *low = &node(0, j / 2), *high = &node(0, (j + 1) / 2);
+    double* corner = &corner_[static_cast<std::size_t>(j * kCorners)];
+    for (int a = 0; a < kNodes; ++a) {
+      Mean at;
+      at.add(low[a], 0, between ? kUp : 0);
+      if (between) at.add(high[a], 0, kDown);
+      corner[2 * a] = at.value();
+      if (a + 1 == kNodes) break;
+      Mean beside;
+      beside.add(low[a], kUp, between ? kUp : 0), beside.add(low[a + 1], kDown, between ? kUp : 0);
+      if (between) beside.add(high[a], kUp, kDown), beside.add(high[a + 1], kDown, kDown);
+      corner[2 * a + 1] = beside.value();
+    }
+  }
+}
+
+void HeightMap::set_plane(double height, double slope_u, double slope_v, double radius) {
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      const double u = node_at(i), v = node_at(j);
+      const bool inside = u * u + v * v <= radius * radius;
+      node(i, j) = {height + slope_u * u + slope_v * v, slope_u, slope_v, 0, inside, inside};
+    }
+  fill_cells();
+}
+
+void HeightMap::extend(int rings) {
+  for (int ring = 0; ring < rings; ++ring) {
+    if (std::all_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.known; })) break;
+    const auto before = nodes_;
+    for (int j = 0; j < kNodes; ++j)
+      for (int i = 0; i < kNodes; ++i) {
+        if (node(i, j).known) continue;
+        Node sum;
+        int count = 0;
+        for (int b = std::max(0, j - 1); b <= std::min(kNodes - 1, j + 1); ++b)
+          for (int a = std::max(0, i - 1); a <= std::min(kNodes - 1, i + 1); ++a) {
+            const Node& n = before[static_cast<std::size_t>(b * kNodes + a)];
+            if (!n.known) continue;
+            sum.height += n.height + kNodePitch * (n.slope_u * (i - a) + n.slope_v * (j - b));
+            sum.slope_u += n.slope_u, sum.slope_v += n.slope_v;
+            ++count;
+          }
+        if (count > 0)
+          node(i, j) = {sum.height / count, sum.slope_u / count, sum.slope_v / count, 0, true, false};
+      }
+  }
+  fill_cells();
+}
+
+void HeightMap::steady(const HeightMap& earlier) {
+  constexpr double kLever = 3;  // rms distance of a wide window's points from its middle, contact radii
+  const auto keep = [](double& now, double before, double error) {
+    now = before + surely(now - before, error);
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& now = nodes_[i];
+    const Node& before = earlier.nodes_[i];
+    if (!now.covered || !before.covered) continue;
+    const double error = error_of_two(now.error);
+    keep(now.height, before.height, error);
+    keep(now.slope_u, before.slope_u, error / kLever), keep(now.slope_v, before.slope_v, error / kLever);
+  }
+  fill_cells();
+}
+
+void HeightMap::add_plane(double height, double slope_u, double slope_v) {
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      node(i, j).height += height + slope_u * node_at(i) + slope_v * node_at(j);
+      node(i, j).slope_u += slope_u, node(i, j).slope_v += slope_v;
+    }
+  for (int j = 0; j < kCorners; ++j)
+    for (int i = 0; i < kCorners; ++i)
+      corner_[static_cast<std::size_t>(j * kCorners + i)] +=
+          height + slope_u * (i * kCell - kHalf) + slope_v * (j * kCell - kHalf);
+}
+
+double HeightMap::height(double u, double v) const {
+  const double x = std::clamp((u + kHalf) / kCell, 0.0, kLast);
+  const double y = std::clamp((v + kHalf) / kCell, 0.0, kLast);
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double fu = x - i, fv = y - j;
+  const double* c = &corner_[static_cast<std::size_t>(j * kCorners + i)];
+  const double low = c[0] + fu * (c[1] - c[0]), high = c[kCorners] + fu * (c[kCorners + 1] - c[kCorners]);
+  return low + fv * (high - low);
+}
+
+HeightMap::Slopes HeightMap::slopes(double u, double v) const {
+  const double d = 0.5 * kCell;
+  return {(height(u + d, v) - height(u - d, v)) / kCell, (height(u, v + d) - height(u, v - d)) / kCell};
+}
+
+HeightMap::Slopes HeightMap::mean_slopes(double u, double v, double radius) const {
+  Slopes sum{0, 0};
+  int count = 0;
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      const Node& n = node(i, j);
+      const double du = node_at(i) - u, dv = node_at(j) - v;
+      if (!n.covered || du * du + dv * dv > radius * radius) continue;
+      sum.u += n.slope_u, sum.v += n.slope_v;
+      ++count;
+    }
+  return count > 0 ? Slopes{sum.u / count, sum.v / count} : slopes(u, v);
+}
+
+bool HeightMap::covers(double u, double v) const {
+  return nearest_node(u, v).covered && std::isfinite(height(u, v));
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,355 @@
+#include "core/beyond/tracked_surface/sheet_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// Lengths in units of the patches (contact radii) unless they say otherwise.
+constexpr double kGroupRadius = 6.5;  // radius of the group of the tool's places for one patch
+constexpr double kShownBeyond = 0.8;  // points up to this distance around the tool must be in the patch
+constexpr double kMinReach = 1, kMaxReach = 5,
+                 kContactReach = 3;      // motion of the tool until patches are queried anew
+constexpr double kOnSheet = 0.5;         // a contact further from a sheet does not belong to it
+constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
+constexpr double kSameDirection = 0.95;  // the same between contacts with a face
+constexpr int kEnoughAlike = 3;
+constexpr double kSameSheet = 0.85;  // the same between two patches of one sheet
+constexpr double kLeft = 2;          // a contact's patch ends when the tool is further away
+constexpr double kNearlyAsLow = 0.5;
+constexpr double kBehind = -0.5;      // a place deeper than this was not in front of the sheet
+constexpr double kLever = 2;          // see CarriedMotion
+constexpr double kTouching_m = 5e-4;  // contacts further from the tool do not hold it
+
+Vec3 world(const ToolPose& pose, const Vec3& p_T) {
+  return pose.p_W + pose.q_WT * p_T;
+}
+
+}  // namespace
+
+SheetPatches::SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches,
+                           const VoxelTool& tool, const Kernels& kernels)
+    : unit_m_(unit_m),
+      places_(tool.mesh, kGroupRadius * unit_m, max_patches),
+      patches_(std::max(max_patches, places_.groups().size())),
+      shown_radius_m_(tool.reach_m + 2 * kMaxReach * unit_m) {
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    Patch& patch = patches_[i];
+    patch.tracker = std::make_unique<SheetTracker>(settings, unit_m, kernels, SheetTracker::Shows::points);
+    patch.of_group = patch.in_use = i < places_.groups().size();
+    patch.places_T = places_.all(), patch.reach_m = kContactReach * unit_m;
+    if (!patch.of_group) continue;
+    const ToolPlaces::Group& group = places_.groups()[i];
+    patch.places_T = places_.of(group), patch.middle_T = group.middle_T;
+    patch.reach_m = std::clamp((HeightMap::kHalf - kShownBeyond) * unit_m - group.radius_m,
+                               kMinReach * unit_m, kMaxReach * unit_m);
+  }
+}
+
+void SheetPatches::reserve(std::size_t points) {
+  for (Patch& patch : patches_) patch.tracker->reserve(points, true, true);
+}
+
+void SheetPatches::keep(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {
+  for (Patch& patch : patches_)
+    if (patch.in_use) patch.tracker->keep(frame), patch.captured_s = captured_s;
+}
+
+// --- the tool over a sheet ---
+
+bool SheetPatches::explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const {
+  if (!patch.in_use || !patch.tracker->tracks()) return false;
+  const PatchRegion& region = patch.tracker->region();
+  const PatchPlace p = region.frame.place(p_W);
+  const HeightMap::Slopes slopes = patch.tracker->map().slopes(p.u, p.v);
+  return p.u * p.u + p.v * p.v < region.radius * region.radius &&
+         std::abs(patch.tracker->clearance(p_W)) <= kOnSheet &&
+         region.frame.normal_W(slopes.u, slopes.v).dot(n_W) >= kAlike;
+}
+
+SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& pose) const {
+  const PatchRegion& region = patch.tracker->region();
+  const HeightMap& map = patch.tracker->map();
+  const auto each = [&](auto&& use) {
+    for (const Vec3& p_T : patch.places_T) {
+      const Vec3 p_W = world(pose, p_T);
+      const PatchPlace p = region.frame.place(p_W);
+      if (p.u * p.u + p.v * p.v < region.radius * region.radius && map.covers(p.u, p.v))
+        use(p_W, p.h - map.height(p.u, p.v));
+    }
+  };
+  Lowest low;
+  each([&](const Vec3& p_W, double clearance) {
+    if (!low.found || clearance < low.clearance) low = {true, clearance, p_W};
+  });
+  Vec3 sum_W = Vec3::Zero();
+  double count = 0;
+  each([&](const Vec3& p_W, double clearance) {
+    if (clearance <= low.clearance + kNearlyAsLow) sum_W += p_W, count += 1;
+  });
+  const PatchPlace mean = region.frame.place(sum_W / count);
+  if (low.found && map.covers(mean.u, mean.v)) low.p_W = sum_W / count;
+  return low;
+}
+
+// Returns the position of a patch's proxy: a contact radius above the lowest place, over the middle of the
+// group if the sheet is seen there.
+ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, bool held) const {
+  ProxyPlace place{world(pose, patch.middle_T), holds(patch, held)};
+  if (!patch.tracker->tracks()) return place;
+  const Lowest low = lowest(patch, pose);
+  if (!low.found) return place;
+  const PatchFrame& frame = patch.tracker->region().frame;
+  PatchPlace p = frame.place(place.p_W);
+  if (!patch.of_group || !patch.tracker->map().covers(p.u, p.v)) p = frame.place(low.p_W);
+  place.p_W = frame.world({p.u, p.v, patch.tracker->map().height(p.u, p.v) + low.clearance + 1});
+  return place;
+}
+
+// Returns the number of the patch that a contact belongs to; -1: none.
+int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) const {
+  const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
+  double nearest = std::numeric_limits<double>::infinity();
+  int of = -1;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    if (!explains(patches_[i], p_W, n_W)) continue;
+    const double distance = std::abs(patches_[i].tracker->clearance(p_W));
+    if (distance < nearest) nearest = distance, of = static_cast<int>(i);
+  }
+  return of;
+}
+
+void SheetPatches::count_contacts(const ToolHold& hold) {
+  for (Patch& patch : patches_) patch.contacts = 0;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const bool touches = hold.contacts[k].depth_m >= -kTouching_m;
+    patch_of_[k] = touches ? patch_of(hold, hold.contacts[k]) : -1;
+    if (patch_of_[k] >= 0) ++patches_[static_cast<std::size_t>(patch_of_[k])].contacts;
+  }
+}
+
+// Finds the deepest unexplained contact. Contacts at an edge of the tool have directions between those of its
+// faces: so several must have the same direction.
+void SheetPatches::count_unexplained(const ToolHold& hold) {
+  unexplained_.alike = 0, unexplained_.depth_m = -kTouching_m;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const ToolContact& contact = hold.contacts[k];
+    if (patch_of_[k] >= 0 || contact.depth_m < unexplained_.depth_m) continue;
+    unexplained_ = {1, world(hold.pose, contact.r_T), hold.pose.q_WT * contact.n_T, contact.depth_m};
+  }
+  if (unexplained_.alike == 0) return;
+  unexplained_.alike = 0;
+  for (const ToolContact& contact : hold.contacts)
+    unexplained_.alike += (hold.pose.q_WT * contact.n_T).dot(unexplained_.n_W) >= kSameDirection ? 1 : 0;
+}
+
+// --- a new frame ---
+
+void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame,
+                          const ToolHold& hold, double captured_s) {
+  const double interval_s = captured_s - patch.captured_s;
+  const SheetUpdate update =
+      patch.tracker->on_frame(frame, proxy_place(patch, hold.pose, hold.held), interval_s);
+  patch.missing = update.points == nullptr;
+  if (patch.missing) return;
+  patch.interval_s = interval_s, patch.captured_s = captured_s;
+  if (patch.of_group || holds(patch, hold.held)) return;
+  const Lowest low = patch.tracker->tracks() ? lowest(patch, hold.pose) : Lowest{};
+  patch.in_use = low.found && low.clearance <= kLeft &&
+                 patch.tracker->region().frame.normal_W().dot(patch.normal_W) >= kSameSheet;
+}
+
+// True if a sheet that was begun at a contact is a surface there and faces the tool. Points beside an edge of
+// the tool push it sideways, too, and so do those of a corner.
+bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
+  constexpr double kAround = 3, kEnough = 0.4, kSteepest = 0.35;
+  const HeightMap& map = tracker.map();
+  double nodes = 0, covered = 0;
+  for (int j = 0; j < HeightMap::kNodes; ++j)
+    for (int i = 0; i < HeightMap::kNodes; ++i) {
+      if (std::hypot(HeightMap::node_at(i), HeightMap::node_at(j)) > kAround) continue;
+      nodes += 1, covered += map.node(i, j).covered ? 1 : 0;
+    }
+  const HeightMap::Slopes slopes = map.mean_slopes(0, 0, kAround);
+  return covered >= kEnough * nodes && std::hypot(slopes.u, slopes.v) <= kSteepest &&
+         tracker.sigma() <= 1.4 * sigma + 0.05;
+}
+
+// Starts a patch at a contact that belongs to none of the tracked sheets.
+void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {
+  const auto unused =
+      std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
+  if (unused == patches_.end()) return;
+  SheetTracker& tracker = *unused->tracker;
+  const double sigma = patches_.front().tracker->tracks() ? patches_.front().tracker->sigma() : 0;
+  tracker.keep(frame);
+  tracker.begin(unexplained_.p_W, unexplained_.n_W, sigma);
+  unused->missing = false, unused->contacts = 0, unused->captured_s = captured_s;
+  unused->normal_W = unexplained_.n_W;
+  const bool is_known = std::any_of(patches_.begin(), patches_.end(), [&](const Patch& other) {
+    return other.in_use && other.tracker->tracks() &&
+           other.tracker->region().frame.normal_W().dot(unexplained_.n_W) >= kSameSheet &&
+           std::abs(other.tracker->clearance(unexplained_.p_W)) <= 1 + 3.5 * sigma;
+  });
+  unused->in_use = !is_known && is_face(tracker, sigma);
+}
+
+// Computes the motion of the tool with the surfaces that hold it. Their velocity stays as it was, apart from
+// changes that noise does not explain.
+ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
+  CarriedMotion places(kLever * unit_m_);
+  double interval_s = 0;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    if (patch_of_[k] < 0) continue;
+    const Patch& patch = patches_[static_cast<std::size_t>(patch_of_[k])];
+    if (!patch.in_use || patch.missing || !patch.tracker->tracks()) continue;
+    const Vec3 p_W = world(hold.pose, hold.contacts[k].r_T);
+    const double moved = patch.tracker->moved(p_W), error = patch.tracker->moved_error(p_W);
+    if (!std::isfinite(moved)) continue;
+    places.add({p_W, patch.tracker->region().frame.normal_W(), moved * unit_m_, error * unit_m_,
+                1.0 / patch.contacts});
+    interval_s = std::max(interval_s, patch.interval_s);
+  }
+  const CarriedMotion::Result result = places.about(hold.pose.p_W, interval_s * rate_per_s_);
+  rate_per_s_ = interval_s > 0 ? Vector6(result.sure / interval_s) : Vector6(Vector6::Zero());
+  return {result.motion, rate_per_s_};
+}
+
+// Returns the displacement out of a sheet that swept over places of a tool that it does not hold. It is along
+// the sheet's normal, and no longer than the sheet's motion.
+Vec3 SheetPatches::out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const {
+  const SheetTracker& tracker = *patch.tracker;
+  double out = 0;
+  for (const Vec3& p_T : patch.places_T) {
+    const Vec3 p_W = world(now, p_T), before_W = world(before, p_T);
+    const PatchPlace p = tracker.region().frame.place(p_W);
+    const double is = tracker.clearance(p_W), was = tracker.clearance(before_W) + tracker.moved(before_W);
+    if (!(is < 0) || !(was > kBehind) || !tracker.map().covers(p.u, p.v)) continue;  // NaN: not known
+    out = std::max(out, std::min(-is, was - is));
+  }
+  return out * unit_m_ * tracker.region().frame.normal_W();
+}
+
+SheetPatches::Update SheetPatches::on_frame(const std::shared_ptr<const NeighbourSearch>& frame,
+                                            const ToolHold& hold, double captured_s) {
+  if (patch_of_.size() < hold.contacts.size()) patch_of_.resize(hold.contacts.size());
+  count_contacts(hold);
+  count_unexplained(hold);
+  bool seen = false, missing = false;
+  for (Patch& patch : patches_) {
+    if (!patch.in_use) continue;
+    follow(patch, frame, hold, captured_s);
+    (patch.missing ? missing : seen) |= holds(patch, hold.held);
+  }
+  Update update;
+  update.missing = missing && !seen;
+  if (update.missing) return update;
+  if (hold.held)
+    update.motion = carried(hold);
+  else
+    rate_per_s_.setZero();
+  ToolPose pose =
+      update.motion.displacement.isZero(0) ? hold.pose : moved(hold.pose, update.motion.displacement);
+  for (const Patch& patch : patches_) {
+    if (!patch.in_use || !patch.tracker->tracks() || holds(patch, hold.held)) continue;
+    const Vec3 out_m = out_of_swept(patch, pose, hold.pose);
+    pose.p_W += out_m, update.motion.displacement.head<3>() += out_m;
+  }
+  for (Patch& patch : patches_) note_query(patch, pose);
+  if (unexplained_.alike >= kEnoughAlike) start_patch(frame, captured_s);
+  return update;
+}
+
+// --- between frames ---
+
+void SheetPatches::note_query(Patch& patch, const ToolPose& pose) const {
+  patch.queried_W = world(pose, patch.middle_T);
+}
+
+bool SheetPatches::must_requery(const ToolPose& pose) const {
+  return std::any_of(patches_.begin(), patches_.end(), [&](const Patch& patch) {
+    if (!patch.in_use || patch.missing) return false;
+    const double reach_m = patch.tracker->tracks() ? patch.reach_m : unit_m_;
+    return !((world(pose, patch.middle_T) - patch.queried_W).squaredNorm() <= reach_m * reach_m);
+  });
+}
+
+Vector6 SheetPatches::requery(const ToolPose& pose, bool held) {
+  Vector6 out = Vector6::Zero();
+  for (Patch& patch : patches_) {
+    if (!patch.in_use) continue;
+    SheetTracker& tracker = *patch.tracker;
+    const bool tracked = tracker.tracks() && !patch.missing;
+    const Lowest before = tracked ? lowest(patch, pose) : Lowest{};
+    const ProxyPlace place = proxy_place(patch, pose, held);
+    if (patch.missing)
+      tracker.reacquire(place.p_W);
+    else
+      tracker.requery(place);
+    patch.missing = false;
+    note_query(patch, pose);
+    if (!before.found || !tracker.changes_points() || before.clearance < kBehind) continue;
+    // Points without their noise lie elsewhere when the patch is seen from another position.
+    const Lowest after = lowest(patch, pose);
+    const double in = std::min(-after.clearance, before.clearance - after.clearance);
+    if (after.found && in > 0) out.head<3>() += in * unit_m_ * tracker.region().frame.normal_W();
+  }
+  return out;
+}
+
+// --- what is shown ---
+
+bool SheetPatches::changes_points() const {
+  return std::any_of(patches_.begin(), patches_.end(),
+                     [](const Patch& patch) { return patch.in_use && patch.tracker->changes_points(); });
+}
+
+bool SheetPatches::concerns(const BoundingSphere& sphere) const {
+  return std::any_of(patches_.begin(), patches_.end(), [&](const Patch& patch) {
+    if (!patch.in_use || !patch.tracker->changes_points()) return false;
+    const Ball ball = patch.tracker->region().around();
+    const double reach = ball.radius + sphere.radius_m;
+    return (ball.centre - sphere.centre_W).squaredNorm() <= reach * reach;
+  });
+}
+
+// Moves a point onto the sheet that it lies nearest to. Where patches of that sheet overlap, the result lies
+// between them. Returns false for a stray point, which is not shown.
+bool SheetPatches::show(Point& point) const {
+  const Vec3 measured_W = point.p_W;
+  const auto each = [&](auto&& use) {
+    for (const Patch& patch : patches_)
+      if (patch.in_use && patch.tracker->changes_points())
+        use(*patch.tracker, patch.tracker->shown(measured_W));
+  };
+  bool inside = false, is_surface = false;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 normal_W = Vec3::Zero();
+  each([&](const SheetTracker&, const ShownPoint& shown) {
+    inside |= shown.kind != ShownPoint::Kind::outside;
+    is_surface |= shown.kind == ShownPoint::Kind::surface;
+    if (shown.kind != ShownPoint::Kind::sheet || !(std::abs(shown.residual) < nearest)) return;
+    nearest = std::abs(shown.residual), normal_W = shown.normal_W;
+  });
+  if (std::isinf(nearest)) return !inside || is_surface;
+  double weight = 0;
+  Point sum{Vec3::Zero(), Vec3::Zero(), 0};
+  each([&](const SheetTracker& tracker, const ShownPoint& shown) {
+    if (shown.kind != ShownPoint::Kind::sheet || shown.normal_W.dot(normal_W) < kSameSheet) return;
+    const double w = shown.weight + 1e-9;
+    // If noise along the sheet disorders the points, their disks must be wider to leave no holes.
+    const double spacing = 1 / std::sqrt(std::max(tracker.density(), 1.0));
+    const double disorder = 1 + std::min(1.0, 2 * tracker.sigma() / spacing);
+    sum.p_W += w * shown.p_W, sum.n_W += w * shown.normal_W;
+    sum.spacing_m += w * spacing * disorder * unit_m_;
+    weight += w;
+  });
+  point = {sum.p_W / weight, sum.n_W.normalized(), sum.spacing_m / weight};
+  return true;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,114 @@
+// The patches of tracked sheets around a tool, and the motion of the tool with them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/beyond/tracked_surface/carried_motion.h"
+#include "core/beyond/tracked_surface/sheet_tracker.h"
+#include "core/beyond/tracked_surface/tool_places.h"
+#include "core/dissertation/tool/contact/tiled_cloud.h"
+#include "core/dissertation/tool/dynamics/motion_program.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+
+namespace remote_touch {
+
+// Contact of the tool at the arrival of a frame.
+struct ToolHold {
+  ToolPose pose;
+  bool held = false;                      // points push the tool
+  std::span<const ToolContact> contacts;  // contacts near the tool, with the points of the frame before
+};
+
+// Each group of places of the tool has one patch: its proxy is at the group's middle, a contact radius above
+// the lowest of the group's places. The other patches are for contacts that none of these explains, such as a
+// wall beside a tool on a floor: they begin there, and end when the tool has left them.
+class SheetPatches final : public PointChange {
+ public:
+  // unit_m: the contact radius of the trackers, their unit of length.
+  SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches, const VoxelTool& tool,
+               const Kernels& kernels);
+  void reserve(std::size_t points);
+
+  // Keeps a frame for requery() while the tool has no position yet.
+  void keep(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
+  struct Update {
+    bool missing = false;  // a surface that holds the tool is not seen, but not yet dropped
+    ToolSurfaceMotion motion;
+  };
+  // Processes a new frame. Allocates nothing if reserve() was called for its size.
+  Update on_frame(const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
+                  double captured_s);
+  // True if the tool has left the middle of its patches.
+  bool must_requery(const ToolPose& pose) const;
+  // Searches for the sheets around the tool anew in the newest frame; drops those that are missing. Returns
+  // the displacement that brings the tool out of them.
+  Vector6 requery(const ToolPose& pose, bool held);
+
+  // True if points are shown at other positions than measured.
+  bool changes_points() const;
+  // Radius around the tool's centre of mass within which points must be shown until the next requery.
+  double shown_radius_m() const { return shown_radius_m_; }
+  bool concerns(const BoundingSphere& sphere) const override;
+  bool show(Point& point) const override;
+
+  // Access for tests and pages.
+  std::size_t size() const { return patches_.size(); }
+  bool tracks(std::size_t patch) const { return patches_[patch].in_use && patches_[patch].tracker->tracks(); }
+  const SheetTracker& tracker(std::size_t patch) const { return *patches_[patch].tracker; }
+
+ private:
+  struct Patch {
+    std::unique_ptr<SheetTracker> tracker;
+    std::span<const Vec3> places_T;
+    Vec3 middle_T = Vec3::Zero();
+    double reach_m = 0;     // distance that the tool may move before the patch shows too little
+    bool of_group = false;  // false: the patch of a contact
+    bool in_use = false;
+    Vec3 normal_W = Vec3::Zero();           // normal of that contact
+    int contacts = 0;                       // number of contacts that it explains
+    bool missing = false;                   // the sheet was not seen in the newest frame
+    double captured_s = 0, interval_s = 0;  // time of the newest frame that shows it; interval before it
+    Vec3 queried_W = Vec3::Zero();
+  };
+  struct Lowest {
+    bool found = false;
+    double clearance = 0;  // height above the sheet, units
+    // The mean of the places that are nearly as low, or the lowest one if the sheet is not seen below the
+    // mean, as over a hole.
+    Vec3 p_W = Vec3::Zero();
+  };
+  bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
+  Lowest lowest(const Patch& patch, const ToolPose& pose) const;
+  ProxyPlace proxy_place(const Patch& patch, const ToolPose& pose, bool held) const;
+  static bool holds(const Patch& patch, bool held) { return held && patch.contacts > 0; }
+  int patch_of(const ToolHold& hold, const ToolContact& contact) const;
+  void count_contacts(const ToolHold& hold);
+  void count_unexplained(const ToolHold& hold);
+  void follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
+              double captured_s);
+  bool is_face(const SheetTracker& tracker, double sigma) const;
+  void start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
+  ToolSurfaceMotion carried(const ToolHold& hold);
+  Vec3 out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const;
+  void note_query(Patch& patch, const ToolPose& pose) const;
+
+  const double unit_m_;
+  const ToolPlaces places_;
+  std::vector<Patch> patches_;
+  double shown_radius_m_ = 0;
+  Vector6 rate_per_s_ = Vector6::Zero();  // rate of a held tool in the frame before
+  // The deepest contact that no patch explains, and the number of contacts with its direction. Another patch
+  // begins there.
+  struct {
+    int alike = 0;
+    Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
+    double depth_m = 0;
+  } unexplained_;
+  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // one per contact; -1: none
+};
+
+}  // namespace remote_touch

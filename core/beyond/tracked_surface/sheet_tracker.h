@@ -1,0 +1,143 @@
+// Follows the sheet of surface in front of a proxy from frame to frame. A tool has several trackers, each
+// with a place of the tool as its proxy: sheet_patches.h.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/beyond/tracked_surface/height_fit.h"
+#include "core/beyond/tracked_surface/height_map.h"
+#include "core/beyond/tracked_surface/height_profile.h"
+#include "core/beyond/tracked_surface/patch_points.h"
+#include "core/beyond/tracked_surface/sheet_search.h"
+#include "core/beyond/tracked_surface/sheet_settings.h"
+#include "core/beyond/tracked_surface/stray_points.h"
+
+namespace remote_touch {
+
+// Position of the proxy; pressing: a surface holds it back.
+struct ProxyPlace {
+  Vec3 p_W = Vec3::Zero();
+  bool pressing = false;
+};
+
+// The points of a frame to show, and the motion that the proxy has to follow; world frame.
+struct SheetUpdate {
+  std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet dropped
+  Vec3 displacement_m = Vec3::Zero();
+  double velocity_m_per_s = 0;
+  Vec3 normal_W = Vec3::Zero();
+};
+
+// The class that the tracker assigns to a point of the newest frame. In its region a point belongs to the
+// sheet, to another surface, or is a stray. A point of the sheet is moved onto it along the patch's normal.
+struct ShownPoint {
+  enum class Kind { outside, sheet, surface, stray };
+  Kind kind = Kind::outside;
+  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // values on the sheet
+  double weight = 0;    // points of the sheet: 1 in the middle of the patch, falling to 0 at its border
+  double residual = 0;  // height of the measured point above the sheet, contact radii
+};
+
+class SheetTracker {
+ public:
+  // search: the points to show are a NeighbourSearch, and a fixture keeps the proxy at its distance.
+  // points: SheetUpdate::points is the frame as it came, or null, and shown() gives each point.
+  enum class Shows { search, points };
+
+  SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
+               Shows shows = Shows::search);
+  // Reserves memory for frames of this number of points; allocates only if there was less capacity.
+  void reserve(std::size_t points, bool with_radius, bool with_stiffness);
+
+  // Processes a new frame, interval_s after the one before.
+  SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
+                       double interval_s);
+  // Keeps a frame for requery() while the proxy has no position yet, and shows it as it is.
+  std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
+  // True if the proxy has left the middle of the patch.
+  bool must_requery(const Vec3& proxy_W) const;
+  // Drops a missing sheet and searches for one in the newest frame. No allocation.
+  SheetUpdate reacquire(const Vec3& proxy_W);
+  // Begins with a sheet that is known to pass near a position with this normal, which the patch then keeps.
+  // Its noise is about sigma, contact radii. No allocation.
+  void begin(const Vec3& foot_W, const Vec3& normal_W, double sigma);
+  // Updates the patch around the proxy's new position, from the newest frame's points. No allocation.
+  SheetUpdate requery(const ProxyPlace& proxy);
+
+  bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
+
+  // The sheet in the newest frame in which it was seen, if the tracker has one; lengths in contact radii.
+  bool tracks() const { return tracks_; }
+  const PatchRegion& region() const { return region_; }
+  const HeightMap& map() const { return map_; }
+  double sigma() const { return sigma_; }
+  // Height of a position above the sheet, along the patch's normal; NaN where the map has no height.
+  double clearance(const Vec3& p_W) const;
+  // Motion of the sheet at a position in the newest frame, along the patch's normal. It is 0 if it is less
+  // than the resolution of positions, and NaN if it is not known, for example because the sheet was not seen
+  // before.
+  double moved(const Vec3& p_W) const;
+  // Standard error of that motion.
+  double moved_error(const Vec3& p_W) const;
+  ShownPoint shown(const Vec3& p_W) const;
+  // Number of members in a square of one contact radius.
+  double density() const { return fit_.typical_density(); }
+
+ private:
+  static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is not removed
+  void gather(double half_height);
+  const PatchFrame& patch() const { return region_.frame; }
+  void swap_buffers();
+  double half_height() const;
+  void forget();
+  void restart(const Vec3& proxy_W);
+  void grow(const PatchFrame& frame, double known, const Vec3& proxy_W);
+  bool is_of_other_surface(const ProxyPlace& proxy) const;
+  void recentre(const Vec3& middle_W);
+  void level();
+  double predicted_shift(double interval_s) const;
+  bool follow(const Vec3& proxy_W);
+  double find_members(const PatchPlace& proxy);
+  void fit_map(double weight_of_new_noise);
+  double exit_distance(const Vec3& proxy_W) const;
+  double proxy_displacement(const ProxyPlace& proxy, double clearance_before) const;
+  double velocity(const Vec3& proxy_W, double clearance_before, double interval_s);
+  double contact_distance(const PatchPlace& proxy) const;
+  std::shared_ptr<const NeighbourSearch> show(const Vec3& proxy_W);
+
+  const SheetSettings s_;
+  const double unit_m_;
+  const Kernels& kernels_;
+  const Shows shows_;
+  std::shared_ptr<const NeighbourSearch> newest_;
+  std::shared_ptr<GatheredPoints> gathered_ = std::make_shared<GatheredPoints>(),
+                                  buffer_ = std::make_shared<GatheredPoints>();
+  std::shared_ptr<SheetSearch> shown_[2] = {std::make_shared<SheetSearch>(), std::make_shared<SheetSearch>()};
+  int present_ = 0;
+
+  bool tracks_ = false;
+  bool keeps_normal_ = false;
+  PatchRegion region_;
+  HeightMap map_;
+  struct {
+    PatchFrame frame;
+    HeightMap map;
+    bool known = false;
+  } before_;  // position of the sheet before the newest frame, over the same patch
+  HeightFit fit_;
+  PatchPoints points_;
+  StrayPoints strays_;
+  std::vector<PatchPlace> sheet_;  // the members at their shown positions
+  HeightProfile profile_;
+  double sigma_ = 0;
+  double up_ = 0, down_ = 0;  // members lie no further above and below the sheet than this
+  double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
+  int age_ = 0, missed_ = 0;     // number of measured shifts; number of frames without the sheet
+  double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen
+  bool nearer_stray_ = false;
+  Vec3 query_position_W_ = Vec3::Zero();
+  std::optional<Vec3> last_proxy_W_;  // position at the frame before
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,86 @@
+#include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+// The velocity is measured, and r_c is the tracker's unit of length.
+Parameters of_a_sheet(Parameters list) {
+  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
+  return with_fixed_radii(std::move(list));
+}
+}  // namespace
+
+Parameters parameters(TrackedSheetParameters& p) {
+  Parameters list = of_a_sheet(parameters(p.proxy));
+  const Parameters more = parameters(p.sheet);
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+std::string validate(const TrackedSheetParameters& p) {
+  const std::string sheet = validate(p.sheet);
+  return sheet.empty() ? validate(p.proxy) : sheet;
+}
+
+TrackedSheetRenderer::TrackedSheetRenderer(const TrackedSheetParameters& p, double haptic_rate_hz,
+                                           const Kernels& kernels)
+    : max_hold_frames_(p.sheet.max_missed_frames),
+      proxy_(p.proxy, haptic_rate_hz, kernels),
+      tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
+
+Parameters TrackedSheetRenderer::live_parameters() {
+  return live_ones(of_a_sheet(proxy_.live_parameters()));
+}
+
+void TrackedSheetRenderer::reserve(std::size_t points) {
+  proxy_.reserve(points);
+  tracker_.reserve(points, true, true);
+}
+
+void TrackedSheetRenderer::on_frame(const Frame& frame) {
+  if (!proxy_.is_newer(frame)) return proxy_.on_frame(frame);
+  const double interval_s = has_frame_ ? frame.captured_s - captured_s_ : 0;
+  SheetUpdate update;
+  if (placed_)
+    update = tracker_.on_frame(frame.points, proxy_place(), interval_s);
+  else
+    update.points = tracker_.keep(frame.points);
+  if (update.points) {
+    shown_ = std::move(update.points);
+    captured_s_ = frame.captured_s, has_frame_ = true;
+    usual_interval_.add(interval_s);
+    hold_until_s_ = std::numeric_limits<double>::infinity();
+  } else if (std::isinf(hold_until_s_)) {  // the sheet is missing: what was shown stays for a while
+    hold_until_s_ = frame.arrives_s + max_hold_frames_ * usual_interval_.without_pause(interval_s);
+  }
+  proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
+                  {update.displacement_m, update.velocity_m_per_s, update.normal_W});
+}
+
+// A proxy without a place has none until the first HIP; one that moved far needs the newest frame's points
+// where it is now.
+RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s) {
+  if (!placed_ && has_frame_ && device.position_W.allFinite()) {
+    placed_ = true;
+    show(tracker_.requery({device.position_W, false}));
+  } else if (time_s >= hold_until_s_) {
+    hold_until_s_ = std::numeric_limits<double>::infinity();
+    show(tracker_.reacquire(proxy_.proxy_W()));
+  } else if (placed_ && tracker_.must_requery(proxy_.proxy_W())) {
+    show(tracker_.requery(proxy_place()));
+  }
+  proxy_.stop_at_convergence(tracker_.changes_points());
+  return proxy_.step(device, time_s);
+}
+
+void TrackedSheetRenderer::show(const SheetUpdate& update) {
+  if (update.points != shown_) proxy_.replace_points(update.points);
+  shown_ = update.points;
+  proxy_.displace(update.displacement_m);
+}
+
+}  // namespace remote_touch

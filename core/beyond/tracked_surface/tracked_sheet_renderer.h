@@ -1,0 +1,57 @@
+// 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
+// frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
+//
+// The sheet in front of the proxy is found again in each frame, where its motion predicts it, and registered
+// to the frame before. A proxy that it holds back moves with it; a free one moves only if the sheet swept
+// over it. The sheet's points are moved onto the local planes that fit them, as far as noise explains. Ticks
+// are those of the proxy, with the measured velocity in (4.15).
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "core/beyond/tracked_surface/sheet_tracker.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
+#include "core/rendering/usual_interval.h"
+
+namespace remote_touch {
+
+struct TrackedSheetParameters {
+  ProxyParameters proxy;
+  SheetSettings sheet;
+};
+
+Parameters parameters(TrackedSheetParameters& p);
+std::string validate(const TrackedSheetParameters& p);
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const TrackedSheetParameters& p) {
+  return max_stiffness_N_per_m(p.proxy);
+}
+
+class TrackedSheetRenderer final : public Renderer {
+ public:
+  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  TrackedSheetRenderer(const TrackedSheetParameters& parameters, double haptic_rate_hz,
+                       const Kernels& kernels);
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override { proxy_.parameters_changed(); }
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  ProxyPlace proxy_place() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
+  void show(const SheetUpdate& update);
+
+  const int max_hold_frames_;
+  ProxyRenderer proxy_;
+  SheetTracker tracker_;
+  std::shared_ptr<const NeighbourSearch> shown_;  // points that the proxy uses
+  double captured_s_ = 0;                         // time of the newest frame in which the sheet was seen
+  UsualInterval usual_interval_;                  // interval between such frames
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // finite while the sheet is missing
+  bool has_frame_ = false;
+  bool placed_ = false;  // the proxy has started at the HIP
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,68 @@
+// 6-DOF rendering of tracked sheets: the tool of chapter 6 on surfaces that are followed from frame to frame
+// and freed of their noise. Not in the dissertation; its inputs are those of the tool, points and times.
+//
+// The sheets around the tool are found again in each frame, where their motion predicts them. A tool that
+// they hold moves with them, rotation included; a free one moves only if a sheet swept over it. The sheets'
+// points are moved onto the sheets and get normals from them. Ticks are those of the tool on these points,
+// with the measured velocity and rotation rate in (4.15).
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "core/beyond/tracked_surface/sheet_patches.h"
+#include "core/beyond/tracked_surface/sheet_settings.h"
+#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/rendering/usual_interval.h"
+
+namespace remote_touch {
+
+struct TrackedToolParameters {
+  ToolParameters tool;
+  SheetSettings sheet;
+  double sheet_unit_m = 0.005;
+  int max_patches = 4;
+};
+
+Parameters parameters(TrackedToolParameters& p);
+std::string validate(const TrackedToolParameters& p);
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const TrackedToolParameters& p) {
+  return max_stiffness_N_per_m(p.tool);
+}
+
+class TrackedToolRenderer final : public Renderer {
+ public:
+  // pre: validate(parameters) is empty. For contact_rule = continuous the tool is made with outer_field.
+  TrackedToolRenderer(const TrackedToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
+                      const Kernels& kernels);
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override { tool_.parameters_changed(); }
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+  const SheetPatches& patches() const { return patches_; }
+
+ private:
+  std::shared_ptr<const TiledCloud> shown_points(const ToolPose& pose);
+  void requery(const ToolPose& pose, bool held);
+
+  const Kernels& kernels_;
+  const double merged_disk_m_;
+  const int max_hold_frames_;
+  ToolRenderer tool_;
+  SheetPatches patches_;
+  std::shared_ptr<const TiledCloud> measured_, shown_;  // the measured points, and those that the tool uses
+  std::shared_ptr<const TiledCloud> newest_;            // newest points while the surface is missing
+  std::shared_ptr<TiledCloud> changed_[2] = {std::make_shared<TiledCloud>(), std::make_shared<TiledCloud>()};
+  int present_ = 0;
+  double captured_s_ = 0;                                          // time of the newest frame that is shown
+  UsualInterval usual_interval_;                                   // interval between such frames
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // finite while the surface is missing
+  bool has_frame_ = false;
+  bool placed_ = false;  // the tool has started at the device's pose
+};
+
+}  // namespace remote_touch

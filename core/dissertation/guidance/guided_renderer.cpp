@@ -1,0 +1,217 @@
+#include "core/dissertation/guidance/guided_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+bool is_for(FixtureAction action, FixtureRole role) {
+  const bool forbidden = action == FixtureAction::lock || action == FixtureAction::unlock;
+  return forbidden == (role == FixtureRole::forbidden);
+}
+
+// Returns the name of the action as experiment files spell it.
+std::string action_name(SequenceStep step) {
+  const Parameters all = parameters(step);
+  const Choice& action = std::get<Choice>(all.front().value);
+  return action.names[static_cast<std::size_t>(action.get())];
+}
+
+std::string labels_of(const std::vector<FixtureValues>& fixtures) {
+  std::string text;
+  for (const FixtureValues& fixture : fixtures)
+    if (!fixture.label.empty()) text += (text.empty() ? ": \"" : ", \"") + fixture.label + "\"";
+  return text.empty() ? ", but no fixture has a label" : text;
+}
+
+// Returns the first step that acts on the fixture, or steps.end().
+auto first_naming(const std::vector<SequenceStep>& steps, const std::string& label) {
+  return std::find_if(steps.begin(), steps.end(), [&](const SequenceStep& s) {
+    return s.action != FixtureAction::wait && !label.empty() && s.fixture == label;
+  });
+}
+
+bool is_named(const std::vector<SequenceStep>& steps, const std::string& label) {
+  return first_naming(steps, label) != steps.end();
+}
+
+bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& label, FixtureAction action) {
+  const auto first = first_naming(steps, label);
+  return first != steps.end() && first->action == action;
+}
+
+}  // namespace
+
+std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
+  if (!steps.empty() && fixtures.size() > FixtureSwitches::kMaxCount)
+    return "fixtures: " + std::to_string(fixtures.size()) + " rules: expected " +
+           std::to_string(FixtureSwitches::kMaxCount) + " with a sequence";
+  for (std::size_t i = 0; i < fixtures.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
+        return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label +
+               "\": expected a label of its own, fixtures." + std::to_string(j) + " has this one";
+  std::size_t unnamed = 0;
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    if (fixtures[i].role != FixtureRole::guidance || is_named(steps, fixtures[i].label)) continue;
+    if (++unnamed > 1)
+      return "fixtures." + std::to_string(i) +
+             ".role = guidance: expected at most once among fixtures that no step of a sequence activates or releases";
+  }
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].fixture.empty()) continue;
+    const std::string at = "sequence." + std::to_string(i);
+    const auto named = std::find_if(fixtures.begin(), fixtures.end(),
+                                    [&](const auto& fixture) { return fixture.label == steps[i].fixture; });
+    if (named == fixtures.end())
+      return at + ".fixture = \"" + steps[i].fixture + "\": expected the label of a fixture" +
+             labels_of(fixtures);
+    if (!is_for(steps[i].action, named->role))
+      return at + ".action = \"" + action_name(steps[i]) + "\": expected " +
+             (named->role == FixtureRole::forbidden
+                  ? "lock, unlock for a fixture with role = forbidden"
+                  : "activate, release, wait for a fixture with role = guidance");
+  }
+  return {};
+}
+
+GuidedRenderer::GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
+                               const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
+                               std::shared_ptr<FixtureSwitches> switches)
+    : inner_(std::move(inner)),
+      settings_(settings),
+      sequence_(std::move(steps)),
+      switches_(std::move(switches)) {
+  begin_with(fixtures);
+}
+
+void GuidedRenderer::begin_with(const std::vector<FixtureValues>& fixtures) {
+  const auto first_is = [&](const FixtureValues& fixture, FixtureAction action) {
+    return first_action_is(sequence_.steps(), fixture.label, action);
+  };
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    const FixtureValues& fixture = fixtures[i];
+    labels_.push_back(fixture.label);
+    if (fixture.role == FixtureRole::guidance)
+      guides_.push_back(
+          {i,
+           fixture.stiffness_N_per_m,
+           fixture.radius_m,
+           !first_is(fixture, FixtureAction::activate),
+           {static_cast<std::size_t>(settings_.min_points), settings_.hold_s, settings_.fade_s}});
+    else if (i < FixtureSwitches::kMaxCount)
+      switches_->set(i, !first_is(fixture, FixtureAction::lock));
+  }
+}
+
+void GuidedRenderer::on_frame(const Frame& frame) {
+  inner_->on_frame(frame);
+  if (!order_.take(frame)) return;
+  for (std::size_t i = 0; i < guides_.size(); ++i)
+    guides_[i].presence.on_frame(i < frame.guidance.size() ? frame.guidance[i] : GuidanceTarget{},
+                                 frame.arrives_s);
+}
+
+// Returns the index of the fixture with this label. pre: there is one.
+std::size_t GuidedRenderer::number_of(const std::string& label) const {
+  return static_cast<std::size_t>(std::find(labels_.begin(), labels_.end(), label) - labels_.begin());
+}
+
+GuidedRenderer::Guide* GuidedRenderer::guide_of(std::size_t fixture) {
+  const auto found = std::find_if(guides_.begin(), guides_.end(),
+                                  [&](const Guide& guide) { return guide.fixture == fixture; });
+  return found == guides_.end() ? nullptr : &*found;
+}
+
+void GuidedRenderer::act(const SequenceStep& step) {
+  if (step.action == FixtureAction::wait) return;
+  const std::size_t fixture = number_of(step.fixture);
+  Guide* const guide = guide_of(fixture);
+  if (guide == nullptr) {
+    switches_->set(fixture, step.action == FixtureAction::lock);
+    return;
+  }
+  const bool activates = step.action == FixtureAction::activate;
+  if (activates)
+    for (Guide& other : guides_) other.active = false;
+  guide->active = activates;
+  if (activates) guide->offset_m = step.offset_m;
+}
+
+// Returns the guide whose goal the step waits for; null if it waits for none.
+const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) const {
+  if (step.done != StepEnd::reached) return nullptr;
+  const std::size_t fixture = number_of(step.fixture);
+  const auto found = std::find_if(guides_.begin(), guides_.end(),
+                                  [&](const Guide& guide) { return guide.fixture == fixture; });
+  return found == guides_.end() ? nullptr : &*found;
+}
+
+std::optional<ToolPose> GuidedRenderer::goal(const Guide& guide, double time_s) const {
+  const GuidanceTarget* const target = guide.presence.target(time_s);
+  return target ? guidance_goal(settings_, *target, guide.offset_m) : std::nullopt;
+}
+
+// Returns the distance and the angle that remain from the tool to the goal; empty if the goal or the tool's
+// position is not known. The tool counts, not the device, because the robot follows the tool. A proxy has no
+// orientation, so its angle is 0.
+std::optional<GuidedRenderer::Remaining> GuidedRenderer::remaining(const Guide& guide,
+                                                                   const RenderOutput& out,
+                                                                   double time_s) const {
+  const std::optional<ToolPose> there = goal(guide, time_s);
+  if (!there || !out.proxy_W.allFinite()) return {};
+  double turn = 0;
+  if (out.tool) turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate()).norm();
+  return Remaining{(out.proxy_W - there->p_W).norm(), turn};
+}
+
+void GuidedRenderer::advance(double time_s, RenderOutput& out) {
+  while (true) {
+    if (sequence_.begins(time_s)) act(sequence_.step());
+    if (sequence_.is_over()) return;
+    const Guide* const guide = goal_of(sequence_.step());
+    std::optional<Remaining> remaining_goal;
+    if (guide) remaining_goal = remaining(*guide, out, time_s);
+    const bool reached = remaining_goal && remaining_goal->m <= guide->reached_m &&
+                         remaining_goal->rad <= settings_.reached_deg * kRadiansPerDegree;
+    if (!sequence_.ends(time_s, reached)) return;
+    if (remaining_goal && std::isnan(out.guidance->sequence_distance_m))
+      out.guidance->sequence_distance_m = remaining_goal->m,
+      out.guidance->sequence_angle_rad = remaining_goal->rad;
+  }
+}
+
+// Adds the guidance wrench to the output. While there is no valid device pose, nothing pulls and the level of
+// the force falls; it rises from there when the device is back.
+void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
+  for (Guide& guide : guides_) {
+    const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;
+    if (there) guide.goal = *there, guide.strength = guide.presence.target(time_s)->strength;
+    const double level = guide.presence.advance(there.has_value(), time_s);
+    if (level == 0 || !device) continue;
+    const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, guide.goal, *device);
+    out.guidance->active = true;
+    out.guidance->goal_W = guide.goal.p_W, out.guidance->goal_orientation_W = guide.goal.q_WT;
+    out.guidance->force_N += level * guide.strength * wrench.force_N;
+    if (out.tool) out.guidance->torque_Nm += level * guide.strength * wrench.torque_Nm;
+  }
+  out.force_N += out.guidance->force_N;
+  if (out.tool) out.tool->torque_Nm += out.guidance->torque_Nm;
+}
+
+RenderOutput GuidedRenderer::step(const DeviceState& device, double time_s) {
+  RenderOutput out = inner_->step(device, time_s);
+  out.guidance.emplace();
+  sequence_.set_buttons(device.buttons);
+  advance(time_s, out);
+  pull(device_pose(device), time_s, out);
+  out.guidance->sequence_step = sequence_.current();
+  out.guidance->sequence_running = sequence_.is_running();
+  out.guidance->sequence_missed = sequence_.missed();
+  return out;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,270 @@
+#include "core/dissertation/proxy/proxy_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/dissertation/proxy/admissible_motion.h"
+#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/region_exit.h"
+#include "core/rendering/elapsed_ticks.h"
+
+namespace remote_touch {
+
+namespace {
+// A HIP farther away than this cannot be a hand's, and squares of its distances would be too inaccurate.
+constexpr double kMaxHipDistance_m = 1e6;
+}  // namespace
+
+ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
+    : p_(parameters),
+      kernels_(kernels),
+      haptic_rate_hz_(haptic_rate_hz),
+      near_(parameters.r3_m, kernels),
+      velocity_(parameters.max_prediction_s),
+      coupling_(parameters, haptic_rate_hz) {}
+
+// Stores the frame and returns true if it is newer than all before.
+bool ProxyRenderer::take(const Frame& frame) {
+  if (!order_.take(frame)) return false;
+  replace_points(frame.points);
+  frame_arrived_s_ = frame.arrives_s;
+  return true;
+}
+
+void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points) {
+  near_.set_points(std::move(points));
+  has_local_query_ = false;
+  is_clear_ = false;
+}
+
+// Returns r_f of the region that the proxy touches. Empty without contact, or if growth counts as motion.
+std::optional<double> ProxyRenderer::felt_radius_m() {
+  if (p_.growth_is_motion || !in_contact_) return {};
+  return nearest_region_radius_m(near_.around(proxy_W_).view(), proxy_W_);
+}
+
+void ProxyRenderer::on_frame(const Frame& frame) {
+  const bool takes_it = is_newer(frame) && p_.velocity_estimate;
+  const std::optional<double> before_m = takes_it ? felt_radius_m() : std::nullopt;
+  if (!take(frame) || !p_.velocity_estimate) return;
+  const std::optional<double> now_m = before_m ? felt_radius_m() : std::nullopt;
+  displace(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
+  if (now_m) velocity_.on_growth(*now_m - *before_m);
+}
+
+void ProxyRenderer::on_frame(const Frame& frame, const SurfaceMotion& motion) {
+  if (!take(frame)) return;
+  velocity_.on_measured(frame.captured_s, motion.velocity_m_per_s, motion.normal_W);
+  displace(motion.displacement_m);
+}
+
+void ProxyRenderer::displace(const Vec3& displacement_m) {
+  proxy_W_ += displacement_m;
+  frame_correction_m_ += displacement_m;
+  contact_proxy_W_ += displacement_m;
+}
+
+void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
+  p_.r1_m = r1_m, p_.r2_m = r2_m, p_.r3_m = r3_m;
+  near_.set_reach(r3_m);
+  coupling_.set_radii(r1_m, r2_m);
+  has_local_query_ = false;
+}
+
+// The surface counts as at rest while the estimate is off, in (4.15) too. The estimate starts anew when it is
+// switched on again.
+void ProxyRenderer::parameters_changed() {
+  set_radii(p_.r1_m, p_.r2_m, p_.r3_m);
+  is_clear_ = false;
+  coupling_.release();  // the next finite difference would be one of settings
+  if (contact_stiffness_N_per_m_ == own_stiffness_N_per_m_)  // the points have none
+    contact_stiffness_N_per_m_ = p_.stiffness_N_per_m;
+  own_stiffness_N_per_m_ = p_.stiffness_N_per_m;
+  if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
+}
+
+RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
+  const Vec3& hip_W = device.position_W;
+  RenderOutput out;
+  out.proxy_W = proxy_W_, out.normal_W = normal_W_;
+  out.slave_W = slave_W_;
+  out.frame_index = order_.newest();
+  out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
+    // The proxy rests and the force is zero: a force from an unknown position would be a guess.
+    coupling_.release();
+    out.status = RenderStatus::device_not_finite;
+    return out;
+  }
+  if (!placed_) proxy_W_ = hip_W, placed_ = true;
+  if (order_.newest() >= 0) {
+    out.steps = move(hip_W);
+    if (near_.has_regions()) out.steps += leave_regions(hip_W);
+    report(hip_W, out);
+    out.force_N = render_force(hip_W, time_s, out);
+    out.status = order_.status(out.status);
+  } else {
+    out.proxy_W = proxy_W_ = hip_W;
+    out.nearest_distance_m = std::numeric_limits<double>::infinity();
+    out.converged = true;
+    out.status = RenderStatus::no_frame;
+    clear_W_ = hip_W;
+  }
+  out.slave_W = slave_W_ = slave_command(hip_W, time_s);
+  return out;
+}
+
+// Returns the state (4.2.1) and the normal (4.1) at the proxy, from one pass over the points around it. The
+// result is kept while the proxy rests.
+const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
+  if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
+  local_query_.points = near_.around(proxy_W_).view();
+  local_query_.query = query(local_query_.points, proxy_W_);
+  local_query_.state = classify(local_query_.query.nearest, p_);
+  query_position_W_ = proxy_W_;
+  has_local_query_ = true;
+  return local_query_;
+}
+
+// pre: the points are those of the present list of neighbours.
+ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) const {
+  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
+  return kernels_.proxy.contact_query(points, p_W.data(), regions);
+}
+
+// The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
+// bit for bit: every further step would do the same.
+int ProxyRenderer::move(const Vec3& hip_W) {
+  bool touched = false;
+  for (int k = 1; k <= p_.steps_per_tick; ++k) {
+    const Vec3 u = hip_W - proxy_W_;
+    const LocalQuery& here = local_query();
+    normal_W_ = unit_normal(here.query, normal_W_);
+    if (here.state == ContactState::contact) {
+      in_contact_ = true;
+      contact_proxy_W_ = proxy_W_;
+      contact_stiffness_N_per_m_ = stiffness(here.query);
+    }
+    touched |= here.state != ContactState::free;
+    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
+
+    if (stops_at_convergence_ && here.state == ContactState::contact &&
+        has_converged(here.state, normal_W_, u, p_))
+      return k - 1;
+
+    const Vec3 s = next_step(here, u);
+    velocity_.on_step(s);  // (4.13)
+    const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
+    if (here.state == ContactState::free && moved == hip_W)
+      in_contact_ = false;  // the proxy is free and nothing holds it back
+    const bool settled = moved == proxy_W_;
+    proxy_W_ = moved;
+    if (settled || k == p_.steps_per_tick) {
+      if (!touched) in_contact_ = false;
+      return k;
+    }
+  }
+  return 0;
+}
+
+// Moves an entrenched proxy out of overlapping regions, where the way out of one region may end in another,
+// and so may the budget of steps. Not in the dissertation. First up to max_exit_steps more steps of (5.11)
+// are made. If the proxy is still entrenched, it returns to its last position outside all regions. If a frame
+// has made that position invalid, it leaves along a straight line. Returns the number of steps.
+int ProxyRenderer::leave_regions(const Vec3& hip_W) {
+  if (p_.max_exit_steps == 0) return 0;
+  int steps = 0;
+  for (; steps < p_.max_exit_steps && local_query().state == ContactState::entrenched; ++steps) {
+    normal_W_ = unit_normal(local_query_.query, normal_W_);
+    proxy_W_ += next_step(local_query_, hip_W - proxy_W_);
+  }
+  if (local_query().state != ContactState::entrenched) return steps;
+  if (is_clear_)
+    proxy_W_ = clear_W_;
+  else if (const auto exit_W = straight_exit(near_, kernels_, proxy_W_, normal_W_, hip_W - proxy_W_, p_))
+    proxy_W_ = *exit_W;
+  has_local_query_ = false;  // the search may have replaced the list of neighbours of the query
+  return steps;
+}
+
+// True if touching regions hold the proxy each by itself. A crease is entered at a larger angle than it is
+// left, or the two rules would alternate.
+bool ProxyRenderer::takes_regions(const LocalQuery& here) {
+  if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
+  constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
+  in_crease_ = is_in_crease(here.points, proxy_W_, unit_normal(here.query, normal_W_), p_.r2_m,
+                            in_crease_ ? kLeaves : kMeets);
+  return in_crease_;
+}
+
+Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
+  switch (here.state) {
+    case ContactState::free:
+      return free_step(near_, proxy_W_, u, p_);
+    case ContactState::entrenched:
+      return entrenched_step(here.points, kernels_, proxy_W_, normal_W_, u, p_);
+    case ContactState::contact:
+      break;
+  }
+  if (!takes_regions(here)) return contact_step(normal_W_, u, p_);
+  const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m);
+  return region_step(near_, proxy_W_, goal, u, p_);
+}
+
+// Fills in the output for the position at the end of the tick. Also updates clear_W_ and, through
+// takes_regions(), in_crease_.
+void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
+  const LocalQuery& here = local_query();
+  out.proxy_W = proxy_W_;
+  out.state = here.state;
+  if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
+  out.normal_W = unit_normal(here.query, normal_W_);
+  out.surface_velocity_m_per_s = velocity_.m_per_s();
+  // The list of neighbours reaches beyond r3 in some directions only, so a distance beyond r3 is not
+  // reliable.
+  out.nearest_distance_m =
+      here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(here.query.touching_count);
+  const Vec3 u = hip_W - proxy_W_;
+  if (here.state == ContactState::contact && takes_regions(here))
+    out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
+  else
+    out.converged = has_converged(here.state, out.normal_W, u, p_);
+  if (here.state == ContactState::entrenched && out.normal_W.isZero(0))
+    out.status = RenderStatus::degenerate_normal;
+}
+
+// Returns the commanded position of the slave robot. A frame shows the surface at the time of its capture.
+// Like (4.15), the prediction assumes that the surface continues along v_hat. A predicted position that lies
+// in a region of the newest frame is not sent.
+Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
+  if (p_.slave_command == SlaveCommand::hip) return hip_W;
+  if (!p_.slave_prediction || !in_contact_) return clear_W_;
+  const double age_s = std::clamp(time_s - order_.captured_s(), 0.0, velocity_.horizon_s());
+  const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
+  const ContactQuery there = query(near_.around(ahead_W).view(), ahead_W);
+  has_local_query_ = false;  // the query ahead may have replaced the list of neighbours
+  return classify(there.nearest, p_) == ContactState::entrenched ? clear_W_ : ahead_W;
+}
+
+Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderOutput& out) {
+  const double ticks = elapsed_ticks(std::exchange(force_time_s_, time_s), time_s, haptic_rate_hz_);
+  const bool send =
+      p_.force_gate == ForceGate::latest_contact ? in_contact_ : out.state == ContactState::contact;
+  if (!send) {
+    coupling_.release();
+    return Vec3::Zero();
+  }
+  const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
+  // The time is bounded: if frames stop coming, the surface is no longer assumed to continue.
+  const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
+  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_, ticks);
+}
+
+// Returns (5.8) as a weighted mean if the points have a stiffness, else the renderer's own stiffness.
+double ProxyRenderer::stiffness(const ContactQuery& query) const {
+  return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : p_.stiffness_N_per_m;
+}
+
+}  // namespace remote_touch

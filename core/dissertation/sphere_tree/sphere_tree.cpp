@@ -1,0 +1,123 @@
+#include "core/dissertation/sphere_tree/sphere_tree.h"
+
+#include <algorithm>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kRounding = 1 + 1e-12;  // factor on distances: a bounding sphere is never too small
+
+// Bounding sphere (7.3) of count items; item(i) -> const Sphere&.
+template <class Item>
+Sphere around(std::size_t count, const Item& item) {
+  Sphere all;
+  for (std::size_t i = 0; i < count; ++i) all.centre += item(i).centre;
+  all.centre /= static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i)
+    all.radius_m = std::max(all.radius_m, (item(i).centre - all.centre).norm() + item(i).radius_m);
+  all.radius_m *= kRounding;
+  return all;
+}
+
+std::size_t in_whole_groups(std::size_t count) {
+  return (count + kLanes - 1) / kLanes * kLanes;
+}
+
+}  // namespace
+
+Sphere bounding_sphere(std::span<const Sphere> spheres) {
+  return around(spheres.size(), [&](std::size_t i) -> const Sphere& { return spheres[i]; });
+}
+
+void SphereTree::clear() {
+  leaves_.clear();
+  level_count_ = 0;
+  for (std::vector<double>* column : {&x_, &y_, &z_, &radius_, &max_radius_}) column->clear();
+  for (std::size_t axis = 0; axis < 3; ++axis) low_[axis].clear(), high_[axis].clear();
+  run_starts_.clear();
+}
+
+std::vector<SphereNode>& SphereTree::new_level() {
+  if (levels_.size() == level_count_) levels_.emplace_back();
+  std::vector<SphereNode>& level = levels_[level_count_++];
+  level.clear();
+  return level;
+}
+
+void SphereTree::append_run(std::span<const Sphere> leaves) {
+  run_starts_.push_back({x_.size(), max_radius_.size()});
+  for (std::size_t first = 0; first < leaves.size(); first += kLanes)
+    append_group(leaves.subspan(first, std::min(kLanes, leaves.size() - first)));
+  const std::size_t padded = in_whole_groups(x_.size());
+  for (std::vector<double>* column : {&x_, &y_, &z_}) column->resize(padded, kFarAway);
+  radius_.resize(padded, 0);
+  const std::size_t groups = max_radius_.size() - run_starts_.back().group;
+  pad_groups(in_whole_groups(groups) - groups);
+}
+
+void SphereTree::append_group(std::span<const Sphere> leaves) {
+  SphereBox box = SphereBox::around(leaves.front());
+  for (const Sphere& leaf : leaves) {
+    x_.push_back(leaf.centre.x()), y_.push_back(leaf.centre.y()), z_.push_back(leaf.centre.z());
+    radius_.push_back(leaf.radius_m);
+    box.add(SphereBox::around(leaf));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    low_[axis].push_back(box.low[i]), high_[axis].push_back(box.high[i]);
+  }
+  max_radius_.push_back(box.max_radius_m);
+}
+
+void SphereTree::pad_groups(std::size_t padding) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::vector<double>* column : {&low_[axis], &high_[axis]})
+      column->insert(column->end(), padding, kFarAway);
+  max_radius_.insert(max_radius_.end(), padding, 0);
+}
+
+void SphereTree::add(std::span<const Sphere> leaves) {
+  if (leaves.empty()) return;
+  if (level_count_ == 0) new_level();
+  SphereBox box = SphereBox::around(leaves.front());
+  for (const Sphere& leaf : leaves) box.add(SphereBox::around(leaf));
+  levels_.front().push_back({bounding_sphere(leaves), box, static_cast<std::uint32_t>(leaves_.size()),
+                             static_cast<std::uint32_t>(leaves.size())});
+  leaves_.insert(leaves_.end(), leaves.begin(), leaves.end());
+  append_run(leaves);
+}
+
+SphereRun SphereTree::run(std::size_t node) const {
+  const auto [leaf, group] = run_starts_[node];
+  const std::size_t end = node + 1 < run_starts_.size() ? run_starts_[node + 1].group : max_radius_.size();
+  const auto from = [](const std::vector<double>& column, std::size_t start) {
+    return column.data() + start;
+  };
+  return {from(x_, leaf),
+          from(y_, leaf),
+          from(z_, leaf),
+          from(radius_, leaf),
+          {from(low_[0], group), from(low_[1], group), from(low_[2], group)},
+          {from(high_[0], group), from(high_[1], group), from(high_[2], group)},
+          from(max_radius_, group),
+          end - group,
+          levels_.front()[node].first};
+}
+
+void SphereTree::finish() {
+  while (level_count_ > 0 && top().size() > kBranching) {
+    std::vector<SphereNode>& level = new_level();  // this may move the other levels
+    const std::vector<SphereNode>& below = levels_[level_count_ - 2];
+    for (std::size_t first = 0; first < below.size(); first += kBranching) {
+      const std::size_t count = std::min(kBranching, below.size() - first);
+      const Sphere sphere =
+          around(count, [&](std::size_t i) -> const Sphere& { return below[first + i].sphere; });
+      SphereBox box = below[first].box;
+      for (std::size_t i = 1; i < count; ++i) box.add(below[first + i].box);
+      level.push_back({sphere, box, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
+    }
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,20 @@
+// Sample positions on a mesh's surface.
+#pragma once
+
+#include <vector>
+
+#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// Returns positions on every triangle, its corners among them. They are no farther apart than spacing_m along
+// its longest side and along the height above it.
+std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m);
+
+// Keeps the first of the positions in every cube of side spacing_m.
+std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m);
+
+double surface_area_m2(const TriangleMesh& mesh);
+
+}  // namespace remote_touch

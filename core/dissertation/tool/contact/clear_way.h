@@ -1,0 +1,58 @@
+// The part of a motion that a tool may make before the first point of a cloud gets into it, by conservative
+// advancement of points through the tool's field (outer_field.h). Compare Xu and Barbic 2016. Not in the
+// dissertation.
+//
+// A point moves on a curve in the tool frame. The field along the chord of the curve is a cubic in every
+// cell, and the second derivative of the curve bounds its distance from the chord. A cubic is nowhere below
+// the smallest of its Bernstein coefficients, so the result is certain, not sampled.
+#pragma once
+
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/slope_blocks.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+
+namespace remote_touch {
+
+class ClearWay {
+ public:
+  // A point less than kTouch_m outside counts as touched, m. A point deeper than kInside_m is in the tool
+  // already, as a new frame can put it there, and does not stop the tool.
+  static constexpr double kTouch_m = 1e-6, kInside_m = 2e-6;
+
+  // tool: made with outer_field; it has to outlive this.
+  explicit ClearWay(const VoxelTool& tool);
+  // Returns the longest motion, m, after which a position with a field of look_ahead_m or more is still
+  // outside.
+  double safe_motion_m(double look_ahead_m) const;
+
+  // A motion as moved() makes it, in tool axes: the fraction s of the displacement, for s from 0 to 1.
+  struct Motion {
+    Motion(const ToolPose& from, const Vector6& a_g);
+
+    Vec3 a_T;
+    double shift_m, turn_rad;
+    Eigen::Matrix3d turned;  // rotates from the tool axes before the motion to those after it
+  };
+  // Returns the field value above which points stay outside during the whole motion, if they are within
+  // reach_m of the tool's origin.
+  double far_m(const Motion& motion, double reach_m) const {
+    return kTouch_m + max_slope_ * (motion.shift_m + motion.turn_rad * (reach_m + motion.shift_m));
+  }
+  // Returns the fraction of a motion that the tool may make so that a point that is outside stays there; 1:
+  // all of it. p_T, distance_m: the point before the motion, and the field there.
+  double fraction(const Motion& motion, const Vec3& p_T, double distance_m) const;
+
+ private:
+  struct Chord {
+    Vec3 from, along;  // cells
+    double bend_m;     // the field on the curve is less than on the chord by no more than bend_m s (1 - s)
+    double min_m;      // lowest field value allowed
+  };
+  double first_below(const Chord& chord) const;
+
+  const VoxelTool& tool_;
+  SlopeBlocks slopes_;
+  double max_slope_;
+};
+
+}  // namespace remote_touch

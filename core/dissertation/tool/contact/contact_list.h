@@ -1,0 +1,78 @@
+// The contacts of a pose for the contact rules, from the points of the collision list.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/dissertation/tool/contact/contact_thinning.h"
+#include "core/dissertation/tool/contact/disk_contact.h"
+#include "core/dissertation/tool/contact/near_contacts.h"
+#include "core/dissertation/tool/contact/near_disks.h"
+#include "core/dissertation/tool/contact/near_points.h"
+#include "core/dissertation/tool/contact/touch_finder.h"
+#include "core/dissertation/tool/contact/touched_points.h"
+#include "core/dissertation/tool/dynamics/motion_program.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+
+namespace remote_touch {
+
+// The result of a detection for the printed rule.
+struct VoxelContacts {
+  // The contacts of (6.5) with depth 0. If there are collisions, those of (6.8) with depth 1 instead.
+  std::span<const ToolContact> contacts;
+  bool touched = false, collided = false;  // a point is in the tool; a point is in its interior
+};
+
+// Lists are valid until the next call. If there are more contacts than MotionProgram::kMaxContacts, they are
+// thinned.
+class ContactList final : public NearContactSource {
+ public:
+  ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
+              const Kernels& kernels);
+
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
+  void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
+  const TouchFinder& finder() const { return finder_; }
+  const NearDisks& near_disks() const { return disks_; }  // disks of the last near()
+  // Returns every single point, none merged, with a field value of at most reach_m, and of at most
+  // look_ahead_m plus the radius of the largest disk. Only for TouchRule::continuous. Valid until the next
+  // call.
+  const NearPoints& points_within(const ToolPose& pose, double reach_m);
+
+  // Returns the contacts of all disks that the tool could touch within within_m, but at least
+  // NearDisks::kSearch_m; none beyond look_ahead_m or beyond the reach of the field. side: as for
+  // near_contact().
+  using NearContactSource::near;
+  NearContacts near(const ToolPose& pose, double side, double within_m) override;
+  // Returns the contacts of the points in shell and interior voxels, except those without a normal.
+  VoxelContacts in_voxels(const ToolPose& pose);
+  // Counts the points in shell or interior voxels and, unless the rule is voxels, those whose disk is
+  // touched.
+  Touched touched(const ToolPose& pose);
+
+ private:
+  void append_contacts(double side);
+  void gather_cells();
+  void gather_deepest(double side);
+  std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
+
+  const ToolParameters p_;
+  const Kernels& kernels_;
+  TouchFinder finder_;
+  NearDisks disks_;  // disks of the points, or of fewer points that represent all
+  NearPoints points_;
+  TouchedPoints touched_;
+  double max_disk_m_ = 0, max_near_disk_m_ = 0;
+  ContactThinning thinning_;
+  std::vector<ToolContact> contacts_, collisions_;
+  std::vector<std::uint32_t> cells_;  // cell of each near disk
+  struct Nearest {
+    double bound_m;
+    std::uint32_t disk;
+  };
+  std::vector<Nearest> nearest_;       // nearest disk of each cell, by bound
+  std::vector<std::uint32_t> chosen_;  // numbers of disks
+};
+
+}  // namespace remote_touch

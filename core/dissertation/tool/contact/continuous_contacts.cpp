@@ -1,0 +1,96 @@
+#include "core/dissertation/tool/contact/continuous_contacts.h"
+
+#include <algorithm>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMaxStops = 64;
+constexpr double kSamePoint_m = 1e-9;
+constexpr double kMinSlope = 0.3;  // limit for ridges of the field, where the distance is not reliable
+
+}  // namespace
+
+ContinuousContacts::ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool)
+    : tool_(tool),
+      reach_m_(tool.reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
+      way_(tool),
+      max_motion_m_(way_.safe_motion_m(parameters.look_ahead_m)) {
+  contacts_.reserve(MotionProgram::kMaxContacts + kMaxStops);
+  stops_W_.reserve(kMaxStops);
+}
+
+void ContinuousContacts::begin(ContactList& points) {
+  points_ = &points;
+  stops_W_.clear();
+}
+
+void ContinuousContacts::add_stops(const ToolPose& pose) {
+  for (const Vec3& p_W : stops_W_) {
+    const Vec3 p_T = pose.q_WT.conjugate() * (p_W - pose.p_W);
+    const FieldSample at = sample_field(tool_, p_T);
+    const double slope = at.gradient_T.norm();
+    if (slope < kMinSlope) continue;
+    contacts_.push_back({p_T, -at.gradient_T / slope, (kGap_m - at.distance_m) / slope, 0});
+  }
+}
+
+void ContinuousContacts::add_stop(const Vec3& p_W) {
+  const bool is_known = std::any_of(stops_W_.begin(), stops_W_.end(),
+                                    [&](const Vec3& stop_W) { return (stop_W - p_W).norm() < kSamePoint_m; });
+  if (!is_known && stops_W_.size() < kMaxStops) stops_W_.push_back(p_W);
+}
+
+NearContacts ContinuousContacts::near(const ToolPose& pose, double side, double) {
+  const NearContacts found = points_->near(pose, side);
+  contacts_.clear();
+  for (ToolContact contact : found.contacts) {
+    contact.depth_m += kGap_m;
+    contacts_.push_back(contact);
+  }
+  thinning_.thin(contacts_, ContactThinning::kMaxCount - stops_W_.size());
+  add_stops(pose);
+  return {contacts_, found.deepest_m + kGap_m};
+}
+
+bool ContinuousContacts::has_points_inside(const ToolPose& pose) const {
+  const NearPoints& points = points_->points_within(pose, 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.distance_m(i) < -ClearWay::kInside_m) return true;
+  return false;
+}
+
+double ContinuousContacts::known_fraction(const Vector6& a_g) const {
+  const double motion_m = max_point_displacement_m(a_g, reach_m_);
+  return motion_m > max_motion_m_ ? max_motion_m_ / motion_m : 1;
+}
+
+double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a_g) {
+  const ClearWay::Motion motion(pose, a_g);
+  double clear = known_fraction(a_g);
+  const NearPoints& points = points_->points_within(pose, way_.far_m(motion, reach_m_));
+  std::size_t first = points.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double fraction = way_.fraction(motion, points.p_T(i), points.distance_m(i));
+    if (fraction < clear) clear = fraction, first = i;
+  }
+  if (first < points.size()) add_stop(pose.p_W + pose.q_WT * points.p_T(first));
+  return clear;
+}
+
+double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  const ClearWay::Motion motion(pose, a_g);
+  double clear = known_fraction(a_g);
+  const NearPoints& points = points_->points_within(pose, way_.far_m(motion, reach_m_));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 n_T = R_TW * points_->finder().cloud().normal(points.number(i));
+    if (!(side * n_T.dot(motion.a_T) < 0)) continue;
+    if (points.distance_m(i) < -ClearWay::kInside_m) return 0;
+    clear = std::min(clear, way_.fraction(motion, points.p_T(i), points.distance_m(i)));
+  }
+  return clear;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,131 @@
+#include "core/dissertation/tool/contact/disk_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+using disk_search::kBlindGradient;
+using disk_search::kCuts;
+using disk_search::kFlatSlope;
+using disk_search::kGrazing;
+using disk_search::kLines;
+using disk_search::kStep_m;
+
+Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
+  return at.gradient_T - at.gradient_T.dot(disk.n_T) * disk.n_T;
+}
+
+// Moves `place` down the field in the plane of the disk, to the lowest position on a line that begins there.
+// The field of a convex tool is convex along a line, and nearly a pair of straight lines over an edge: the
+// point where the tangents at the ends meet is a better end (Kelley's cutting planes). Returns true if the
+// position moved.
+bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
+  const Vec3 along = slope_in_plane(disk, place.at);
+  const double steep = along.norm();
+  if (is_flat(steep, disk.radius_m, disk.extent_m)) return false;
+  const Vec3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
+  // The rim is at |offset + t direction| = radius.
+  const double ahead = offset.dot(direction_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
+  struct End {
+    double t;
+    FieldSample at;
+    double slope;
+  };
+  const auto end = [&](double t) {
+    const FieldSample at = sample_field(tool, start_T + t * direction_T);
+    return End{t, at, at.gradient_T.dot(direction_T)};
+  };
+  End low{0, place.at, -steep}, high = end(std::sqrt(std::max(0.0, ahead * ahead + inside)) - ahead);
+  place.at_rim = high.slope < -kFlatSlope && high.at.distance_m < low.at.distance_m;
+  for (int cut = 0; cut < kCuts && !place.at_rim && high.slope - low.slope > kFlatSlope; ++cut) {
+    const double meet = (low.at.distance_m - high.at.distance_m + high.slope * high.t - low.slope * low.t) /
+                        (high.slope - low.slope);
+    if (!(meet > low.t && meet < high.t)) break;
+    const End between = end(meet);
+    (between.slope < 0 ? low : high) = between;
+  }
+  const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
+  place.p_T = start_T + best.t * direction_T;
+  place.at = best.at;
+  // The gradients of both sides of an edge are combined into one without a slope along the line. Only this
+  // one shows the side of a disk that is met at a grazing angle.
+  if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
+    const double fraction = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
+    place.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
+  }
+  return best.t > 0;
+}
+
+// Returns the side of a disk that the tool is on, +1 or -1, for a flat tool on a flat surface; 0 if it is not
+// clear. Disks beside such a tool lie in the plane of its face, and would act as walls against its sides. If
+// the field rises over a step of kStep_m away from the plane, no more of the tool is on that side.
+double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place) {
+  const auto leaves = [&](double side) {
+    const Vec3 beyond = place.p_T - side * kStep_m * disk.n_T;
+    return sample_field(tool, beyond).distance_m - place.at.distance_m > 0.5 * kStep_m;
+  };
+  const bool front = leaves(1), back = leaves(-1);
+  return front == back ? 0 : front ? 1 : -1;
+}
+
+// Returns the side of the disk that the tool is on by its field, +1 for the side of the sensor; 0 if the disk
+// meets the tool edge-on.
+double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
+  const double facing = -at.gradient_T.dot(disk.n_T);
+  if (std::abs(facing) <= kGrazing * steep) return 0;
+  return facing < 0 ? -1 : 1;
+}
+
+// Returns the side of the disk that the tool is on: known_side in the tool, if known, else as facing_side().
+double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
+  if (place.at.distance_m < 0 && known_side != 0) return known_side;
+  const double steep = place.at.gradient_T.norm();
+  // A short gradient deep inside belongs to a ridge of the field and does not show the side; +1 is assumed.
+  // The gradient is short at a corner of the tool too, so the depth is checked.
+  if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
+  return facing_side(disk, place.at, steep);
+}
+
+// Returns the unit direction in which the tool leaves the position soonest; +y if the field is flat there.
+Vec3 exit_direction(const FieldSample& at, double steep) {
+  return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
+}
+
+}  // namespace
+
+double lower_bound_m(const SurfaceDisk& disk) {
+  if (!disk.has_normal()) return disk.at.distance_m;
+  return disk.at.distance_m - disk.radius_m * slope_in_plane(disk, disk.at).norm();
+}
+
+DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk) {
+  DiskPlace place{disk.p_T, disk.at};
+  if (!disk.has_normal() || !(disk.radius_m > 0)) return place;
+  for (int line = 0; line < kLines && slide(tool, disk, place) && !place.at_rim; ++line) continue;
+  return place;
+}
+
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+                         double known_side) {
+  double side = disk.has_normal() ? side_of(tool, disk, nearest, known_side) : 0;
+  const bool known = nearest.at.distance_m < 0 && known_side != 0;
+  bool as_plane = side != 0 && (!nearest.at_rim || known);
+  if (!as_plane && disk.has_normal()) {
+    const double flush = side_of_flush(tool, disk, nearest);
+    if (flush != 0) side = flush, as_plane = true;
+  }
+  const Vec3 out =
+      as_plane ? Vec3(side * disk.n_T) : exit_direction(nearest.at, nearest.at.gradient_T.norm());
+  return {nearest.p_T, out, -nearest.at.distance_m, side};
+}
+
+ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
+  const double steep = disk.at.gradient_T.norm();
+  const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
+  return {disk.p_T, exit_direction(disk.at, steep), -lower_bound_m, side};
+}
+
+}  // namespace remote_touch

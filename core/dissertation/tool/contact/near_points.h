@@ -1,0 +1,32 @@
+// The points near a tool, each by itself: none merged, and without their disks.
+#pragma once
+
+#include "core/dissertation/tool/contact/column_block.h"
+#include "core/dissertation/tool/contact/kept_groups.h"
+#include "core/dissertation/tool/contact/touch_finder.h"
+
+namespace remote_touch {
+
+class NearPoints {
+ public:
+  void on_frame() { groups_.on_frame(), count_ = 0; }  // the finder has a new cloud, whose size is reserved
+  void reserve(std::size_t padded_size);               // reserves memory for clouds of this size
+  // Finds the finder's points whose field value is reach_m or less, in the order of the cloud's tiles. pre:
+  // reach_m <= kFieldMargin_m - 2e-4.
+  void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
+
+  std::size_t size() const { return count_; }
+  Vec3 p_T(std::size_t i) const { return {places_[kX][i], places_[kY][i], places_[kZ][i]}; }
+  double distance_m(std::size_t i) const { return places_[kDistance][i]; }  // the field there
+  std::uint32_t number(std::size_t i) const { return static_cast<std::uint32_t>(places_[kNumber][i]); }
+
+ private:
+  enum Column { kX, kY, kZ, kDistance, kNumber, kColumns };
+  void finish_outside(const VoxelTool& tool, double reach_m);
+
+  KeptGroups groups_;
+  ColumnBlock<kColumns> places_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,70 @@
+// The collision list, 6.2.2: the points of the newest frame that are in the tool, or near it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/dissertation/tool/contact/tiled_cloud.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/kernels/kernels.h"
+#include "core/search/gathered_points.h"
+
+namespace remote_touch {
+
+// Both lists hold points in the order of the cloud's tiles and stay valid until the next call.
+class TouchFinder {
+ public:
+  TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
+
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
+  void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
+  const TiledCloud& cloud() const { return *cloud_; }
+  const VoxelTool& tool() const { return *tool_; }
+  // Upper bound of the length of the field's gradient where the field is below kFieldMargin_m, and of the
+  // distance of any place in the grid from the tool's origin.
+  double max_slope() const { return max_slope_; }
+  double grid_reach_m() const { return grid_reach_m_; }
+  // Upper bound of the field in shell and interior voxels: they lie inside the surface, or about half a voxel
+  // outside.
+  double max_voxel_m() const { return max_voxel_m_; }
+
+  // The points in shell or interior voxels.
+  std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
+  // All points whose field value is distance_m or less, and some that lie up to two voxels farther away.
+  // pre: distance_m < kFieldMargin_m.
+  std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const {
+    return within(*cloud_, pose, distance_m);
+  }
+  // The same for another cloud, which has no more points.
+  std::span<const std::uint32_t> within(const TiledCloud& cloud, const ToolPose& pose,
+                                        double distance_m) const;
+
+  // The groups of kLanes points of a cloud that hold all points whose field value is distance_m or less, and
+  // some others. Valid until the next call, like the lists. pre: as above.
+  std::span<const std::uint32_t> groups_within(const TiledCloud& cloud, const ToolPose& pose,
+                                               double distance_m) const;
+
+  Voxel voxel(const Vec3& p_T) const;
+  // The voxels, for kernels.
+  CellTable voxels() const { return table(voxels_); }
+
+ private:
+  CellTable table(const std::vector<std::int8_t>& values) const {
+    const auto& n = tool_->grid.cells;
+    return {values.data(), {n[0], n[1], n[2]}};
+  }
+  CellTransform to_cells(const ToolPose& pose) const;
+  std::span<const std::uint32_t> find(const TiledCloud& cloud, const ToolPose& pose, double distance_m,
+                                      const std::vector<std::int8_t>& values, int min) const;
+
+  std::shared_ptr<const VoxelTool> tool_;
+  const Kernels& kernels_;
+  const double max_slope_, grid_reach_m_, max_voxel_m_;
+  std::vector<std::int8_t> voxels_, nearness_;  // value of every cell, and three more readable bytes
+  std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
+  mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;
+};
+
+}  // namespace remote_touch

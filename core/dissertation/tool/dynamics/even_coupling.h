@@ -1,0 +1,20 @@
+// The settings of the coupling (6.9) with one stiffness for all directions, which the methods for comparison
+// share.
+#pragma once
+
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+// The members mean the same as those of ToolParameters.
+struct EvenCoupling {
+  double stiffness_N_per_m = 600, gyration_radius_m = 0.03;
+  double max_force_N = 20, max_torque_Nm = 1;
+};
+
+Parameters parameters(EvenCoupling& p);
+// Returns tool settings with this coupling and the defaults otherwise.
+ToolParameters tool_parameters(const EvenCoupling& p);
+
+}  // namespace remote_touch

@@ -1,0 +1,66 @@
+// Gauss' least constraints for the tool, 6.2.3: the motion nearest to a desired one, in kinetic distance,
+// that the contacts allow. It is computed in tool axes, where the inertia is constant. At rest, M times the
+// remaining displacement is a sum of contact normals. The wrench of a coupling (6.9) is such a sum only if M
+// has its gyration radius, MotionMetric::coupling. Then the elastic energy is also the least that the
+// contacts allow.
+#pragma once
+
+#include <span>
+
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/numeric/quadratic_program.h"
+
+namespace remote_touch {
+
+// A linear constraint (6.3): n.a + (r x n).alpha >= depth.
+struct ToolContact {
+  Vec3 r_T;        // vector from the centre of mass to the contact point
+  Vec3 n_T;        // unit, out of the surface: the tool may move freely along +n
+  double depth_m;  // d: positive if the point is inside the tool, negative while it is still outside
+  double side;     // +1 if n is the normal of the cloud, -1 if it is the opposite, 0 without a normal
+};
+
+struct ConstrainedMotion {
+  Vector6 a_g = Vector6::Zero();  // tool axes
+  int active_count = 0;           // contacts that push: their multipliers are above 0
+  Vec3 push_T = Vec3::Zero();     // sum of their multipliers times normals
+  double side = 0;                // sum of their multipliers times sides
+  bool elastic = false;           // the constraints were infeasible and relaxed, all by the same slack
+};
+
+// Returns the inertia of a body of 1 kg with the same gyration radius about every axis.
+inline Eigen::Matrix3d even_inertia_m2(double gyration_radius_m) {
+  return Eigen::Matrix3d::Identity() * gyration_radius_m * gyration_radius_m;
+}
+
+class MotionProgram {
+ public:
+  static constexpr int kMaxContacts = 256;
+
+  // M is that of motion_metric.
+  MotionProgram(const ToolParameters& parameters, const VoxelTool& tool);
+  // inertia_m2: inertia of the body about its centre of mass, divided by its mass.
+  explicit MotionProgram(const Eigen::Matrix3d& inertia_m2);
+
+  // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero
+  // and depths of 1. If a wedge makes (6.5) infeasible, the desired motion stays in the objective and one
+  // slack variable relaxes every row. Contacts beyond kMaxContacts are ignored. Does not allocate.
+  ConstrainedMotion solve(const Vector6& desired_T, std::span<const ToolContact> contacts);
+
+ private:
+  using Row = Vector6;
+  void add_rows(std::span<const ToolContact> contacts);
+  Row row_of(const ToolContact& contact) const;
+  ConstrainedMotion read(const Vector6& y, int active_count, const int* active, const double* multiplier,
+                         std::span<const ToolContact> contacts) const;
+
+  Eigen::Matrix3d root_, inverse_root_;  // roots of the inertia for 1 kg: M^(1/2) of (6.4) and its inverse
+  QuadraticProgram<6> rigid_;
+  QuadraticProgram<7> elastic_;
+  int number_[kMaxContacts] = {};  // index of the contact of each row
+  double column_[6][kMaxContacts] = {}, depth_m_[kMaxContacts] = {};
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,28 @@
+// The position that a slave robot with a tool is sent to, 5.2. Its orientation is that of the same pose.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+
+namespace remote_touch {
+
+class SlavePosition {
+ public:
+  explicit SlavePosition(ToolCommand rule) : rule_(rule) {}
+  // Returns the tool's position or, with ToolCommand::hip, the device's. Without a valid device pose the last
+  // command is repeated, NaN before the first.
+  Vec3 command_W(const ToolPose& tool, const std::optional<ToolPose>& device) {
+    if (rule_ == ToolCommand::tool) return tool.p_W;
+    if (device) last_W_ = device->p_W;
+    return last_W_;
+  }
+
+ private:
+  const ToolCommand rule_;
+  Vec3 last_W_ = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+};
+
+}  // namespace remote_touch

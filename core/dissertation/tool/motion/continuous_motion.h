@@ -1,0 +1,42 @@
+// The continuous rule: the look-ahead rule with steps that end before the first point would get into the
+// tool. So between two frames no point that is outside gets into a closed tool (clear_way.h).
+//
+// A frame can put its points anywhere, also into the tool or past it. A tool that points held is then moved
+// out, in the direction in which they pushed it, to the first position where no point is in it and a surface
+// is close on the side that held it. From there it moves back until the first point stops it. So it stays on
+// its side of the surface, however thin the surface is, if the surface moved by less than frame_reach_m. The
+// tool stays where it is if a surface on the other side is nearer, or if a surface that faces the tool is in
+// the way. Points that are still in the tool then are left as in the look-ahead rule, without certainty for
+// the points that are passed in that tick. Not in the dissertation.
+#pragma once
+
+#include "core/dissertation/tool/contact/continuous_contacts.h"
+#include "core/dissertation/tool/motion/look_ahead_motion.h"
+
+namespace remote_touch {
+
+class ContinuousMotion final : public ToolMotion {
+ public:
+  // tool: made with outer_field; it has to outlive this.
+  ContinuousMotion(const ToolParameters& parameters, const VoxelTool& tool);
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
+
+  // Returns the longest distance by which a held tool is moved out: frame_reach_m, or less if the budget of
+  // detections is small.
+  double frame_reach_m() const { return frame_reach_m_; }
+
+ private:
+  bool is_clear(const NearContacts& near, const ToolPose& pose) const;
+  bool is_supported(const NearContacts& near, const ToolPose& pose) const;
+  double leave(ToolPose& pose, int& detections);
+  double approach(ToolPose& pose, double distance_m, int& detections);
+  void come_from_outside(ToolPose& pose, ToolMotionReport& report);
+
+  ContinuousContacts near_;
+  const double step_m_, frame_reach_m_;
+  LookAheadMotion motion_;
+  Vec3 push_W_ =
+      Vec3::Zero();  // direction in which points held the tool at the end of the last tick, or zero
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,80 @@
+// A god-object with six degrees of freedom for comparison, after M. Ortega, S. Redon and S. Coquillart, "A
+// six degree-of-freedom god-object method for haptic display of rigid bodies with surface properties", IEEE
+// TVCG 13(3), 2007: the tool never gets into what it touches, and the hand feels what the contacts take away
+// from its motion. In each step
+//
+//   a_u = displacement from the tool to the device,
+//   a_c = argmin over a of 1/2 (a - a_u)^T M (a - a_u) subject to J a >= 0,
+//
+// with J of the contacts of the present pose only (Gauss' principle; quasi-static, so there is no velocity).
+// The tool moves along a_c until continuous collision detection finds the first new contact, which is a row
+// of J in the next step. Steps are made until the tool is at rest, or the budget is used up. Force and torque
+// on the hand are those of the constraints at the last pose, k M (a_c - a_u): none for the part of the motion
+// that no contact hinders, also where the tool has not caught up yet.
+//
+// The mesh of the scene. The source has two meshes at rest, and contacts of corners with faces and of edges
+// with edges. Here the faces of the scene are the small disks around its points (disk_contact.h): a point
+// against the surface of the tool, and the surface of the tool against a disk, with the normal of the disk.
+// Points are never passed (clear_way.h); for disks the time of contact is that of the linearised motion.
+// Edges of a scene are not known, and there is nothing where the sensor saw nothing.
+//
+// Contacts are kept ContinuousContacts::kGap_m away: while no frame has put points into the tool, a contact
+// within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do
+// not accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and
+// not of the tool, so that the spring is the same as with the other methods.
+//
+// New frames. In the source only the hand moves. Points that a frame puts into the tool are contacts of the
+// present pose like any others: J a >= 0 lets the tool go out but does not take it out, and if it waits at
+// the device, a_u = 0 and there is no force. So a surface that moves into a tool is not felt before the hand
+// moves, and it has passed the tool when it comes out at the other side. The outer side of a disk in the tool
+// is known as with the look-ahead rule: it is the side from which a surface was touched last.
+#pragma once
+
+#include "core/dissertation/tool/contact/continuous_contacts.h"
+#include "core/dissertation/tool/dynamics/even_coupling.h"
+#include "core/dissertation/tool/motion/tool_motion.h"
+
+namespace remote_touch {
+
+struct ToolGodObjectParameters {
+  int steps_per_tick = 60;
+  double max_step_m = 1e-3;
+  double rest_threshold_m = 1e-6;
+  double disk_radius_ratio = 0.75;
+  EvenCoupling coupling;
+};
+
+Parameters parameters(ToolGodObjectParameters& p);
+// Describes the first invalid combination of settings in one line; empty if there is none.
+std::string validate(const ToolGodObjectParameters& p);
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const ToolGodObjectParameters& p) {
+  return p.coupling.stiffness_N_per_m;
+}
+// Returns the spring, its limits and the way in which contacts are counted, for ToolRenderer.
+ToolParameters tool_parameters(const ToolGodObjectParameters& p);
+
+class GodObjectMotion final : public ToolMotion {
+ public:
+  // tool: made with outer_field; it has to outlive this.
+  GodObjectMotion(const ToolGodObjectParameters& parameters, const VoxelTool& tool);
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
+
+ private:
+  // Gathers the rows of J: the contacts that are touched.
+  void gather_touched(const NearContacts& near);
+  // Returns a_c in world axes, and reports the contacts that hold it.
+  Vector6 constrained(const Vector6& a_gu, const ToolPose& pose, ToolMotionReport& report);
+  // Returns the fraction of a_c up to the first new contact.
+  double free_fraction(const Vector6& a_c, const ToolPose& pose, const NearContacts& near);
+
+  const ToolGodObjectParameters p_;
+  const double reach_m_, max_step_m_;
+  ContinuousContacts near_;
+  MotionProgram program_;
+  std::vector<ToolContact> touched_;
+  double side_ = 1;        // side of the surface that held the tool last: +1 is the side of the sensor
+  bool settling_ = false;  // a frame came, and points are still in the tool
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,91 @@
+#include "core/dissertation/tool/motion/look_ahead_motion.h"
+
+#include <algorithm>
+
+#include "core/dissertation/tool/motion/progress.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kCollision_m = LookAheadProgram::kCollision_m;
+
+// Number of looks without progress that ends a tick. On noisy surfaces the tool could move to and fro by a
+// hair forever.
+constexpr int kLookAheadPatience = 8;
+
+ContactState state_of(const NearContacts& near) {
+  if (near.deepest_m > kCollision_m) return ContactState::entrenched;
+  return near.deepest_m > -kCollision_m ? ContactState::contact : ContactState::free;
+}
+
+Vec3 touched_direction(const NearContacts& near) {
+  Vec3 sum_T = Vec3::Zero();
+  for (const ToolContact& contact : near.contacts)
+    if (contact.depth_m > -kCollision_m) sum_T += contact.n_T;
+  return sum_T;
+}
+
+}  // namespace
+
+// Returns the step of a look, and reports the contacts that hold it. Points that a frame put deep into the
+// tool would need many steps of max_step_m. So a step may be as long as the deepest position is deep:
+// everything within that distance of it is tool, so the position stays in the tool or comes to its surface,
+// and is not jumped over. The next look finds anything that the step runs into beyond the look-ahead.
+Vector6 LookAheadMotion::step_of(const LookAheadProgram::Look& look, const ToolPose& pose,
+                                 ToolMotionReport& report) {
+  report.active_count = look.motion.active_count;
+  report.push_W = pose.q_WT * look.motion.push_T;
+  if (look.near.contacts.empty()) return look.a_g;
+  if (!settling_ && look.motion.side != 0) side_ = look.motion.side > 0 ? 1 : -1;
+  return capped(look.a_g, reach_m_, std::max(p_.max_step_m, settling_ ? look.near.deepest_m : 0));
+}
+
+ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, NearContactSource& source,
+                                       bool updated, int detections) {
+  ToolMotionReport report;
+  report.detections = detections;
+  const Vec3 start_W = pose.p_W;
+  bool same_state = true;
+  ContactState first = ContactState::free;
+  settling_ |= updated;
+  MotionProgress progress(p_.rest_threshold_m, kLookAheadPatience);
+  int stopped = 0;  // looks in a row after which the tool could not move
+  while (true) {
+    const Vector6 a_gu = displacement(pose, device);
+    const LookAheadProgram::Look look = program_.look(pose, a_gu, source, settling_ ? side_ : 0);
+    const NearContacts& near = look.near;
+    ++report.detections;
+    if (near.deepest_m <= kCollision_m) settling_ = false;
+    if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
+    if (report.detections == detections + 1) first = state_of(near);
+    same_state = same_state && state_of(near) == first;
+
+    report.touch_W = pose.q_WT * touched_direction(near);
+    const double remaining_m = max_point_displacement_m(a_gu, reach_m_);
+    if (near.contacts.empty() && remaining_m <= p_.look_ahead_m && source.clear_fraction(pose, a_gu) == 1) {
+      // No contact is as near as the device.
+      report.steps += pose == device ? 0 : 1;
+      pose = device;
+      if (same_state) report.first_step_m = pose.p_W - start_W;
+      report.active_count = 0, report.push_W.setZero();
+      report.at_rest = true;
+      return report;
+    }
+    const Vector6 a_g = step_of(look, pose, report);
+    progress.update(remaining_m);
+    report.at_rest = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
+                     (near.deepest_m <= kCollision_m && progress.has_ended()) ||
+                     stopped >= kLookAheadPatience;
+    if (report.at_rest || report.detections >= p_.detections_per_tick) break;
+    // The tool first leaves points that a frame put into it, so they do not stop it.
+    const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);
+    stopped = clear * max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
+    pose = clear == 1 && a_g == a_gu ? device : moved(pose, clear * a_g);
+    ++report.steps;
+    if (same_state) report.first_step_m = pose.p_W - start_W;  // includes the step that ends the first state
+  }
+  return report;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+// One look of the look-ahead rule: the contacts of a pose, and the motion that they allow.
+//
+// A contact that is farther away than the motion moves any point of the tool cannot limit that motion. So the
+// nearest contacts are queried first, and farther ones only if the motion is longer. The motion is still the
+// one that all contacts within the look-ahead allow. Not in the dissertation.
+#pragma once
+
+#include "core/dissertation/tool/contact/near_contacts.h"
+
+namespace remote_touch {
+
+class LookAheadProgram {
+ public:
+  // A contact deeper than this is a collision. A smaller depth is the error of a linear constraint on a
+  // curved surface.
+  static constexpr double kCollision_m = 1e-4;
+  static constexpr double kMinFirst_m = 1.5e-4;  // smallest distance that is queried
+
+  struct Look {
+    // Contacts nearer than kMinFirst_m, and farther ones within the distance queried. Empty: nothing is
+    // within the look-ahead.
+    NearContacts near;
+    // The admissible motion, world axes; if nothing is near, the motion towards the device by the look-ahead
+    // at most.
+    Vector6 a_g = Vector6::Zero();
+    ConstrainedMotion motion;  // the same in tool axes, and the contacts that hold it; zero if none is near
+  };
+
+  // reach_m: distance of the farthest point of the tool from its centre of mass, for the source of contacts.
+  LookAheadProgram(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
+      : look_ahead_m_(parameters.look_ahead_m),
+        reach_m_(reach_m),
+        // A contact can lie anywhere where the field is known.
+        contact_reach_m_(reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
+        program_(parameters, tool) {}
+
+  // Returns the motion out of a collision, (6.7), else towards the device, (6.4). a_gu: the motion to the
+  // device, world axes. side: as for near(). The list of contacts is valid until the next query of the
+  // source. If no contact is left out because there are too many, the motion does not depend on earlier
+  // looks, up to rounding.
+  Look look(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
+
+ private:
+  void solve(const ToolPose& pose, const Vector6& a_gu, Look& look);
+
+  const double look_ahead_m_, reach_m_, contact_reach_m_;
+  MotionProgram program_;
+  double first_m_ = kMinFirst_m;  // distance that the next look queries first
+};
+
+}  // namespace remote_touch

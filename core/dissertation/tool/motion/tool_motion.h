@@ -1,0 +1,48 @@
+// Moving the tool towards the device, one tick: the algorithm of 6.2.5 in three rules.
+#pragma once
+
+#include <memory>
+
+#include "core/dissertation/tool/contact/contact_list.h"
+#include "core/dissertation/tool/dynamics/motion_program.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/rendering/renderer.h"
+
+namespace remote_touch {
+
+struct ToolMotionReport {
+  int steps = 0;
+  int detections = 0;           // number of poses whose contacts were queried
+  bool at_rest = false;         // the tool has converged; else the budget of detections was used up
+  int active_count = 0;         // contacts that pushed in the last step
+  Vec3 push_W = Vec3::Zero();   // sum of their multipliers times normals: the direction of contact
+  Vec3 touch_W = Vec3::Zero();  // sum of the normals of all touched contacts, pushing or not
+  // Displacement from the start of the tick to the first change of state: the first step of (4.13).
+  Vec3 first_step_m = Vec3::Zero();
+  // Displacement, in world axes, that the constraints at the last pose would still allow. There is no force
+  // for it: the coupling begins where it ends. Zero for rules whose coupling begins at the tool.
+  Vector6 allowed_W = Vector6::Zero();
+};
+
+// Writes the report of a motion into the output. normal_W: contact normal, kept if the report has no
+// direction. pre: out.tool is there.
+void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out);
+
+// The interface of the rules.
+class ToolMotion {
+ public:
+  virtual ~ToolMotion() = default;
+  // prepared() returns the data that the rule reads of a frame besides the tiles of its points, made in
+  // advance as by Renderer::prepare(). Null if the rule reads no more. on_frame() sets the newest data for
+  // all later calls.
+  virtual std::shared_ptr<const FramePreparation> prepared(const PointCloud& /*cloud*/) const { return {}; }
+  virtual void on_frame(const std::shared_ptr<const FramePreparation>& /*prepared*/) {}
+  // Moves the pose towards the device. updated: a frame came in since the last tick. Does not allocate.
+  virtual ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts,
+                                bool updated) = 0;
+};
+
+// The tool has to outlive the result; for TouchRule::continuous it is made with outer_field.
+std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool);
+
+}  // namespace remote_touch

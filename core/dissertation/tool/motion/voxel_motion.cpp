@@ -1,0 +1,122 @@
+#include "core/dissertation/tool/motion/voxel_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/dissertation/tool/motion/progress.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Number of looks in contact without progress that ends a tick: contact and collision can alternate forever.
+constexpr int kVoxelPatience = 4;
+
+}  // namespace
+
+VoxelMotion::PoseQuery VoxelMotion::query(const ToolPose& pose, ContactList& contacts,
+                                          ToolMotionReport& report) const {
+  ++report.detections;
+  const VoxelContacts found = contacts.in_voxels(pose);
+  Vec3 touch_T = Vec3::Zero();
+  for (const ToolContact& contact : found.contacts) touch_T += contact.n_T;
+  report.touch_W = pose.q_WT * touch_T;
+  if (found.collided) return {ContactState::entrenched, found.contacts};
+  return {found.touched ? ContactState::contact : ContactState::free, found.contacts};
+}
+
+// Returns the desired step from here: (6.2) when free, (6.4) in contact, (6.7) in a collision.
+VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const Vector6& a_gu,
+                                                   const PoseQuery& here, ToolMotionReport& report) {
+  report.active_count = 0, report.push_W.setZero();
+  // The step is no longer than the budget of detections allows.
+  if (here.state == ContactState::free) return {capped(a_gu, reach_m_, p_.detections_per_tick * sub_step_m_)};
+  const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
+  ConstrainedMotion motion;
+  bool trapped = false;
+  if (here.state == ContactState::contact) {
+    motion = program_.solve(desired_T, here.contacts);
+  } else {
+    motion = program_.solve(Vector6::Zero(), here.contacts);
+    trapped = motion.elastic;
+    const double motion_m = max_point_displacement_m(motion.a_g, reach_m_);
+    if (trapped)  // a wedge: the tool stays between the points and follows the device
+      motion = program_.solve(desired_T, here.contacts);
+    else if (motion_m > 0)  // the length of (6.7) has no meaning
+      motion.a_g *= p_.max_step_m / motion_m;
+  }
+  report.active_count = motion.active_count;
+  report.push_W = pose.q_WT * motion.push_T;
+  return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped};
+}
+
+// Moves along a displacement in sub-steps, to its end or until the state changes; the change is found by
+// bisection. A change from contact to free does not count. If the budget is used up, the tool stays at the
+// last pose that was queried and accepted. Returns true if it came to the end.
+bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, const ToolPose* goal,
+                          ContactList& contacts, ToolMotionReport& report) const {
+  const ToolPose start = pose;
+  const double motion_m = max_point_displacement_m(a_g, reach_m_);
+  const int sub_steps = std::max(1, static_cast<int>(std::ceil(motion_m / sub_step_m_)));
+  const ContactState from = here.state;
+  const auto at = [&](double fraction) {
+    return fraction == 1 && goal ? *goal : moved(start, fraction * a_g);
+  };
+  double before = 0;  // fraction of the displacement up to which the state was the old one
+  for (int i = 1; i <= sub_steps; ++i) {
+    if (spent(report)) return false;
+    const double fraction = i == sub_steps ? 1 : static_cast<double>(i) / sub_steps;
+    PoseQuery there = query(at(fraction), contacts, report);
+    if (there.state == from || (from == ContactState::contact && there.state == ContactState::free)) {
+      pose = at(fraction), here = there, before = fraction;
+      continue;
+    }
+    // The end `after` is used: the touching one on the way into contact, 6.2.5, and the one outside on the
+    // way out of a collision. One detection is kept for it, in case the last query was at the other end.
+    double after = fraction;
+    bool seen = true;  // the last query was at `after`
+    const double accuracy = from == ContactState::entrenched ? p_.exit_accuracy_m : p_.free_accuracy_m;
+    while ((after - before) * motion_m > accuracy && report.detections + 1 < p_.detections_per_tick) {
+      const double middle = 0.5 * (before + after);
+      const PoseQuery between = query(at(middle), contacts, report);
+      seen = between.state != from;
+      (seen ? after : before) = middle;
+      if (seen) there = between;
+    }
+    pose = at(after);
+    here = seen ? there : query(pose, contacts, report);  // lists are those of the last pose queried
+    return false;
+  }
+  return true;
+}
+
+ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool) {
+  ToolMotionReport report;
+  const Vec3 start_W = pose.p_W;
+  PoseQuery here = query(pose, contacts, report);
+  const ContactState first = here.state;
+  bool same_state = true;
+  MotionProgress progress(p_.rest_threshold_m, kVoxelPatience);
+  while (true) {
+    const Vector6 a_gu = displacement(pose, device);
+    const DesiredStep desired = desired_step(pose, a_gu, here, report);
+    const double left = max_point_displacement_m(a_gu, reach_m_);
+    if (here.state == ContactState::contact) progress.update(left);
+    const bool may_rest = here.state != ContactState::entrenched || desired.trapped;
+    report.at_rest = (may_rest && max_point_displacement_m(desired.a_g, reach_m_) <= p_.rest_threshold_m) ||
+                     (here.state == ContactState::contact && progress.has_ended());
+    if (here.state == ContactState::free && left <= p_.rest_threshold_m) pose = device;
+    if (report.at_rest || spent(report)) break;
+    const bool arrives = here.state == ContactState::free && desired.a_g == a_gu;
+    report.at_rest =
+        advance(pose, here, desired.a_g, arrives ? &device : nullptr, contacts, report) && arrives;
+    ++report.steps;
+    // The step that ends the first state belongs to it.
+    if (same_state) report.first_step_m = pose.p_W - start_W;
+    same_state = same_state && here.state == first;
+    if (report.at_rest) break;
+  }
+  return report;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,54 @@
+// Checks whether a mesh encloses a solid, so that inside and outside are defined.
+#pragma once
+
+#include <string>
+
+#include "core/dissertation/tool/shape/triangle_mesh.h"
+
+namespace remote_touch {
+
+struct MeshCheck {
+  int vertices = 0;
+  int triangles = 0;
+  int parts = 0;                 // sets of triangles connected by edges
+  int boundary_edges = 0;        // edges of one triangle
+  int non_manifold_edges = 0;    // edges of three or more triangles
+  int inconsistent_edges = 0;    // edges of two triangles that run along them in the same direction
+  int degenerate_triangles = 0;  // triangles with a corner twice, or without area
+  int bad_vertices = 0;          // vertices that are not finite
+  int bad_indices = 0;           // triangles with a corner that is not a vertex
+  double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
+
+  bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }
+  // True if every edge belongs to two triangles, in opposite directions. Equal vertices must have been
+  // merged.
+  bool closed() const {
+    return readable() && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
+  }
+  bool inverted() const { return closed() && volume_m3 < 0; }
+};
+
+MeshCheck check_mesh(const TriangleMesh& mesh);
+
+// "not closed: 81 boundary edges, 6 non-manifold edges (5 parts, 1795 triangles)", "closed (1 part, ...)".
+std::string text(const MeshCheck& check);
+
+// An edge of the triangles that share it: sorted by low, high, then triangle.
+struct MeshEdge {
+  int low, high;  // vertices
+  int triangle;
+  bool forward;  // the triangle runs from low to high
+};
+std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh);
+
+// Returns the number of the part of each triangle. Parts are counted from 0 in the order of their first
+// triangles.
+std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, int& count);
+
+// Returns the sum of the signed volumes of the tetrahedra from a point to all triangles.
+double signed_volume(const TriangleMesh& mesh);
+
+// True if a corner occurs twice, or the area is negligible against the length of the edges.
+bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+// The distance field of a tool, lowered so that it is nowhere positive in the tool.
+//
+// The trilinear field between the nodes is not the distance: over sharp edges, and in parts thinner than a
+// voxel, positions inside the tool have positive values. Within a cell, a face or an edge of the grid a
+// trilinear field is harmonic, so on the solid part of a cell it is largest on the surface of the mesh, or at
+// a node inside, where it is negative. So it is enough to lower the nodes of each cell by the largest value
+// that the field takes on the surface in that cell: nothing where the surface is flat, part of a voxel at its
+// edges.
+#pragma once
+
+#include <vector>
+
+#include "core/dissertation/tool/shape/distance_field.h"
+#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+
+namespace remote_touch {
+
+// distance_m: signed distance of every node. The result is nowhere above it. The trilinear field of the
+// result is nowhere above 0 in or on a closed mesh, except for a nanometre of rounding. pre: the grid
+// encloses the mesh.
+std::vector<float> outer_field(const TriangleMesh& mesh, const VoxelGrid& grid,
+                               const std::vector<float>& distance_m);
+
+// Returns an upper bound of the length of the trilinear field's gradient where the field is within_m or less.
+double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m,
+                 double within_m = kExactField_m);
+
+}  // namespace remote_touch

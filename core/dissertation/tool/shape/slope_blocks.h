@@ -1,0 +1,34 @@
+// Bounds of the slope of a trilinear field around a position: the range of its gradient in blocks of cells.
+// So a point that slides along a flat face of a tool is known to stay outside after one look.
+#pragma once
+
+#include <vector>
+
+#include "core/dissertation/tool/shape/voxel_tool.h"
+
+namespace remote_touch {
+
+class SlopeBlocks {
+ public:
+  static constexpr int kSize = 4;    // cells along a block
+  static constexpr int kAround = 2;  // cells around it that its range covers, too
+
+  SlopeBlocks(const VoxelGrid& grid, const std::vector<float>& distance_m);
+
+  // Returns a lower bound of the change of the field anywhere on the path from `at` by `along` (both in cells
+  // from the grid's origin). Minus infinity if the path is longer than kAround cells along an axis, or starts
+  // outside.
+  double min_change_m(const Vec3& at, const Vec3& along) const;
+
+ private:
+  struct Range {
+    float low[3], high[3];  // range of the change per cell along each axis, m
+  };
+  Range range_around(const VoxelGrid& grid, const std::vector<float>& distance_m,
+                     const std::array<int, 3>& block) const;
+
+  std::array<int, 3> cells_, blocks_;
+  std::vector<Range> ranges_;
+};
+
+}  // namespace remote_touch

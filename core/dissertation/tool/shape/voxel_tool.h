@@ -1,0 +1,86 @@
+// A rigid tool as the collision detection sees it, 6.2.2: voxels of three values, and the distance field of
+// its mesh. The tool frame T has its origin in the centre of mass and the axes of the mesh; metres.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/dissertation/tool/shape/mesh_check.h"
+#include "core/dissertation/tool/shape/mesh_repair.h"
+#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// A point in the shell is in contact with the tool, one in the interior collides with it.
+enum class Voxel : std::int8_t { free = 0, shell = 1, interior = 2 };
+
+// Cell (i, j, k) spans origin + size (i .. i + 1, j .. j + 1, k .. k + 1). Cells and nodes are stored with i
+// running fastest; there is one node more than cells along every axis.
+struct VoxelGrid {
+  Vec3 origin_T = Vec3::Zero();
+  double size_m = 5e-4;
+  std::array<int, 3> cells{0, 0, 0};
+
+  std::size_t cell_count() const { return std::size_t(cells[0]) * cells[1] * cells[2]; }
+  std::size_t node_count() const {
+    return (std::size_t(cells[0]) + 1) * (std::size_t(cells[1]) + 1) * (std::size_t(cells[2]) + 1);
+  }
+};
+
+struct VoxelTool {
+  TriangleMesh mesh;              // tool frame; closed, except for parts that a repair left open
+  VoxelGrid grid;                 // encloses the mesh and kFieldMargin_m around it
+  std::vector<Voxel> voxels;      // value of every cell, see voxels_of()
+  std::vector<float> distance_m;  // distance to the mesh at every node, positive outside
+  double volume_m3 = 0;
+  // Inertia about the centre of mass in tool axes, of uniform density, divided by the mass: the lower right
+  // block of M of (6.4) for a tool of 1 kg.
+  Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Identity();
+  double reach_m = 0;  // largest distance of a vertex from the origin
+};
+
+// Margin of the distance field around the mesh.
+inline constexpr double kFieldMargin_m = 6e-3;
+
+struct FieldSample {
+  double distance_m;  // positive outside the tool
+  Vec3 gradient_T;    // gradient of the trilinear field, out of the tool; about 1 long, not normalised
+};
+
+// Returns the field between its nodes, trilinear. Outside the grid it is the distance to the grid's box plus
+// the field at the nearest position of the box, with the gradient towards p. It is at most a voxel less than
+// the true distance; beside the edges and corners of the box it can be millimetres more.
+FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
+
+struct VoxelToolSettings {
+  double voxel_m = 5e-4;
+  double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
+  bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
+  // Lowers distance_m as outer_field.h describes: no position in a closed tool is outside. The voxels stay
+  // the same.
+  bool outer_field = false;
+};
+
+// The changes that were made to a mesh, and how well voxels fit it.
+struct ToolReport {
+  MeshCheck check;                      // check of the mesh as given
+  Vec3 sides_m = Vec3::Zero();          // sides of its box, after scaling
+  bool inverted = false;                // all faces pointed inwards, and were flipped
+  MeshRepair repaired;                  // all zero without repair
+  bool by_winding_number = false;       // repaired, and still open
+  std::array<std::size_t, 3> voxels{};  // free, shell, interior
+  double thin_fraction = 0;             // fraction of the surface farther than two voxels from all interior
+};
+std::string text(const ToolReport& report);
+
+// Scales the mesh, moves it with its centre of mass into the origin, and makes voxels and a distance field of
+// it. name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair),
+// without volume, with vertices that are not finite, with corners that are no vertices, too fine for
+// kMaxCells, or thinner than a voxel everywhere.
+inline constexpr double kMaxCells = 150e6;
+VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
+                          const std::string& name = "mesh");
+
+}  // namespace remote_touch

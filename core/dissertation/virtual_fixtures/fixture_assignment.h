@@ -1,0 +1,60 @@
+// Assigns r_f and k_s to the points of a frame, (5.2) and (5.3).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_switches.h"
+#include "core/dissertation/virtual_fixtures/guidance_target.h"
+#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/geometry/point_cloud.h"
+
+namespace remote_touch {
+
+class FixtureAssignment {
+ public:
+  FixtureAssignment() = default;
+  // switches: forbidden rules that are off are skipped; null: all are on.
+  explicit FixtureAssignment(std::vector<std::unique_ptr<const FixtureRule>> rules,
+                             std::shared_ptr<const FixtureSwitches> switches = nullptr)
+      : rules_(std::move(rules)), switches_(std::move(switches)) {}
+
+  // Throws InputError if the cloud lacks data that a rule needs, even if that rule is off or has strength 0.
+  void require(const PointCloud& cloud) const;
+
+  // Fills the columns of the cloud. They start with the cloud's own values; without a column r_f is 0 and k_s
+  // the renderer's own. Then each forbidden rule in turn moves the values of its points towards its own, by
+  // its weight for the point times its strength at captured_s, so a later rule overrides an earlier one. A
+  // point without its own stiffness takes the rule's at once. Without rules nothing is changed. Throws
+  // InputError as FixtureRule::weights().
+  void assign(PointCloud& cloud, double captured_s) const { assign(cloud, captured_s, off()); }
+  // The same with these forbidden rules off, as off() returned them earlier.
+  void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
+  std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
+
+  // Returns the work of assign() as numbers that an OpenCL device can apply. Empty unless there are rules and
+  // every rule is a HueRange in the role forbidden.
+  std::optional<HueSteps> hue_steps(double captured_s, std::uint64_t off) const;
+
+  // Returns the targets of all guidance rules in their order, each with the strength of its rule. A target of
+  // strength 0 is not visible. Throws as assign().
+  std::vector<GuidanceTarget> targets(const PointCloud& cloud, double captured_s) const;
+
+  // Returns the indices of the rules that select no point of the cloud: all their weights are 0. Throws as
+  // assign().
+  std::vector<std::size_t> without_points(const PointCloud& cloud) const;
+
+  bool empty() const { return rules_.empty(); }
+  // True if two frames of the same cloud can get different values.
+  bool changes_with_time() const;
+
+ private:
+  std::vector<std::unique_ptr<const FixtureRule>> rules_;
+  std::shared_ptr<const FixtureSwitches> switches_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,33 @@
+// The target of a guidance virtual fixture: the mean position of the points of a class, and the plane that
+// they lie in, 7.3.2.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/point_cloud.h"
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// The target of one fixture in one frame; world frame.
+struct GuidanceTarget {
+  std::size_t points = 0;      // number of points that the rule selects; 0: the frame shows no target
+  Vec3 mean_W = Vec3::Zero();  // weighted mean of their positions
+  // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for fewer
+  // than three points, or if they are no plane: their standard deviation along the normal is above kFlat
+  // times that along the plane's shorter axis, or this is at most kLine times that along the longer axis.
+  Vec3 normal_W = Vec3::Zero();
+  double strength = 1;  // strength of its rule when the frame was captured, 0 to 1
+  static constexpr double kFlat = 0.25, kLine = 1e-3;
+
+  bool is_visible() const { return points > 0; }
+  bool is_flat() const { return !normal_W.isZero(0); }
+};
+
+// weights: weight of each point, 0 to 1, as FixtureRule::weights() returns it. Points that are not finite are
+// ignored. The sensor is at the camera of the cloud's image, else at the origin.
+GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
+
+}  // namespace remote_touch

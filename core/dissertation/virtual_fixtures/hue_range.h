@@ -1,0 +1,43 @@
+// The points of a colour, 7.3.2: objects to protect or to guide to are marked by their hue.
+#pragma once
+
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+
+namespace remote_touch {
+
+class HueRange final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    double from_deg = 340;
+    double to_deg = 20;
+    double min_saturation = 0.3;
+    double min_lightness = 0.1;
+    double max_lightness = 0.9;
+  };
+  explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
+  // Throws InputError if the cloud has points but no colours.
+  void require(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
+  const Settings& settings() const { return settings_; }
+
+ private:
+  bool holds(std::uint32_t rgb) const;
+
+  const Settings settings_;
+};
+
+// A rule of forbidden regions at one moment. Such rules, applied in order, fill the columns of r_f and k_s as
+// FixtureAssignment::assign() does.
+struct HueStep {
+  HueRange::Settings range;
+  double strength = 1;
+};
+using HueSteps = std::vector<HueStep>;
+
+Parameters parameters(HueRange::Settings& s);
+std::string validate(const HueRange::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,46 @@
+// Agreement of the bounds of 4.4 with the simulated lifts.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runners/evaluation/figures/lift_measurements.h"
+
+namespace remote_touch {
+
+// Counts of the updates in which (4.17) agrees, or does not, with the outcome of the update. (4.18) is the
+// same, rewritten for a cloud that moves along its normal.
+struct Criterion {
+  double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
+  double agreement() const {
+    return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
+  }
+};
+// Counts the updates with acceleration, until the proxy is below the plane, in lifts with noise in [low,
+// high), r_c.
+Criterion criterion_of(const LiftMap& lifts, double low, double high);
+// The criterion for several ranges of noise.
+Table criterion_table(const LiftMap& lifts);
+
+// A bound as a function of the noise, m/s^2. It keeps a reference to the MeasuredNoise it was made from.
+struct AccelerationBound {
+  std::string name, meaning;
+  std::function<double(double noise_m)> at;
+  double max_noise_m = 1;  // drawn up to here: fits have no meaning beyond
+};
+std::vector<AccelerationBound> bounds(const MeasuredNoise& noise);
+
+// Agreement over the cells with noise up to a limit (r_c).
+struct Agreement {
+  int cells = 0, agree = 0;
+  double safe_popped = 0, unsafe_survived = 0;  // fractions of the bound's safe and unsafe cells
+  double fraction() const { return static_cast<double>(agree) / cells; }
+};
+Agreement agreement_of(const AccelerationBound& bound, const Table& map, double max_noise = 4);
+Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table& map);
+
+// Predicted and observed survival, by ranges of both noise and prediction.
+Table calibration_table(const MeasuredNoise& noise, const Table& map);
+
+}  // namespace remote_touch

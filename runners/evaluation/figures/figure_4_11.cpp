@@ -1,0 +1,103 @@
+// Fig 4.11: the HIP moves above, below and above a flat grid.
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/measures/contact_point.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kShell_m = 1e-5;
+
+// First tick in which the HIP is below the surface.
+std::size_t jump_tick(const Trace& trace) {
+  std::size_t i = 0;
+  while (i + 1 < trace.length() && trace.hip_position_m[i].y() >= 0) ++i;
+  return i;
+}
+
+Table heights(const Trace& trace) {
+  std::vector<double> time, hip, proxy;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    time.push_back(trace.time_s[i]);
+    hip.push_back(trace.hip_position_m[i].y()), proxy.push_back(trace.proxy_position_m[i].y());
+  }
+  Table table{"heights", "height of HIP and proxy"};
+  table.add("time", "s", "simulated time", time);
+  table.add("hip_y", "m", "height of the HIP", hip);
+  table.add("proxy_y", "m", "height of the proxy's centre", proxy);
+  return table;
+}
+
+// The contact point while the HIP presses, from the first tick after the jump.
+Table contact_heights(const Trace& trace) {
+  std::vector<double> time, height;
+  for (std::size_t i = jump_tick(trace) + 1; i < trace.length(); ++i) {
+    if (!pressing(trace, i, kContactRadius_m)) continue;
+    time.push_back(trace.time_s[i]);
+    height.push_back(contact_point(trace, i, kContactRadius_m).y());
+  }
+  Table table{"contact", "height of the contact point"};
+  table.add("time", "s", "simulated time", time);
+  table.add("contact_y", "m", "height of the contact point", height);
+  return table;
+}
+
+double peak_to_peak(const Table& table) {
+  const auto& values = std::get<std::vector<double>>(table.columns[1].values);
+  if (values.empty()) return std::nan("");
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+// Number of steps from the jump until the proxy is within the contact shell, in a run with one step per tick.
+double steps_to_contact(const Trace& single) {
+  const std::size_t jump = jump_tick(single);
+  std::size_t i = jump;
+  while (i < single.length() && std::abs(single.nearest_distance_m[i] - kContactRadius_m) > kShell_m) ++i;
+  return static_cast<double>(i - jump + 1);
+}
+
+}  // namespace
+
+Figure figure_4_11(const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig4.11"));
+  // A budget of one step per tick shows, in the tick of the jump, where the first step leads.
+  const Trace single = context.run(Experiment::load("fig4.11", {"renderer.steps_per_tick=1"}));
+  const std::size_t jump = jump_tick(trace);
+
+  Figure figure{
+      "4.11",
+      "Flat point cloud",
+      "A flat 100 x 100 grid. The HIP moves at 2 r_c per second along the plane, for 1 s above it, 3 s "
+      "below and 1 s above. Bottom: the contact point sinks a little between the points.",
+      {heights(trace), contact_heights(trace)}};
+  figure.panels = {{"Height of HIP and proxy",
+                    "time (s)",
+                    "y (m)",
+                    false,
+                    {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
+                     {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}},
+                   {"Height of the contact point",
+                    "time (s)",
+                    "y (m)",
+                    false,
+                    {{"contact", "time", "contact_y", CurveStyle::line, ""}},
+                    {},
+                    {}}};
+  figure.claims = {
+      claim_between("4.11", "ripple of the contact point, peak to peak", "5e-5",
+                    peak_to_peak(figure.tables[1]), 4.0e-5, 5.7e-5, "m"),
+      claim_at_most("4.11", "distance of the proxy from contact at the end of the tick of the HIP's jump",
+                    "0", std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
+      claim_at_most("4.11", "the same after a single proxy step", "1 - 2 steps",
+                    std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
+      claim_between("4.11", "proxy steps from the HIP's jump until contact", "1 - 2",
+                    steps_to_contact(single), 1, 2, "steps"),
+  };
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,158 @@
+// Fig 4.14: sharp corners, against what a ball of radius r_c can reach.
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/measures/contact_point.h"
+#include "analysis/theory/ball_closing.h"
+#include "core/kernels/isa.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kSampling_m = 1e-5;  // sampling of the exact profile; its corners are multiples of it
+
+// The closing of the true profile, on samples from x = low.
+struct Oracle {
+  double low;
+  std::vector<double> heights, closing;
+
+  Oracle(const Scenario& scenario, double from, double to) : low(from) {
+    for (int i = 0; from + i * kSampling_m <= to; ++i)
+      heights.push_back(scenario.surface_height(from + i * kSampling_m, 0, 0));
+    closing = ball_closing(heights, kSampling_m, kContactRadius_m);
+  }
+  double at(double x) const {
+    const double place = (x - low) / kSampling_m;
+    const auto i = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(closing.size() - 2)));
+    return closing[i] + (place - static_cast<double>(i)) * (closing[i + 1] - closing[i]);
+  }
+};
+
+struct Contact {
+  std::vector<double> x, y, error, shell;
+};
+
+Contact contacts(const Trace& trace, const Oracle& oracle, double from, double to) {
+  Contact contact;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const Vec3 p = contact_point(trace, i, kContactRadius_m);
+    if (!pressing(trace, i, kContactRadius_m) || p.x() < from || p.x() > to) continue;
+    contact.x.push_back(p.x()), contact.y.push_back(p.y());
+    contact.error.push_back(p.y() - oracle.at(p.x()));
+    contact.shell.push_back(trace.nearest_distance_m[i] - kContactRadius_m);
+  }
+  return contact;
+}
+
+double max_magnitude(const std::vector<double>& values) {
+  double max = values.empty() ? std::nan("") : 0;
+  for (const double v : values) max = std::max(max, std::abs(v));
+  return max;
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+Table contact_table(const Contact& contact) {
+  Table table{"contact", "contact point"};
+  table.add("x", "m", "position of the contact point", contact.x);
+  table.add("y", "m", "height of the contact point", contact.y);
+  table.add("error", "m", "height over the exact closing with a ball of r_c", contact.error);
+  table.add("shell", "m", "distance of the nearest point less r_c", contact.shell);
+  return table;
+}
+
+Table profile_table(const Oracle& oracle) {
+  Table table{"profile", "exact profile and its closing"};
+  std::vector<double> x, height, closing;
+  for (std::size_t i = 0; i < oracle.heights.size(); i += 20) {
+    x.push_back(oracle.low + static_cast<double>(i) * kSampling_m);
+    height.push_back(oracle.heights[i]), closing.push_back(oracle.closing[i]);
+  }
+  table.add("x", "m", "position", x);
+  table.add("surface_y", "m", "true height", height);
+  table.add("closing_y", "m", "height that a ball of r_c can reach", closing);
+  return table;
+}
+
+Table surface_table(const PointCloud& cloud) {
+  Table table{"surface", "the points"};
+  table.add("x", "m", "x of the point", std::vector<double>(cloud.x.begin(), cloud.x.end()));
+  table.add("y", "m", "height, y", std::vector<double>(cloud.y.begin(), cloud.y.end()));
+  table.add("z", "m", "z of the point", std::vector<double>(cloud.z.begin(), cloud.z.end()));
+  return table;
+}
+
+// The points of the row that the path lies over, and where the proxy of radius r_c sits in the last full
+// valley.
+std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace, double valley_x) {
+  const PointCloud cloud = scenario.cloud(0);
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (std::abs(cloud.z[i] - trace.hip_position_m[0].z()) < 1e-6)
+      x.push_back(cloud.x[i]), y.push_back(cloud.y[i]);
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (std::abs(trace.proxy_position_m[i].x() - valley_x) <
+        std::abs(trace.proxy_position_m[nearest].x() - valley_x))
+      nearest = i;
+  Table points{"points", "one row of the grid"}, ball{"ball", "the proxy in a valley"};
+  points.add("x", "m", "position", x), points.add("y", "m", "height", y);
+  ball.add("x", "m", "position", {trace.proxy_position_m[nearest].x()}),
+      ball.add("y", "m", "height", {trace.proxy_position_m[nearest].y()});
+  return {points, ball};
+}
+
+}  // namespace
+
+Figure figure_4_14(const FigureContext& context) {
+  const Experiment experiment = Experiment::load("fig4.14");
+  const auto scenario = experiment.build_scenario(kernels_for(Isa::x86_64));
+  const Trace trace = context.run(experiment);
+  constexpr double kFrom = -0.2, kTo = 0.2;  // the ends of the grid have no neighbours on one side
+  const Oracle oracle(*scenario, -0.22, 0.22);
+  const Contact contact = contacts(trace, oracle, kFrom, kTo);
+
+  Figure figure{"4.14",
+                "Sharp corners",
+                "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
+                "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
+                "with the points and a circle of radius r_c. Convex corners are rendered sharp; in a valley "
+                "the proxy rests on both flanks.",
+                {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))}};
+  for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
+  const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
+  const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
+  figure.panels = {{"The point cloud, x, y and z equally scaled",
+                    "x (m)",
+                    "z (m)",
+                    false,
+                    {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}},
+                   {"The whole wave",
+                    "x (m)",
+                    "y (m)",
+                    false,
+                    {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}},
+                   {"A part of it",
+                    "x (m)",
+                    "y (m)",
+                    true,
+                    {points, line, {"ball", "x", "y", CurveStyle::circle, "r_c", kContactRadius_m}},
+                    std::pair(0.095, 0.175),
+                    std::pair(-0.02, 0.02)}};
+  figure.claims = {
+      claim_at_most("4.14", "contact point against the exact closing with a ball of r_c, rms", "very well",
+                    rms(contact.error), 1e-4, "m"),
+      claim_at_most("4.14", "the same, largest", "-", max_magnitude(contact.error), 5e-4, "m"),
+      claim_at_most("4.14", "distance of the nearest point to the proxy less r_c, largest magnitude", "1e-5",
+                    max_magnitude(contact.shell), 2e-5, "m"),
+  };
+  return figure;
+}
+
+}  // namespace remote_touch

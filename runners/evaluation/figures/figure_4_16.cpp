@@ -1,0 +1,197 @@
+// Fig 4.16: the proxy over a ramp and a box seen by a depth camera, simulated and recorded.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/measures/contact_point.h"
+#include "analysis/measures/measures.h"
+#include "core/kernels/isa.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Positions along one axis and heights along another, of HIP and proxy, and the force.
+Table path_table(const std::string& name, const Trace& trace, int along, int up) {
+  std::vector<double> proxy_along, proxy_up, hip_along, hip_up, force;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    proxy_along.push_back(trace.proxy_position_m[i][along]),
+        proxy_up.push_back(trace.proxy_position_m[i][up]);
+    hip_along.push_back(trace.hip_position_m[i][along]), hip_up.push_back(trace.hip_position_m[i][up]);
+    force.push_back(trace.force_N[i].norm());
+  }
+  Table table{name, "paths of HIP and proxy, and the force"};
+  table.add("time", "s", "simulated time", trace.time_s);
+  table.add("proxy_along", "m", "proxy along the scan", proxy_along);
+  table.add("proxy_up", "m", "proxy across the scan", proxy_up);
+  table.add("hip_along", "m", "HIP along the scan", hip_along);
+  table.add("hip_up", "m", "HIP across the scan", hip_up);
+  table.add("force", "N", "magnitude of the force", force);
+  table.add("signed_distance", "m", "distance of the proxy's centre to the true surface",
+            trace.signed_distance_m);
+  return table;
+}
+
+// The first frame's points within a slice around the scan.
+template <class InSlice>
+Table slice_table(const std::string& name, const PointCloud& cloud, int along, int up, InSlice&& in_slice) {
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    if (p.allFinite() && in_slice(p)) x.push_back(p[along]), y.push_back(p[up]);
+  }
+  Table table{name, "points of the first frame near the scan"};
+  table.add("along", "m", "along the scan", x), table.add("up", "m", "across the scan", y);
+  return table;
+}
+
+// Share of the ticks in which the HIP is held back whose truth is known: of the others nothing is claimed.
+double known_fraction(const Trace& trace) {
+  std::size_t pressed = 0, known = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (!pressing(trace, i, kContactRadius_m)) continue;
+    ++pressed;
+    known += std::isnan(trace.signed_distance_m[i]) ? 0 : 1;
+  }
+  return pressed == 0 ? std::nan("") : static_cast<double>(known) / static_cast<double>(pressed);
+}
+
+void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
+  const std::string prefix = where.empty() ? "" : where + ": ";
+  const auto none = [&](const std::string& what, double fraction) {
+    figure.claims.push_back(claim_at_most(figure.name, prefix + what, "none", fraction, 0, "fraction"));
+  };
+  none("ticks with the proxy on the wrong side of the surface", wrong_side_fraction(trace));
+  none("ticks with a number that is not finite", non_finite_fraction(trace));
+  none("ticks in which the HIP was held back without force", no_force_fraction(trace, kContactRadius_m));
+  figure.claims.push_back(
+      set_up(claim_at_least(figure.name, prefix + "touching ticks in which the true side is known", "-",
+                            known_fraction(trace), 0.7, "fraction")));
+}
+
+// Limits around a path, so that far points do not shrink it.
+std::pair<double, double> around(const Trace& trace, int axis) {
+  double low = trace.hip_position_m[0][axis], high = low;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    low = std::min({low, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
+    high = std::max({high, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
+  }
+  return {low - 0.03, high + 0.03};
+}
+
+void add_panels(Figure& figure, const std::string& title, const std::string& table, const std::string& slice,
+                const std::string& along, const std::string& up) {
+  figure.panels.push_back({title,
+                           along,
+                           up,
+                           true,
+                           {{slice, "along", "up", CurveStyle::dots, "points, first frame"},
+                            {table, "hip_along", "hip_up", CurveStyle::dashed, "HIP"},
+                            {table, "proxy_along", "proxy_up", CurveStyle::line, "proxy"}}});
+  figure.panels.push_back(
+      {"Force", along, "force (N)", false, {{table, "hip_along", "force", CurveStyle::line, ""}}});
+}
+
+}  // namespace
+
+Figure figure_4_16(const FigureContext& context) {
+  const Experiment experiment = Experiment::load("fig4.16");
+  const Trace trace = context.run(experiment);
+  const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
+  Figure figure{
+      "4.16",
+      "Ramp and box, simulated depth camera",
+      "A simulated depth camera (quantised, noisy, with holes at depth edges) looks at a ramp and a box "
+      "on a table; the HIP moves along z, 1 cm below the true surface, and lifts off over the two steps. "
+      "Top: paths of HIP and proxy. Bottom: force.",
+      {path_table("path", trace, 2, 1),
+       slice_table("slice", cloud, 2, 1, [](const Vec3& p) { return std::abs(p.x()) < 0.0015; })}};
+  add_panels(figure, "Paths over the table", "path", "slice", "z (m)", "y (m)");
+  figure.panels[0].x_range = figure.panels[1].x_range = around(trace, 2);
+  add_claims(figure, "", trace);
+  // A tick that has two steps and no more: in how many of them are they enough?
+  const Trace two = context.run(Experiment::load("fig4.16", {"renderer.steps_per_tick=2"}));
+  figure.claims.push_back(claim_differs("4.16", "ticks that converge (4.8) in two proxy steps",
+                                        "typically in 1 - 2 (4.3.4)", 1 - unconverged_fraction(two), 0.3, 0.5,
+                                        "fraction"));
+  return figure;
+}
+
+namespace {
+
+// The HIP scans over a cloud at rest.
+void add_scan(Figure& figure, const FigureContext& context, const char* name, const std::string& table,
+              const std::string& title) {
+  const Experiment experiment = Experiment::load(name);
+  const Trace trace = context.run(experiment);
+  const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
+  const Vec3 middle = trace.hip_position_m[trace.length() / 2];
+  const double slope = middle.y() / middle.z();  // slope of the plane through camera and scanned row
+  figure.tables.push_back(path_table(table, trace, 0, 2));
+  figure.tables.push_back(slice_table(
+      table + "_slice", cloud, 0, 2, [&](const Vec3& p) { return std::abs(p.y() - slope * p.z()) < 0.001; }));
+  add_panels(figure, title, table, table + "_slice", "x (m)", "z (m)");
+  figure.panels.push_back({"Proxy to measured surface",
+                           "x (m)",
+                           "distance (m)",
+                           false,
+                           {{table, "hip_along", "signed_distance", CurveStyle::line, ""}},
+                           {},
+                           std::pair(-0.002, 0.03)});
+  const std::size_t first = figure.panels.size() - 3;
+  for (std::size_t i = first; i < figure.panels.size(); ++i) figure.panels[i].x_range = around(trace, 0);
+  figure.panels[first].y_range = around(trace, 2);
+  figure.panels[first].equal_aspect = false;  // three columns leave no room for it
+  add_claims(figure, title, trace);
+}
+
+// Places the panels from `first` on below each other in a column.
+void place_in_column(Figure& figure, std::size_t first, int column) {
+  for (std::size_t i = first; i < figure.panels.size(); ++i)
+    figure.panels[i].place = std::pair(static_cast<double>(i - first), static_cast<double>(column));
+}
+
+// The HIP presses at one pixel while the camera moves.
+void add_moving(Figure& figure, const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig4.16-moving"));
+  figure.tables.push_back(path_table("moving", trace, 0, 2));
+  figure.panels.push_back({"organ model, moving camera",
+                           "time (s)",
+                           "z (m)",
+                           false,
+                           {{"moving", "time", "hip_up", CurveStyle::dashed, "HIP"},
+                            {"moving", "time", "proxy_up", CurveStyle::line, "proxy"}}});
+  figure.panels.push_back(
+      {"Force", "time (s)", "force (N)", false, {{"moving", "time", "force", CurveStyle::line, ""}}});
+  figure.panels.push_back({"Proxy to measured surface",
+                           "time (s)",
+                           "distance (m)",
+                           false,
+                           {{"moving", "time", "signed_distance", CurveStyle::line, ""}}});
+  add_claims(figure, "organ model, moving camera", trace);
+}
+
+}  // namespace
+
+Figure figure_4_16_recorded(const FigureContext& context) {
+  Figure figure{"4.16-recorded", "Recorded depth images and clouds",
+                "The experiment of Fig 4.16 on recordings; x to the right, z away from the camera. "
+                "Scans: the HIP follows an image row, 1 cm behind the surface of the first frame, and "
+                "lifts off over holes and depth edges. The truth is the measurement itself: a plane "
+                "through the pixels around the proxy. The proxy also slides across the row, along y, so "
+                "in this projection it can lie beside the row's points. Moving camera: the HIP keeps 1 "
+                "cm behind the newest frame's surface at one pixel, and lifts off while that pixel sees "
+                "a hole or an edge."};
+  add_scan(figure, context, "fig4.16-recorded", "still", "box and organ model, camera at rest");
+  place_in_column(figure, 0, 0);
+  const std::size_t boxes = figure.panels.size();
+  add_scan(figure, context, "fig4.16-boxes", "boxes", "two boxes on a table, one cloud held");
+  place_in_column(figure, boxes, 1);
+  const std::size_t moving = figure.panels.size();
+  add_moving(figure, context);
+  place_in_column(figure, moving, 2);
+  return figure;
+}
+
+}  // namespace remote_touch

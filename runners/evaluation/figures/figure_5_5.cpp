@@ -1,0 +1,93 @@
+// Fig 5.5: the region around a single point.
+#include <algorithm>
+#include <cmath>
+
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kFixtureRadius_m = 0.1, kBoundary_m = 0.105;
+constexpr double kStiffness_N_per_m = 600;
+constexpr double kShell_5_5_m = 1e-5;  // r_2 - r_c: contact is anywhere in it
+
+// The point is the origin, so distances to it are lengths.
+Table distances(const Trace& trace) {
+  std::vector<double> proxy, hip, force;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    proxy.push_back(trace.proxy_position_m[i].norm()), hip.push_back(trace.hip_position_m[i].norm());
+    force.push_back(trace.force_N[i].norm());
+  }
+  Table table{"distances", "distances to the point, and the force"};
+  table.add("time", "s", "simulated time", trace.time_s);
+  table.add("proxy", "m", "distance of the proxy's centre to the point", proxy);
+  table.add("hip", "m", "distance of the HIP to the point", hip);
+  table.add("force", "N", "magnitude of the force", force);
+  return table;
+}
+
+double min(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+double entrenched_ticks(const Trace& trace) {
+  return static_cast<double>(std::count(trace.state.begin(), trace.state.end(),
+                                        static_cast<std::int32_t>(ContactState::entrenched)));
+}
+
+// Among the ticks with the HIP outside the region: how far the proxy is at most from it.
+double max_gap_outside(const Trace& trace) {
+  double max = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (trace.hip_position_m[i].norm() > kBoundary_m)
+      max = std::max(max, (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm());
+  return max;
+}
+
+// Among the ticks with the HIP inside: the force against k_s times the way from the HIP to the contact point
+// of a proxy that stands where the region is nearest to the HIP.
+double max_force_error(const Trace& trace) {
+  double max = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const double depth = kFixtureRadius_m - trace.hip_position_m[i].norm();
+    if (depth <= 0) continue;
+    max = std::max(max, std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth));
+  }
+  return max;
+}
+
+}  // namespace
+
+Figure figure_5_5(const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig5.5"));
+  Figure figure{"5.5",
+                "Single point virtual fixture",
+                "One point at the origin with r_f = 0.1 m. The HIP passes through its region, leaves it and "
+                "crosses its rim. The proxy's centre stays r_f + r_c away; the force is k_s times the depth "
+                "of the HIP in the region.",
+                {distances(trace)}};
+  figure.panels = {
+      {"Distance to the point",
+       "time (s)",
+       "distance (m)",
+       false,
+       {{"distances", "time", "hip", CurveStyle::dashed, "HIP"},
+        {"distances", "time", "proxy", CurveStyle::line, "proxy"}}},
+      {"Force", "time (s)", "force (N)", false, {{"distances", "time", "force", CurveStyle::line, ""}}}};
+  figure.claims = {
+      claim_between("5.5", "smallest distance of the proxy's centre to the point", ">= 0.105",
+                    min(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
+      claim_at_most("5.5", "ticks that end with the proxy entrenched", "-", entrenched_ticks(trace), 0,
+                    "ticks"),
+      claim_at_most("5.5", "distance of the proxy from the HIP while that is outside", "0",
+                    max_gap_outside(trace), kShell_5_5_m, "m"),
+      claim_at_most("5.5", "force against k_s times the HIP's depth in the region", "-",
+                    max_force_error(trace), kStiffness_N_per_m * kShell_5_5_m, "N"),
+      set_up(claim_at_most("5.5", "smallest distance of the HIP to the point: it does go inside", "-",
+                           min(numbers(figure.tables[0], "hip")), kBoundary_m, "m")),
+  };
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,256 @@
+// Fig 5.8: a beating organ is touched, and then kept at a distance by a fixture that grows.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/statistics/polynomial_fit.h"
+#include "runners/evaluation/figures/fixture_run.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kInTouch_s = 1;                                // the approach is over long before
+constexpr double kGrows_s = 5, kGrown_s = 10, kSteady_s = 0.1;  // phases; and what the last frames need
+constexpr double kMax_m = 0.02, kGrowth_m_per_s = kMax_m / (kGrown_s - kGrows_s);
+// A proxy sinks so far between four points 0.9 mm apart, as 0.47 m from the camera, and rests in a shell of
+// 0.01 mm.
+constexpr double kSinks_m = 0.9e-3 * 0.9e-3 / 4 / 5e-3 + 1e-5;
+constexpr double kTick_s = 1e-3;
+// The last phase is no whole number of beats: the 6.5 mm of a part of a beat, half a frame late, in 4.9 s.
+constexpr double kPartOfBeat_m = 0.0065 / 30 / 4.9 / 2;
+constexpr std::size_t kTableStride_5_8 = 5;  // ticks, in tables
+
+// The sensor of chapter 4's simulated camera.
+const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
+                                         "scenario.quantisation_per_m=0.00285"};
+
+// Distance of the proxy to the surface as the newest frame shows it, beyond r_f + r_c.
+double from_seen_m(const FixtureRun& run, std::size_t i) {
+  return run.scenario->signed_distance(run.trace.proxy_position_m[i], run.frame_captured_s(i)) -
+         run.boundary_m(i);
+}
+
+// The same to the surface as it is in that very tick.
+double from_moving_m(const FixtureRun& run, std::size_t i) {
+  return run.trace.signed_distance_m[i] - run.boundary_m(i);
+}
+
+// Calls visit(i) for the ticks from one time until another.
+template <class Visit>
+void each_tick(const FixtureRun& run, double from_s, double until_s, Visit&& visit) {
+  for (std::size_t i = 0; i < run.trace.length(); ++i)
+    if (run.trace.time_s[i] >= from_s && run.trace.time_s[i] < until_s) visit(i);
+}
+
+constexpr double kEnd_s = std::numeric_limits<double>::infinity();
+
+struct Deviation {
+  double rms_m, max_m;
+};
+
+// Deviation over the ticks in touch for which counts() is true.
+template <class Of, class Counts>
+Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
+  double squares = 0, max = 0, count = 0;
+  each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
+    if (!counts(i)) return;
+    const double error = of(run, i);
+    squares += error * error, max = std::max(max, std::abs(error)), ++count;
+  });
+  return {std::sqrt(squares / count), max};  // NaN if no tick counts; a claim on it fails
+}
+
+struct Summary {
+  Deviation seen, at_update, moving;
+  double min_beyond_fixture_m = kEnd_s, min_slave_beyond_fixture_m = kEnd_s;
+  double touching_m = 0, held_m = 0, growth_m_per_s = 0;  // mean distances and slope of the phases
+  double max_speed_m_per_s = 0;                           // speed of the surface at the proxy
+};
+
+double mean_distance_m(const FixtureRun& run, double from_s, double until_s) {
+  double sum = 0, count = 0;
+  each_tick(run, from_s, until_s, [&](std::size_t i) { sum += run.trace.signed_distance_m[i], ++count; });
+  return sum / count;
+}
+
+double growth_m_per_s(const FixtureRun& run) {
+  std::vector<double> time_s, distance_m;
+  each_tick(run, kGrows_s, kGrown_s, [&](std::size_t i) {
+    time_s.push_back(run.trace.time_s[i]), distance_m.push_back(run.trace.signed_distance_m[i]);
+  });
+  return fit_polynomial(time_s, distance_m, {0, 1}).coefficients[1];
+}
+
+double surface_height_m(const FixtureRun& run, std::size_t i, double time_s) {
+  return run.scenario->surface_height(run.trace.proxy_position_m[i].x(), run.trace.proxy_position_m[i].z(),
+                                      time_s);
+}
+
+double max_speed_m_per_s(const FixtureRun& run) {
+  constexpr double kApart_s = 1e-3;
+  double max = 0;
+  each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
+    const double time_s = run.trace.time_s[i];
+    const double rise = surface_height_m(run, i, time_s + kApart_s) - surface_height_m(run, i, time_s);
+    max = std::max(max, std::abs(rise) / kApart_s);
+  });
+  return max;
+}
+
+Summary summary(const FixtureRun& run) {
+  Summary s;
+  const auto always = [](std::size_t) { return true; };
+  s.seen = deviation(run, from_seen_m, always);
+  s.at_update = deviation(run, from_moving_m, [&](std::size_t i) { return run.trace.frame_update(i); });
+  s.moving = deviation(run, from_moving_m, always);
+  for (std::size_t i = 0; i < run.trace.length(); ++i) {
+    // Written so that NaN stays and fails.
+    const auto smaller = [](double min, double value) { return value >= min ? min : value; };
+    s.min_beyond_fixture_m =
+        smaller(s.min_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
+    s.min_slave_beyond_fixture_m =
+        smaller(s.min_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
+  }
+  s.touching_m = mean_distance_m(run, kInTouch_s, kGrows_s);
+  s.held_m = mean_distance_m(run, kGrown_s + kSteady_s, kEnd_s);
+  s.growth_m_per_s = growth_m_per_s(run);
+  s.max_speed_m_per_s = max_speed_m_per_s(run);
+  return s;
+}
+
+Table path_table(const std::string& name, const std::string& title, const FixtureRun& run) {
+  const Trace& trace = run.trace;
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
+    rows.push_back({trace.time_s[i], trace.hip_position_m[i].y(), trace.proxy_position_m[i].y(),
+                    surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
+                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force_N[i].norm(),
+                    (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm()});
+  }
+  const std::vector<ColumnName> columns = {
+      {"time", "s", "simulated time"},
+      {"hip_y", "m", "height of the HIP"},
+      {"proxy_y", "m", "height of the proxy's centre"},
+      {"surface_y", "m", "height of the true surface under the proxy"},
+      {"distance", "m", "distance of the proxy's centre to the true surface at that time"},
+      {"radius", "m", "r_f of the frame in use"},
+      {"boundary", "m", "r_f + r_c"},
+      {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c"},
+      {"deviation_in_frame", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
+      {"force", "N", "magnitude of the force"},
+      {"hip_distance", "m", "distance between HIP and proxy"}};
+  return table_of(name, title, columns, rows);
+}
+
+Table deviation_table(const Summary& a, const Summary& b) {
+  QuantityTable rows({"noise_free", "with_noise"});
+  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
+    rows.add(what, unit, {of(a), of(b)});
+  };
+  const std::string beyond = " of distance - r_f - r_c, ";
+  add("rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
+      [](const Summary& s) { return s.seen.rms_m; });
+  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.seen.max_m; });
+  add("rms" + beyond + "surface as it moves, ticks in which a frame came in", "m",
+      [](const Summary& s) { return s.at_update.rms_m; });
+  add("rms" + beyond + "surface as it moves, all ticks", "m",
+      [](const Summary& s) { return s.moving.rms_m; });
+  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.moving.max_m; });
+  add("smallest distance of the proxy - r_f", "m", [](const Summary& s) { return s.min_beyond_fixture_m; });
+  add("smallest distance of the slave's command - r_f", "m",
+      [](const Summary& s) { return s.min_slave_beyond_fixture_m; });
+  add("mean distance, r_f = 0", "m", [](const Summary& s) { return s.touching_m; });
+  add("slope of the distance while r_f grows", "m/s", [](const Summary& s) { return s.growth_m_per_s; });
+  add("mean distance, r_f = 0.02 m", "m", [](const Summary& s) { return s.held_m; });
+  add("largest speed of the surface over the proxy", "m/s",
+      [](const Summary& s) { return s.max_speed_m_per_s; });
+  return rows.table("deviations", "how far the proxy is from where r_f and r_c put it, from 1 s on");
+}
+
+std::vector<Panel> panels() {
+  const auto axis = [](const char* title, const char* y_label) {
+    return Panel{title, "time (s)", y_label, false, {}, std::pair(0.0, 15.0)};
+  };
+  Panel hip_distance = axis("Distance between HIP and proxy, as in the dissertation", "|HIP - proxy| (m)");
+  hip_distance.curves = {{"with_noise", "time", "hip_distance", CurveStyle::line, "with the sensor's noise"},
+                         {"noise_free", "time", "hip_distance", CurveStyle::line, "noise-free camera"}};
+  Panel height = axis("Height", "y (m)"), distance = axis("Distance to the true surface", "distance (m)");
+  Panel deviation = axis("Distance - r_f - r_c: moving true surface", "deviation (m)");
+  Panel force = axis("Force", "force (N)");
+  height.curves = {{"noise_free", "time", "hip_y", CurveStyle::dashed, "HIP"},
+                   {"noise_free", "time", "surface_y", CurveStyle::line, "true surface under the proxy"},
+                   {"noise_free", "time", "proxy_y", CurveStyle::line, "proxy"}};
+  height.y_range = std::pair(0.045, 0.095);
+  distance.curves = {{"with_noise", "time", "distance", CurveStyle::line, "with the sensor's noise"},
+                     {"noise_free", "time", "distance", CurveStyle::line, "noise-free camera"},
+                     {"noise_free", "time", "boundary", CurveStyle::dashed, "r_f + r_c"}};
+  distance.y_range = std::pair(0.0, 0.03);
+  deviation.curves = {{"with_noise", "time", "deviation", CurveStyle::line, "with the sensor's noise"},
+                      {"noise_free", "time", "deviation", CurveStyle::line, "noise-free camera"},
+                      {"noise_free", "time", "deviation_in_frame", CurveStyle::line,
+                       "noise-free, surface of the newest frame"}};
+  deviation.y_range = std::pair(-0.003, 0.004);
+  force.curves = {{"with_noise", "time", "force", CurveStyle::line, "with the sensor's noise"},
+                  {"noise_free", "time", "force", CurveStyle::line, "noise-free camera"}};
+  return {hip_distance, height, distance, deviation, force};
+}
+
+void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, double frame_s) {
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string& name = figure.name;
+  constexpr double kMean_m = kSinks_m + kPartOfBeat_m;
+  claim(claim_at_most(name, "rms of distance - r_f - r_c, surface as the newest frame shows it, no noise",
+                      "0", clean.seen.rms_m, kSinks_m, "m"));
+  claim(claim_at_most(name, "the same, surface as it moves, in the ticks in which a frame came in", "0",
+                      clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m"));
+  claim(claim_at_most(
+      name,
+      "largest distance - r_f - r_c, surface as it moves on between frames, against its largest "
+      "speed times the frame interval",
+      "-", clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m"));
+  claim(claim_at_least(name, "smallest distance to the moving surface - r_f, all ticks, no noise", ">= 0",
+                       clean.min_beyond_fixture_m, 0, "m"));
+  claim(claim_between(name, "mean distance while r_f = 0", "r_c = 0.005", clean.touching_m, 0.005 - kMean_m,
+                      0.005 + kMean_m, "m"));
+  claim(claim_between(name, "slope of the distance while r_f grows", "0.004", clean.growth_m_per_s,
+                      0.98 * kGrowth_m_per_s, 1.02 * kGrowth_m_per_s, "m/s"));
+  claim(claim_between(name, "mean distance while r_f = 0.02 m", "0.025", clean.held_m, 0.025 - kMean_m,
+                      0.025 + kMean_m, "m"));
+  claim(claim_at_least(name, "noise-free: smallest distance of the slave's command - r_f", ">= 0",
+                       clean.min_slave_beyond_fixture_m, 0, "m"));
+  claim(claim_at_least(name, "with noise: smallest distance of the slave's command - r_f", ">= 0",
+                       noisy.min_slave_beyond_fixture_m, 0, "m"));
+}
+
+}  // namespace
+
+Figure figure_5_8(const FigureContext& context) {
+  std::vector<Experiment> experiments;
+  experiments.push_back(Experiment::load("fig5.8"));
+  experiments.push_back(Experiment::load("fig5.8", kNoise));
+  const std::vector<FixtureRun> runs = run_fixtures(context, experiments);
+  const Summary clean = summary(runs[0]), noisy = summary(runs[1]);
+  Figure figure{
+      "5.8",
+      "A fixture that grows on a beating organ, simulated depth camera",
+      "Simulated: a depth camera (30 Hz) looks down on three ellipsoids that beat 75 times a minute, in "
+      "place of the recorded pig's heart, and the HIP rests just inside. r_f is 0 for 5 s, grows to 0.02 "
+      "m in 5 s and then stays constant. Distances are from the proxy's centre to the true surface: as it "
+      "is in that tick, or as it was when the frame in use was captured. The renderer knows only the "
+      "second; since then the organ has moved for up to one frame interval. r_f is that of the frame in "
+      "use. Curves show every fifth tick; measures use all ticks, from 1 s on.",
+      {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
+       path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
+       deviation_table(clean, noisy)},
+      panels()};
+  add_claims(figure, clean, noisy, 1 / runs[0].scenario->frame_rate_hz());
+  for (const auto& [where, run] : {std::pair("noise-free", &runs[0]), std::pair("with noise", &runs[1])}) {
+    add_side_claim(figure, where, *run);
+    add_sound_claims(figure, where, *run);
+  }
+  return figure;
+}
+
+}  // namespace remote_touch

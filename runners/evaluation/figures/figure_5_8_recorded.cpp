@@ -1,0 +1,240 @@
+// Fig 5.8 on recorded depth images: the camera at rest, and moved by hand.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "analysis/measures/measures.h"
+#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/recorded_fixture.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kContactShell_m = 1e-5;  // r_2 - r_c: contact is anywhere in it
+const char* const kTrackedSheet =
+    R"(renderer={"name": "tracked-sheet", "exit_rule": "out_of_contact", "xi": 0.3333333333333333, "theta_deg": 1})";
+constexpr double kRecordedGrown_s = 10, kRecordedSteady_s = 0.1;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct RecordedRun {
+  std::string table, title;
+  FixtureRun run;
+  std::vector<FrameOutcome> frames;
+  std::vector<PopThrough> pops;
+};
+
+Table frame_table(const RecordedRun& r) {
+  std::vector<std::vector<double>> rows;
+  for (const FrameOutcome& frame : r.frames) {
+    const std::size_t i = frame.tick;
+    const Trace& trace = r.run.trace;
+    rows.push_back({trace.time_s[i], static_cast<double>(trace.frame_index[i]), trace.hip_position_m[i].z(),
+                    trace.proxy_position_m[i].z(), frame.nearest_distance_m, r.run.boundary_m(i),
+                    frame.nearest_distance_m - r.run.boundary_m(i), trace.signed_distance_m[i],
+                    frame.hidden_m, frame.camera_motion_m, frame.surface_motion_m, trace.force_N[i].norm()});
+  }
+  const std::vector<ColumnName> columns = {
+      {"time", "s", "simulated time"},
+      {"frame", "1", "frame in use"},
+      {"hip_z", "m", "depth of the HIP"},
+      {"proxy_z", "m", "depth of the proxy's centre"},
+      {"nearest", "m", "distance of the proxy's centre to the nearest measured point"},
+      {"boundary", "m", "r_f + r_c"},
+      {"deviation", "m", "nearest - r_f - r_c"},
+      {"signed_distance", "m", "distance to the plane through the pixels around the proxy, negative behind"},
+      {"hidden", "m", "how far the proxy lies behind what its own pixel measured"},
+      {"camera_motion", "m", "median over the image of how far a pixel's point moved since the last frame"},
+      {"surface_motion", "m", "towards the camera since then, around the pixel that the HIP presses"},
+      {"force", "N", "magnitude of the force"}};
+  return table_of(r.table, r.title + ": the last tick of each frame", columns, rows);
+}
+
+double known_side_fraction(const RecordedRun& r) {
+  const auto& distance = r.run.trace.signed_distance_m;
+  const auto known = std::count_if(distance.begin(), distance.end(), [](double d) { return !std::isnan(d); });
+  return static_cast<double>(known) / static_cast<double>(distance.size());
+}
+
+// Share of the frames for which it holds.
+template <class Holds>
+double frame_fraction(const RecordedRun& r, Holds&& holds) {
+  const auto count = std::count_if(r.frames.begin(), r.frames.end(), holds);
+  return static_cast<double>(count) / static_cast<double>(r.frames.size());
+}
+
+double visible_fraction(const RecordedRun& r) {
+  return frame_fraction(r, [](const FrameOutcome& f) { return !std::isnan(f.hidden_m); });
+}
+
+double hidden_fraction(const RecordedRun& r) {
+  return frame_fraction(r, [](const FrameOutcome& f) { return f.hidden_m > 0; });
+}
+
+double min_beyond_fixture_m(const RecordedRun& r) {
+  double min = std::numeric_limits<double>::infinity();
+  for (const FrameOutcome& frame : r.frames)
+    min = std::min(min, frame.nearest_distance_m - r.run.radius_m[frame.tick]);
+  return min;
+}
+
+double mean_deviation_m(const RecordedRun& r) {
+  double sum = 0, count = 0;
+  for (const FrameOutcome& frame : r.frames)
+    if (r.run.trace.time_s[frame.tick] >= kRecordedGrown_s + kRecordedSteady_s)
+      sum += frame.nearest_distance_m - r.run.boundary_m(frame.tick), ++count;
+  return sum / count;
+}
+
+double min_motion_m(const RecordedRun& r) {
+  double min = r.pops.empty() ? kUnknown : std::numeric_limits<double>::infinity();
+  for (const PopThrough& pop : r.pops)
+    min = pop.surface_motion_m >= min ? min : pop.surface_motion_m;  // NaN stays
+  return min;
+}
+
+double max_m(const RecordedRun& r, double FrameOutcome::*of) {
+  double max = 0;
+  for (const FrameOutcome& frame : r.frames) max = std::max(max, std::abs(frame.*of));
+  return max;
+}
+
+Table violation_table(const std::vector<RecordedRun>& runs) {
+  std::vector<std::string> names;
+  for (const RecordedRun& r : runs) names.push_back(r.table);
+  QuantityTable rows(names);
+  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
+    std::vector<double> values;
+    for (const RecordedRun& r : runs) values.push_back(of(r));
+    rows.add(what, unit, values);
+  };
+  using R = const RecordedRun&;
+  add("ticks in which the side is known", "fraction", known_side_fraction);
+  add("of those, ticks on the wrong side", "fraction", [](R r) { return wrong_side_fraction(r.run.trace); });
+  add("deepest behind the surface", "m", [](R r) { return max_penetration_m(r.run.trace); });
+  add("pop-throughs", "1", [](R r) { return static_cast<double>(r.pops.size()); });
+  add("time of the first", "s",
+      [](R r) { return r.pops.empty() ? kUnknown : r.run.trace.time_s[r.pops[0].tick]; });
+  add("r_f at the first", "m",
+      [](R r) { return r.pops.empty() ? kUnknown : r.run.radius_m[r.pops[0].tick]; });
+  add("least motion of the surface past the proxy in a frame that popped it through", "m", min_motion_m);
+  add("frames whose pixel at the proxy measured something", "fraction", visible_fraction);
+  add("frames in which the proxy is hidden behind that pixel", "fraction", hidden_fraction);
+  add("frames with a measured point nearer than r_f", "fraction", [](R r) {
+    return frame_fraction(
+        r, [&](const FrameOutcome& f) { return f.nearest_distance_m < r.run.radius_m[f.tick]; });
+  });
+  add("smallest distance to a measured point - r_f", "m", min_beyond_fixture_m);
+  add("mean of distance - r_f - r_c from 10.1 s on", "m", mean_deviation_m);
+  add("largest camera motion in a frame", "m", [](R r) { return max_m(r, &FrameOutcome::camera_motion_m); });
+  add("largest surface motion in a frame", "m",
+      [](R r) { return max_m(r, &FrameOutcome::surface_motion_m); });
+  return rows.table("violations", "how often and how far the fixture was violated");
+}
+
+// A column of panels, one for each run.
+void add_panels(Figure& figure, const RecordedRun& r, int column) {
+  const auto axis = [&](const std::string& title, const char* y_label, int row) {
+    return Panel{title,   "time (s)",
+                 y_label, false,
+                 {},      std::pair(0.0, 15.0),
+                 {},      std::pair(static_cast<double>(row), static_cast<double>(column))};
+  };
+  const std::string& t = r.table;
+  Panel depth = axis(r.title, "z (m)", 0), distance = axis("Proxy to surface", "distance (m)", 1);
+  Panel motion = axis("Motion in a frame", "motion (m)", 2), force = axis("Force", "force (N)", 3);
+  depth.curves = {{t, "time", "hip_z", CurveStyle::dashed, "HIP"},
+                  {t, "time", "proxy_z", CurveStyle::line, "proxy"}};
+  depth.y_range = std::pair(0.5, 0.67);
+  distance.curves = {{t, "time", "nearest", CurveStyle::line, "nearest measured point"},
+                     {t, "time", "signed_distance", CurveStyle::dots, "plane, negative behind"},
+                     {t, "time", "boundary", CurveStyle::dashed, "r_f + r_c"}};
+  distance.y_range = std::pair(-0.04, 0.13);
+  motion.curves = {{t, "time", "camera_motion", CurveStyle::line, "median over the image"},
+                   {t, "time", "surface_motion", CurveStyle::line, "where the HIP presses, to the camera"}};
+  motion.y_range = std::pair(-0.065, 0.03);
+  force.curves = {{t, "time", "force", CurveStyle::line, ""}};
+  force.y_range = std::pair(0.0, 50.0);
+  for (Panel* panel : {&depth, &distance, &motion, &force}) figure.panels.push_back(*panel);
+}
+
+void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& moving, const RecordedRun& held,
+                const RecordedRun& tracked) {
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string& name = figure.name;
+  for (const RecordedRun* r : {&still, &held}) {
+    add_side_claim(figure, r->title, r->run);
+    claim(claim_at_most(name, r->title + ": frames in which the proxy is hidden behind that pixel", "none",
+                        hidden_fraction(*r), 0, "fraction"));
+  }
+  claim(claim_differs(name, moving.title + ": ticks with a known side with the proxy on the wrong one",
+                      "none (with the camera at rest)", wrong_side_fraction(moving.run.trace), 0.7, 0.8,
+                      "fraction"));
+  add_side_claim(figure, tracked.title, tracked.run);
+  claim(claim_between(name, still.title + ": mean of distance - r_f - r_c while r_f = 0.02 m", "0",
+                      mean_deviation_m(still), -kContactShell_m, kContactShell_m, "m"));
+  for (const RecordedRun* r : {&still, &moving, &held}) {
+    claim(claim_at_least(name, r->title + ": smallest distance to a measured point - r_f", ">= 0",
+                         min_beyond_fixture_m(*r), 0, "m"));
+    add_sound_claims(figure, r->title, r->run);
+  }
+  // The plane is unknown at edges; what the proxy's own pixel sees is known nearly always.
+  for (const RecordedRun* r : {&still, &held})
+    claim(
+        set_up(claim_at_least(name, r->title + ": frames in which the pixel at the proxy measured something",
+                              "-", visible_fraction(*r), 0.9, "fraction")));
+  claim(set_up(claim_at_least(name, tracked.title + ": ticks in which the side is known", "-",
+                              known_side_fraction(tracked), 0.5, "fraction")));
+}
+
+// Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it
+// moves with the tracked sheet as renderer.
+std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
+  std::vector<Experiment> experiments;  // the longest first: they go side by side
+  experiments.push_back(Experiment::load("fig5.8-moving"));
+  experiments.push_back(Experiment::load("fig5.8-moving", {"fixtures.0.schedule=[]"}));
+  experiments.push_back(Experiment::load("fig5.8-recorded"));
+  experiments.push_back(Experiment::load("fig5.8-moving", {kTrackedSheet}));
+  std::vector<FixtureRun> made = run_fixtures(context, experiments);
+  const std::pair<const char*, const char*> words[] = {{"moving", "moving camera"},
+                                                       {"held", "moving camera, r_f = 0.02 m"},
+                                                       {"still", "camera at rest"},
+                                                       {"tracked", "moving camera, tracked sheet"}};
+  std::vector<RecordedRun> runs;
+  for (const std::size_t i : {2, 0, 1, 3}) {
+    std::vector<FrameOutcome> frames = frame_outcomes(experiments[i], made[i]);
+    std::vector<PopThrough> pops = pop_throughs(made[i]);
+    runs.push_back({words[i].first, words[i].second, std::move(made[i]), std::move(frames), std::move(pops)});
+  }
+  return runs;
+}
+
+}  // namespace
+
+Figure figure_5_8_recorded(const FigureContext& context) {
+  const std::vector<RecordedRun> runs = recorded_runs(context);
+  Figure figure{
+      "5.8-recorded", "A fixture that grows on a recorded organ model",
+      "The protocol of Fig 5.8 on depth images of a rigid organ model; the device is simulated: the HIP "
+      "stays 3 mm behind the surface that one pixel sees, and lifts off while that pixel sees a hole or an "
+      "edge. z points away from the camera. Left: camera at rest, five frames played to and fro, so only "
+      "the sensor's noise moves. Then: camera moved by hand, which the paper did not try; and the same "
+      "with r_f = 0.02 m from the start. Each frame is shown by its last tick. There are two truths, both "
+      "from the newest measurement. The nearest of all its points does not show on which side the proxy "
+      "is. A plane through the pixels around the one that sees the proxy shows the side, but is unknown "
+      "at edges. The proxy pops through where the measured surface jumps past its centre within a frame: "
+      "from then on r_f keeps it away on the wrong side, deeper as r_f grows. The table violations counts "
+      "these cases. A fixture that exists before the jump is wider than any jump, and the proxy stays "
+      "outside. Right: the tracked sheet, which is not in the dissertation, under the growing fixture."};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    figure.tables.push_back(frame_table(runs[i]));
+    add_panels(figure, runs[i], static_cast<int>(i));
+  }
+  figure.tables.push_back(violation_table(runs));
+  add_claims(figure, runs[0], runs[1], runs[2], runs[3]);
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,138 @@
+// Fig 6.3 for other angles: how far the tool turns in the box, over the commanded angle, the spacing of the
+// points and the contact rule.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kFreeDeg = 10;     // the walls are not reached
+constexpr double kBlockedDeg = 30;  // they hold the tool
+
+// The runs of one rule and spacing, over the commanded angle.
+struct Turning {
+  std::string rule;
+  double spacing_m = 0;
+  std::vector<double> commanded_deg, turned_deg, penetration_m, contacts, torque_Nm, exhausted;
+
+  std::string name() const {
+    return (rule == "voxels" ? "voxels_" : "look_ahead_") + std::to_string(std::lround(1e3 * spacing_m)) +
+           "mm";
+  }
+  // Minimum and maximum rotation of the tool where the walls hold it.
+  std::pair<double, double> stop_deg() const {
+    double min = std::numeric_limits<double>::infinity(), max = -min;
+    for (std::size_t i = 0; i < commanded_deg.size(); ++i)
+      if (commanded_deg[i] >= kBlockedDeg)
+        min = std::min(min, turned_deg[i]), max = std::max(max, turned_deg[i]);
+    return {min, max};
+  }
+};
+
+std::vector<Turning> turnings(const SweepResult& result) {
+  const auto& angles = std::get<std::vector<double>>(result.axes.at(0).values);
+  const auto& spacings = std::get<std::vector<double>>(result.axes.at(1).values);
+  const std::vector<std::string> rules = {"look-ahead", "voxels"};
+  std::vector<Turning> list;
+  for (const std::string& rule : rules)
+    for (const double spacing_m : spacings) list.push_back({rule, spacing_m, {}, {}, {}, {}, {}, {}});
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    const std::vector<std::size_t> place = result.place(result.cell_of(run));
+    Turning& one = list[place[2] * spacings.size() + place[1]];
+    const double angle_deg = angles[place[0]];
+    one.commanded_deg.push_back(angle_deg);
+    // The device stays at the commanded angle for as long as the tool needs; the lag is largest there.
+    one.turned_deg.push_back(angle_deg - result.measure("max_tool_lag_angle")[run] / kRadiansPerDegree);
+    one.penetration_m.push_back(result.measure("max_tool_penetration")[run]);
+    one.contacts.push_back(result.measure("max_contact_count")[run]);
+    one.torque_Nm.push_back(result.measure("max_torque")[run]);
+    one.exhausted.push_back(result.measure("exhausted_fraction")[run]);
+  }
+  return list;
+}
+
+Table turning_table(const Turning& run) {
+  Table table{run.name(), "contact rule " + run.rule + ", points " +
+                              std::to_string(std::lround(1e3 * run.spacing_m)) + " mm apart"};
+  table.add("commanded", "deg", "angle to which the device is turned", run.commanded_deg);
+  table.add("turned", "deg", "angle to which the tool turns at most", run.turned_deg);
+  table.add("contacts", "1", "maximum number of points that touch", run.contacts);
+  table.add("torque", "N m", "maximum torque", run.torque_Nm);
+  table.add("penetration", "m", "maximum depth of a point in the tool at the end of a tick",
+            run.penetration_m);
+  return table;
+}
+
+Panel panel(const std::vector<Turning>& runs, const std::string& title, const std::string& column,
+            const std::string& y_label) {
+  Panel made{title, "commanded rotation (deg)", y_label};
+  for (const Turning& run : runs)
+    made.curves.push_back({run.name(), "commanded", column,
+                           run.rule == "voxels" ? CurveStyle::dashed : CurveStyle::line,
+                           run.rule + ", " + std::to_string(std::lround(1e3 * run.spacing_m)) + " mm"});
+  return made;
+}
+
+// Over the runs of a rule, of what value(run) gives.
+template <class Value>
+double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Value&& value) {
+  double max = -std::numeric_limits<double>::infinity();
+  for (const Turning& run : runs)
+    if (rule.empty() || run.rule == rule) max = std::max(max, value(run));
+  return max;
+}
+
+std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
+  const auto free_lag = [](const Turning& run) {
+    double lag_deg = 0;
+    for (std::size_t i = 0; i < run.commanded_deg.size(); ++i)
+      if (run.commanded_deg[i] <= kFreeDeg)
+        lag_deg = std::max(lag_deg, run.commanded_deg[i] - run.turned_deg[i]);
+    return lag_deg;
+  };
+  const auto history = [](const Turning& run) { return run.stop_deg().second - run.stop_deg().first; };
+  const auto stop = [](const Turning& run) { return run.stop_deg().second; };
+  const auto minus_stop = [](const Turning& run) { return -run.stop_deg().second; };
+  const auto depth = [](const Turning& run) { return std::ranges::max(run.penetration_m); };
+  const auto exhausted = [](const Turning& run) { return std::ranges::max(run.exhausted); };
+  const std::string figure = "6.3-angles";
+  return {
+      claim_at_most(figure, "up to 10 deg the tool follows: maximum lag", "-",
+                    max_of_rule(runs, "", free_lag), 1e-4, "deg"),
+      claim_at_most(figure, "from 30 deg on the tool stops at one angle: maximum difference", "-",
+                    max_of_rule(runs, "", history), 0.1, "deg"),
+      claim_at_most(figure, "look-ahead: difference of the stop angles for points 1, 2 and 3 mm apart", "-",
+                    max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1,
+                    "deg"),
+      claim_at_most(figure, "look-ahead: deepest point in the tool at the end of a tick", "-",
+                    max_of_rule(runs, "look-ahead", depth), 1e-4, "m"),
+      claim_at_most(figure, "voxels: deepest point in the tool at the end of a tick, a voxel is 0.5 mm", "-",
+                    max_of_rule(runs, "voxels", depth), 5e-4, "m"),
+      claim_at_most(figure, "ticks that used up their detections", "-", max_of_rule(runs, "", exhausted), 0,
+                    "fraction")};
+}
+
+}  // namespace
+
+Figure figure_6_3_angles(const FigureContext& context) {
+  const std::vector<Turning> runs = turnings(context.sweep(Sweep::load("fig6.3-angles")));
+  Figure figure{
+      "6.3-angles", "A tool turned in a box, over angle, spacing and rule",
+      "The experiment of Fig 6.3 with the device turned by 5 to 50 deg, for points 1 to 3 mm apart and both "
+      "contact rules; simulated. The tool follows until its sides touch the walls, and then stays at one "
+      "angle, however far the device turns: the torque grows with the remaining angle. The voxels rule "
+      "uses points only, so its stop depends on their spacing; look-ahead treats each point as a disk."};
+  for (const Turning& run : runs) figure.tables.push_back(turning_table(run));
+  figure.panels = {panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
+                   panel(runs, "Torque", "torque", "torque (N m)"),
+                   panel(runs, "Contacts", "contacts", "touching points")};
+  figure.claims = turning_claims(runs);
+  return figure;
+}
+
+}  // namespace remote_touch

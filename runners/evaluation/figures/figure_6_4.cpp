@@ -1,0 +1,275 @@
+// Fig 6.4: tools of meshes slide over recorded objects.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "analysis/measures/force_change_measures.h"
+#include "analysis/measures/measures.h"
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/tool_picture.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kTableStride_6_4 = 5;        // ticks, in tables
+constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // phases of all three
+constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // moments of the pictures
+constexpr double kVoxel_m = 5e-4;
+// A point in the shell is within 1.5 sqrt(3) voxels of the centre of a free voxel, which is outside the tool.
+constexpr double kDeepestInShell_m = 2.5981 * kVoxel_m;
+
+// A picture of a run: the part of the recording around the object, and the viewpoint.
+struct DrawnMoment {
+  const char *experiment, *table, *words;
+  double remaining_m, right_m, top_m, bottom_m, max_depth_m;
+  Vec3 eye, target;
+  double width_m;
+};
+
+const DrawnMoment kDrawnMoments[] = {{"fig6.4",
+                                      "bunny",
+                                      "Bunny, printed cube",
+                                      -0.25,
+                                      0.10,
+                                      -0.20,
+                                      0.16,
+                                      0.62,
+                                      {0.36, -0.16, 0.22},
+                                      {-0.03, 0.02, 0.42},
+                                      0.30},
+                                     {"fig6.4-organ",
+                                      "hand",
+                                      "Hand, organ model",
+                                      -0.02,
+                                      0.32,
+                                      -0.22,
+                                      0.14,
+                                      0.75,
+                                      {-0.23, -0.17, 0.33},
+                                      {0.12, -0.03, 0.58},
+                                      0.36},
+                                     {"fig6.4-box",
+                                      "drill",
+                                      "Power drill, cereal box",
+                                      -0.32,
+                                      0.14,
+                                      -0.05,
+                                      0.26,
+                                      0.80,
+                                      {-0.36, -0.10, 0.24},
+                                      {-0.01, 0.13, 0.52},
+                                      0.46}};
+
+struct TouchRun {
+  const DrawnMoment* shown;
+  std::string rule;  // contact_rule
+  Experiment experiment;
+  Trace trace;
+};
+
+// True for the rule as printed, false for the rule that is drawn.
+bool is_printed(const TouchRun& run) {
+  return run.rule == "voxels";
+}
+
+std::string table_name(const TouchRun& run) {
+  return std::string(run.shown->table) + (is_printed(run) ? "_voxels" : "");
+}
+
+std::size_t tick_at(const Trace& trace, double time_s) {
+  const auto at = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s - kSameTime_s);
+  return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
+}
+
+Table touch_table(const TouchRun& run) {
+  const Trace& t = run.trace;
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < t.length(); i += kTableStride_6_4)
+    rows.push_back({t.time_s[i], static_cast<double>(t.frame_index[i]), lag_m(t, i),
+                    lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
+                    static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
+                    t.tool_penetration_m[i], static_cast<double>(t.detections[i]),
+                    static_cast<double>(t.budget_exhausted[i]), t.force_N[i].norm(), t.torque_Nm[i].norm()});
+  const std::vector<ColumnName> columns = {
+      {"time", "s", "simulated time"},
+      {"frame", "1", "frame in use"},
+      {"lag", "m", "from the tool's centre of mass to the device"},
+      {"lag_rotation", "deg", "between their orientations"},
+      {"points", "1", "points that touch the tool"},
+      {"active", "1", "constraints that hold it"},
+      {"clusters", "1", "10 mm cells of the tool with points that touch"},
+      {"penetration", "m", "deepest point in the tool at the end of the tick"},
+      {"detections", "1", "collision detections in the tick"},
+      {"exhausted", "1", "the tick ended before the tool was at rest"},
+      {"force", "N", "magnitude of the force"},
+      {"torque", "N m", "magnitude of the torque"}};
+  return table_of(table_name(run), run.shown->words + (", contact rule " + run.rule), columns, rows);
+}
+
+// Every second pixel, in a chequered pattern, of the points that are to be seen.
+std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment& shown) {
+  std::vector<std::size_t> chosen;
+  const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);  // NaN is outside
+    if ((i / width + i % width) % 2 == 0 && p.x() > shown.remaining_m && p.x() < shown.right_m &&
+        p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m)
+      chosen.push_back(i);
+  }
+  return chosen;
+}
+
+void add_picture_tables(Figure& figure, const FigureContext& context, const TouchRun& run) {
+  const PointCloud cloud = processed_cloud(run.experiment, context.kernels(), 0);
+  const std::string name = run.shown->table;
+  const std::shared_ptr<const VoxelTool> tool = tool_of(run.experiment);
+  figure.tables.push_back(cloud_table(name + "_cloud", "points of the first frame, every second pixel", cloud,
+                                      seen_points(cloud, *run.shown)));
+  figure.tables.push_back(vertex_table(name + "_vertices", tool->mesh));
+  figure.tables.push_back(triangle_table(name + "_triangles", tool->mesh));
+  figure.tables.push_back(
+      pose_table(name + "_poses", run.trace, {tick_at(run.trace, kFirst_s), tick_at(run.trace, kSecond_s)}));
+}
+
+void add_panels(Figure& figure, const TouchRun& run, int row) {
+  const DrawnMoment& shown = *run.shown;
+  for (std::size_t instant = 0; instant < 2; ++instant) {
+    const double time_s = run.trace.time_s[tick_at(run.trace, instant == 0 ? kFirst_s : kSecond_s)];
+    figure.panels.push_back(
+        scene_panel(std::string(shown.words) + ", " + std::to_string(time_s).substr(0, 3) + " s", row,
+                    static_cast<int>(instant),
+                    {shown.eye, shown.target, -Vec3::UnitY(), shown.width_m, 0.8,
+                     tool_in_cloud(shown.table, instant, 0.003)}));
+  }
+  Panel force{"", "time (s)",          "force (N)",         false,
+              {}, std::pair(0.0, 3.2), std::pair(0.0, 9.0), std::pair(double(row), 2.0)};
+  force.curves = {
+      {shown.table, "time", "force", CurveStyle::line, "look-ahead"},
+      {std::string(shown.table) + "_voxels", "time", "force", CurveStyle::dashed, "voxels, as printed"}};
+  figure.panels.push_back(force);
+}
+
+template <class Holds>
+double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& holds) {
+  double count = 0, all = 0;
+  for (std::size_t i = tick_at(trace, from_s); i < tick_at(trace, until_s); ++i)
+    count += holds(i) ? 1 : 0, ++all;
+  return count / all;
+}
+
+// Among the ticks in which no frame came in; a NaN is larger than anything.
+double deepest_m(const Trace& trace) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (!trace.frame_update(i) && !(trace.tool_penetration_m[i] <= deepest))
+      deepest = trace.tool_penetration_m[i];
+  return deepest;
+}
+
+// A tick says that it used up its detections exactly when it made so many and was not yet at rest.
+double inconsistent_ticks(const TouchRun& run) {
+  const auto renderer = nlohmann::json::parse(run.experiment.to_json()).at("renderer");
+  const int budget = renderer.at("detections_per_tick");
+  const Trace& t = run.trace;
+  double count = 0;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    count += t.detections[i] > budget || (t.budget_exhausted[i] != 0 && t.detections[i] < budget) ||
+             (t.budget_exhausted[i] != 0) != (t.converged[i] == 0);
+  return count;
+}
+
+double max_lag_m(const Trace& t) {
+  double max = 0;
+  for (std::size_t i = 0; i < t.length(); ++i) max = std::max(max, lag_m(t, i));
+  return max;
+}
+
+void add_claims(Figure& figure, const TouchRun& run) {
+  const Trace& t = run.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string name = figure.name,
+                    words = run.shown->words + std::string(is_printed(run) ? ", as printed: " : ": ");
+  claim(claim_at_most(name, words + "ticks with a number that is not finite", "-", non_finite_fraction(t), 0,
+                      "fraction"));
+  claim(claim_at_most(name, words + "deepest point in the tool at the end of a tick without a new frame", "0",
+                      deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m"));
+  claim(claim_at_most(name, words + "ticks whose detections and log of a used-up budget do not fit", "-",
+                      inconsistent_ticks(run), 0, "ticks"));
+  claim(claim_at_least(
+      name, words + "share of the sliding time in which the tool touches", "-",
+      fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9,
+      "fraction"));
+  claim(claim_at_least(name, words + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
+  claim(claim_at_most(name, words + "force at the end", "0", t.force_N[t.length() - 1].norm(), 0, "N"));
+}
+
+Table summary_table(const std::vector<TouchRun>& runs) {
+  std::vector<std::string> names;
+  for (const TouchRun& run : runs) names.push_back(table_name(run));
+  QuantityTable rows(names);
+  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
+    std::vector<double> values;
+    for (const TouchRun& run : runs) values.push_back(of(run.trace));
+    rows.add(what, unit, values);
+  };
+  const auto max = [](const auto& of) {
+    return static_cast<double>(*std::max_element(of.begin(), of.end()));
+  };
+  using T = const Trace&;
+  add("ticks", "1", [](T t) { return static_cast<double>(t.length()); });
+  add("most points that touch at once", "1", [&](T t) { return max(t.contact_count); });
+  add("most active constraints at once", "1", [&](T t) { return max(t.active_constraints); });
+  add("deepest point at the end of any tick", "m", [&](T t) { return max(t.tool_penetration_m); });
+  add("ticks that used up their detections", "1", [](T t) {
+    return static_cast<double>(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1));
+  });
+  add("points of a frame without a normal, at most", "1", [&](T t) { return max(t.disabled_points); });
+  add("maximum force", "N", [](T t) { return max_force_N(t); });
+  add("largest force jump at a frame", "N", [](T t) { return max_force_jump_N(t); });
+  return rows.table("runs", "what happened in each run");
+}
+
+std::vector<TouchRun> touch_runs(const FigureContext& context) {
+  std::vector<Experiment> experiments;
+  std::vector<std::pair<const DrawnMoment*, std::string>> of;
+  for (const DrawnMoment& shown : kDrawnMoments)
+    for (const std::string rule : {"look-ahead", "voxels"}) {
+      of.emplace_back(&shown, rule);
+      experiments.push_back(Experiment::load(shown.experiment, {"renderer.contact_rule=" + rule}));
+    }
+  std::vector<Trace> traces = context.run(experiments);
+  std::vector<TouchRun> runs;
+  for (std::size_t r = 0; r < of.size(); ++r)
+    runs.push_back({of[r].first, of[r].second, std::move(experiments[r]), std::move(traces[r])});
+  return runs;
+}
+
+}  // namespace
+
+Figure figure_6_4(const FigureContext& context) {
+  const std::vector<TouchRun> runs = touch_runs(context);
+  Figure figure{
+      "6.4", "Tools of meshes in recorded point clouds",
+      "The tool as a filled solid, the device's pose transparent. A bunny on a printed cube and a hand on an "
+      "organ model, five frames of a camera at rest played to and fro at 10 Hz; a power drill on a cereal "
+      "box, one frame. Every frame is filtered and gets normals. The device comes from the camera's side, "
+      "goes about 1 cm into the object, moves several centimetres along it while it turns, and leaves. The "
+      "points are shown from beside the camera, so what it did not see is empty. The pictures are of the rule "
+      "look-ahead; the force of the printed rule is beside it."};
+  int row = 0;
+  for (const TouchRun& run : runs) {
+    figure.tables.push_back(touch_table(run));
+    if (!is_printed(run)) {
+      add_picture_tables(figure, context, run);
+      add_panels(figure, run, row++);
+    }
+    add_claims(figure, run);
+  }
+  figure.tables.push_back(summary_table(runs));
+  return figure;
+}
+
+}  // namespace remote_touch

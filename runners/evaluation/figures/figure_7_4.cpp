@@ -1,0 +1,183 @@
+// Fig 7.4: the operator pushes towards the left valve, then the right one, both with 4 cm forbidden regions.
+#include <algorithm>
+#include <cmath>
+
+#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/valve_task.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kValveRegion_m = 0.04;
+constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // middles of the two pushes
+constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
+constexpr double kStart_s = 0.25;
+
+// A push beside the left valve's middle, 6 cm deeper than the first.
+const char* const kOffCentre =
+    "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
+    "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
+
+// Number of pushes: runs of ticks with force.
+int pushes(const Trace& t) {
+  int count = 0;
+  for (std::size_t i = 1; i < t.length(); ++i)
+    if (t.force_N[i].norm() > 0.1 && t.force_N[i - 1].norm() <= 0.1) ++count;
+  return count;
+}
+
+// Largest force while no leaf is within the look-ahead of a region.
+double max_free_force_N(const Trace& t) {
+  double max = 0;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0)
+      max = std::max(max, t.force_N[i].norm());
+  return max;
+}
+
+double max_torque_Nm(const Trace& t, double from_s, double until_s) {
+  double max = 0;
+  for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
+    max = std::max(max, t.torque_Nm[i].norm());
+  return max;
+}
+
+void add_push_claims(Figure& figure, const ValveTask& task, const char* side, double held_s) {
+  const Trace& t = task.trace;
+  const std::size_t held = tick_of(t, held_s);
+  const std::string valve = side;
+  figure.claims.push_back(claim_between(figure.name, "force when pushed to the " + valve, "rises when pushed",
+                                        t.force_N[held].norm(), 5, 8, "N"));
+  figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
+                                         "rises when pushed", max_torque_Nm(t, held_s - 1, held_s + 1), 0.01,
+                                         "N m"));
+  figure.claims.push_back(set_up(claim_between(figure.name, "device behind the tool, pushed to the " + valve,
+                                               "-", lag_m(t, held), 0.018, 0.022, "m")));
+}
+
+void add_claims(Figure& figure, const ValveTask& task) {
+  const Trace& t = task.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string name = figure.name;
+  claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0", max_free_force_N(t),
+                      0, "N"));
+  claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
+  for (const double free_s : {kStart_s, kBetween_s, t.time_s.back()})
+    claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
+                        t.force_N[tick_of(t, free_s)].norm(), 0, "N"));
+  add_push_claims(figure, task, "left", kHeldLeft_s);
+  add_push_claims(figure, task, "right", kHeldRight_s);
+  for (const Valve valve : {Valve::left, Valve::right})
+    claim(claim_at_least(name,
+                         std::string("least distance of the tool's mesh to the true ") +
+                             (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
+                         "-", min_clearance_m(task, valve), kValveRegion_m - 1e-3, "m"));
+  add_task_claims(figure, task);
+}
+
+// Off the middle and deep: the tool slips round what is in its way. No claim of the paper's: it is told.
+void add_slip(Figure& figure, const ValveTask& slip) {
+  const Trace& t = slip.trace;
+  const std::size_t last = t.length() - 1;
+  const Vec3 aside = t.proxy_position_m[last] - t.intended_position_m[last];
+  figure.claims.push_back(claim_at_least(figure.name,
+                                         slip.words + ": how far the tool was pushed up, past the valve", "-",
+                                         aside.y(), 0.01, "m"));
+  figure.claims.push_back(claim_at_least(figure.name,
+                                         slip.words + ": least distance of its mesh to the true valve", "-",
+                                         min_clearance_m(slip, Valve::left), kValveRegion_m - 1e-3, "m"));
+  add_task_claims(figure, slip);
+}
+
+// The four moments A to D of the caption.
+std::vector<std::size_t> moments_7_4(const Trace& t) {
+  return {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s), tick_of(t, kHeldRight_s), t.length() - 1};
+}
+
+Table moment_table(const Trace& t) {
+  std::vector<double> time_s, force_N, torque_Nm;
+  std::vector<std::int32_t> letter;
+  for (const std::size_t tick : moments_7_4(t)) {
+    letter.push_back(static_cast<std::int32_t>(letter.size()));
+    time_s.push_back(t.time_s[tick]);
+    force_N.push_back(t.force_N[tick].norm()), torque_Nm.push_back(t.torque_Nm[tick].norm());
+  }
+  Table table{"moments", "A: start, B: pushed to the left, C: pushed to the right, D: end"};
+  table.columns.push_back({"letter", "1", "moment of the task", letter, 1, {"A", "B", "C", "D"}});
+  table.add("time", "s", "simulated time", time_s);
+  table.add("force", "N", "norm of the force", force_N);
+  table.add("torque", "N m", "norm of the torque", torque_Nm);
+  return table;
+}
+
+Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
+  Panel panel{title, "time (s)", label, false, {}, {}, {}, std::pair(double(row), 0.0)};
+  panel.curves = {{task.name, "time", column, CurveStyle::line, ""}};
+  return panel;
+}
+
+Panel lettered(Panel panel) {
+  const std::string column = panel.curves.front().y;
+  panel.curves.push_back({"moments", "time", column, CurveStyle::letters, "", 0, "letter"});
+  return panel;
+}
+
+Table summary_table(const std::vector<ValveTask>& tasks) {
+  QuantityTable rows({tasks[0].name, tasks[1].name});
+  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
+    rows.add(what, unit, {of(tasks[0]), of(tasks[1])});
+  };
+  using Task = const ValveTask&;
+  add("least distance of the mesh to the left valve", "m",
+      [](Task task) { return min_clearance_m(task, Valve::left); });
+  add("least distance of the mesh to the right valve", "m",
+      [](Task task) { return min_clearance_m(task, Valve::right); });
+  add("most pairs of leaves that touch", "1", [](Task task) {
+    return double(*std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end()));
+  });
+  add("collision detections in a tick, mean", "1", [](Task task) {
+    double sum = 0;
+    for (const int n : task.trace.detections) sum += n;
+    return sum / double(task.trace.length());
+  });
+  add("ticks that used up their detections", "1", [](Task task) {
+    return double(std::count(task.trace.budget_exhausted.begin(), task.trace.budget_exhausted.end(), 1));
+  });
+  return rows.table("runs", "both runs");
+}
+
+}  // namespace
+
+Figure figure_7_4(const FigureContext& context) {
+  const std::vector<ValveTask> tasks = run_tasks(
+      context, {{"task", "first task", "fig7.4"},
+                {"slip", "pushed deep beside the middle", "fig7.4", {kOffCentre, "duration_s=3.5"}}});
+  Figure figure{
+      "7.4", "Forbidden regions around two valves",
+      "A simulated camera sees two handwheels in a tank of turbid water; the points of both hues get "
+      "regions of 4 cm. A simulated operator (a mass drawn to its path by a spring) moves a valve "
+      "key of 112 spheres: A) starts, B) pushes towards the left valve, C) towards the right one, D) "
+      "leaves. The letters in the traces and the pictures are the same four moments. The pictures show tool "
+      "(filled) and device (transparent); the last one is a push deep beside the left valve's middle, where "
+      "the tool slips round. Everything is simulated."};
+  for (const ValveTask& task : tasks) figure.tables.push_back(task_table(task));
+  figure.tables.push_back(summary_table(tasks));
+  figure.tables.push_back(moment_table(tasks[0].trace));
+  figure.panels = {lettered(time_panel(tasks[0], "First task", "force", "force (N)", 0)),
+                   lettered(time_panel(tasks[0], "", "torque", "torque (N m)", 1)),
+                   time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};
+  add_task_picture_tables(figure, context, tasks[0], moments_7_4(tasks[0].trace));
+  add_task_picture_tables(figure, context, tasks[1], {tasks[1].trace.length() - 1});
+  figure.panels.push_back(task_picture(tasks[0], "A) at the start", 0, 0, 1));
+  figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 1, 0, 2));
+  figure.panels.push_back(task_picture(tasks[0], "C) pushed to the right", 2, 1, 1));
+  figure.panels.push_back(task_picture(tasks[0], "D) at the end", 3, 1, 2));
+  figure.panels.push_back(task_picture(tasks[1], "Slipped round, at the end", 0, 2, 1));
+  add_claims(figure, tasks[0]);
+  add_slip(figure, tasks[1]);
+  return figure;
+}
+
+}  // namespace remote_touch

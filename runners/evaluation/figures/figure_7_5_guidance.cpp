@@ -1,0 +1,82 @@
+// Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Over the stiffness of guidance.
+struct Led {
+  std::string name, label;
+  std::vector<double> stiffness_N_per_m, error_mm, error_deg, clearance_mm;
+};
+
+std::vector<Led> led(const SweepResult& result) {
+  const auto& stiffnesses = std::get<std::vector<double>>(result.axes.at(0).values);
+  std::vector<Led> list(2);
+  list[0].name = "six_motors", list[0].label = "six motors";
+  list[1].name = "five_motors", list[1].label = "no motor about x";
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    const std::vector<std::size_t> place = result.place(result.cell_of(run));
+    Led& one = list[place[1]];  // the axis is torque_x: true, false
+    one.stiffness_N_per_m.push_back(stiffnesses[place[0]]);
+    one.error_mm.push_back(1e3 * result.measure("guidance_error")[run]);
+    one.error_deg.push_back(result.measure("guidance_error_angle")[run] / kRadiansPerDegree);
+    one.clearance_mm.push_back(1e3 * result.measure("min_clearance")[run]);
+  }
+  return list;
+}
+
+Table led_table(const Led& one) {
+  Table table{one.name, "end of the task, " + one.label};
+  table.add("stiffness", "N/m", "stiffness of guidance", one.stiffness_N_per_m);
+  table.add("error", "mm", "distance of the tool from the goal at the end", one.error_mm);
+  table.add("angle", "deg", "angle between tool and goal at the end", one.error_deg);
+  table.add("clearance", "mm", "minimum gap between the tool and a region", one.clearance_mm);
+  return table;
+}
+
+Panel led_panel(const std::string& title, const std::string& column, const std::string& y_label,
+                const std::vector<Led>& list) {
+  Panel panel{title, "stiffness of guidance (N/m)", y_label};
+  for (const Led& one : list)
+    panel.curves.push_back({one.name, "stiffness", column,
+                            one.name == "five_motors" ? CurveStyle::dashed : CurveStyle::line, one.label});
+  return panel;
+}
+
+}  // namespace
+
+Figure figure_7_5_guidance(const FigureContext& context) {
+  const std::vector<Led> list = led(context.sweep(Sweep::load("fig7.5-guidance")));
+  const Led &six = list[0], &five = list[1];
+  Figure figure{
+      "7.5-guidance",
+      "Where guidance leads the hand",
+      "The task of Fig 7.5 with guidance of 50 to 300 N/m, frames at 10 Hz, a device with six motors and "
+      "one without torque about x; simulated. The operator has relaxed at 3.3 s. The position is reached in "
+      "both cases. Without the motor an error of the angle remains at every stiffness of guidance.",
+      {led_table(six), led_table(five)},
+      {led_panel("Distance from the goal", "error", "distance (mm)", list),
+       led_panel("Angle to the goal", "angle", "angle (deg)", list)}};
+  const std::string name = "7.5-guidance";
+  figure.claims = {
+      claim_at_most(name, "distance from the goal at the end, all runs", "-",
+                    std::max(std::ranges::max(six.error_mm), std::ranges::max(five.error_mm)), 2, "mm"),
+      claim_at_most(name, "six motors: angle to the goal at the end", "-", std::ranges::max(six.error_deg),
+                    0.1, "deg"),
+      claim_at_least(name, "five motors: angle to the goal at the end, minimum of the runs", "-",
+                     std::ranges::min(five.error_deg), 20, "deg"),
+      claim_at_most(name, "five motors: how much that angle depends on the stiffness", "-",
+                    std::ranges::max(five.error_deg) - std::ranges::min(five.error_deg), 1, "deg"),
+      claim_at_least(name, "gap between the tool and the forbidden region, minimum of all ticks", "-",
+                     std::min(std::ranges::min(six.clearance_mm), std::ranges::min(five.clearance_mm)), -0.1,
+                     "mm")};
+  return figure;
+}
+
+}  // namespace remote_touch

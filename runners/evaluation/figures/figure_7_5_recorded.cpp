@@ -1,0 +1,145 @@
+// The second task on recorded images: an organ model is forbidden, a yellow dragon is where guidance leads.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/trace/sequence_log.h"
+#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/valve_task.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kOrganRegion_m = 0.02;
+constexpr double kButtonPressed_s = 3, kButtonPushed_s = 2.8;
+constexpr std::size_t kClearanceStride = 20;  // ticks, where the clearance is looked for
+
+// The frames with their regions, filtered as the renderer gets them; the recording plays them to and fro.
+class RegionFrames {
+ public:
+  RegionFrames(const Experiment& experiment, const Kernels& kernels)
+      : scenario_(experiment.build_scenario(kernels)), processing_(experiment.build_processing(kernels)) {}
+
+  const PointCloud& of(int frame) {
+    if (frame == frame_) return cloud_;
+    frame_ = frame;
+    cloud_ = scenario_->cloud(frame);
+    if (processing_.depth) processing_.depth->process(cloud_);
+    processing_.fixtures.assign(cloud_, scenario_->captured_s(frame));
+    return cloud_;
+  }
+
+ private:
+  std::unique_ptr<Scenario> scenario_;
+  FrameProcessing processing_;
+  int frame_ = -1;
+  PointCloud cloud_;
+};
+
+// Least distance of the tool's vertices to the points that have a region in the frame in use.
+double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
+  RegionFrames frames(task.experiment, kernels);
+  const Trace& t = task.trace;
+  double min = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < t.length(); i += kClearanceStride) {
+    if (t.contact_count[i] == 0) continue;
+    const PointCloud& cloud = frames.of(t.frame_index[i]);
+    for (std::size_t k = 0; k < cloud.size(); ++k) {
+      if (!(cloud.fixture_radius_m[k] > 0)) continue;
+      const Vec3 p_W = cloud.point(k);
+      if (!((p_W - t.proxy_position_m[i]).norm() < task.tool->reach_m + min)) continue;
+      const Vec3 p_T = t.tool_orientation[i].conjugate() * (p_W - t.proxy_position_m[i]);
+      for (const Vec3& vertex : task.tool->mesh.vertices) min = std::min(min, (vertex - p_T).norm());
+    }
+  }
+  return min;
+}
+
+// Largest distance of a goal of guidance from the first one.
+double goal_wander_m(const Trace& t) {
+  double wander = 0;
+  Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < t.length(); ++i) {
+    if (!t.guidance_active[i]) continue;
+    if (!first.allFinite()) first = t.guidance_goal_m[i];
+    wander = std::max(wander, (t.guidance_goal_m[i] - first).norm());
+  }
+  return wander;
+}
+
+void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
+  const Trace& t = task.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string name = figure.name;
+  claim(claim_at_least(name, "force of the organ's region, pushed towards it", "-",
+                       t.force_N[tick_of(t, kButtonPushed_s)].norm(), 1, "N"));
+  claim(claim_at_least(
+      name,
+      "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
+      "-", min_point_distance_m(task, kernels), kOrganRegion_m - 1e-3, "m"));
+  claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
+                      "m"));
+  const std::vector<SequenceEntry> log = sequence_log(t);
+  claim(claim_at_most(name, "steps of the task that are missed", "-", t.sequence_missed.back(), 0, "steps"));
+  claim(claim_between(name, "steps of the task that are done or missed at the end", "-",
+                      t.sequence_step.back(), 1, 1, "steps"));
+  add_task_claims(figure, task);
+  claim(set_up(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s,
+                             kButtonPressed_s, kButtonPressed_s + 1e-9, "s")));
+}
+
+// Nearer than the wall behind, every second pixel of every second row.
+std::vector<std::size_t> cloud_samples(const PointCloud& cloud) {
+  std::vector<std::size_t> chosen;
+  const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.z[i] < 0.9 && std::abs(cloud.x[i]) < 0.3 && i % 2 == 0 && i / width % 2 == 0)
+      chosen.push_back(i);
+  return chosen;
+}
+
+void add_pictures(Figure& figure, const Kernels& kernels, const ValveTask& task) {
+  const Trace& t = task.trace;
+  const std::string name = task.name;
+  figure.tables.push_back([&] {
+    const PointCloud cloud = processed_cloud(task.experiment, kernels, 0);
+    return cloud_table(name + "_cloud", "points of the first frame", cloud, cloud_samples(cloud));
+  }());
+  figure.tables.push_back(vertex_table(name + "_vertices", task.tool->mesh));
+  figure.tables.push_back(triangle_table(name + "_triangles", task.tool->mesh));
+  figure.tables.push_back(pose_table(name + "_poses", t, {tick_of(t, kButtonPushed_s), t.length() - 1}));
+  const Scene scene{{-0.28, -0.38, 0.12}, {0.1, 0, 0.5}, -Vec3::UnitY(), 0.5, 0.8, {}};
+  for (std::size_t instant = 0; instant < 2; ++instant) {
+    Scene seen = scene;
+    seen.parts = tool_in_cloud(name, instant, 0.003);
+    figure.panels.push_back(scene_panel(instant == 0 ? "Pushed towards the organ" : "At the dragon",
+                                        static_cast<int>(instant), 1, seen));
+  }
+}
+
+}  // namespace
+
+Figure figure_7_5_recorded(const FigureContext& context) {
+  const std::vector<ValveTask> tasks = run_tasks(context, {{"desk", "recorded desk", "fig7.5-recorded"}});
+  const ValveTask& task = tasks[0];
+  Figure figure{
+      "7.5-recorded", "Forbidden and guiding colours in recorded images",
+      "Five frames of a camera at rest, played to and fro at 10 Hz. Points with the organ's colour have "
+      "regions of 2 cm; yellow points define the goal. A simulated operator pushes a valve key towards the "
+      "organ, presses the button at 3 s and relaxes. Hand, device and tool are simulated; the images are "
+      "real."};
+  figure.tables.push_back(task_table(task));
+  figure.tables.push_back(sequence_table(task));
+  Panel force{"Force", "time (s)", "force (N)", false, {}, {}, {}, std::pair(0.0, 0.0)};
+  force.curves = {{task.name, "time", "force", CurveStyle::line, ""}};
+  Panel torque{"Torque", "time (s)", "torque (N m)", false, {}, {}, {}, std::pair(1.0, 0.0)};
+  torque.curves = {{task.name, "time", "torque", CurveStyle::line, ""}};
+  figure.panels = {force, torque};
+  add_pictures(figure, context.kernels(), task);
+  add_claims(figure, task, context.kernels());
+  return figure;
+}
+
+}  // namespace remote_touch

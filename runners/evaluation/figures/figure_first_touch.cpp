@@ -1,0 +1,205 @@
+// The speed at which a surface may first touch the proxy: pop-through without noise, at three frame rates.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/theory/first_touch.h"
+#include "runners/evaluation/figures/pop_through_map.h"
+
+namespace remote_touch {
+
+namespace {
+
+const std::string kTouchFigure = "first-touch";
+constexpr double kSpacing_m = 0.0015;  // spacing of the points, as in Table 4.2
+constexpr int kHandPhases = 9;         // start times for each speed of a hand that moves
+
+// Position of the proxy over the grid.
+enum class Over { between_points, point };
+
+FirstTouch touch_at(double frame_rate_hz, Over over) {
+  return {kLift.r1_m, 2 * kContactRadius_m - kLift.r1_m,
+          over == Over::point ? 0 : kSpacing_m / std::sqrt(2.0), frame_rate_hz};
+}
+
+// The fraction of start times at which the proxy was lost, over the speed of the surface.
+struct Losses {
+  std::string name, meaning;
+  FirstTouch touch;
+  std::vector<double> speed_m_per_s, lost;
+  double phases = 0;  // start times for each speed
+
+  double max_difference() const {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      differences.push_back(std::abs(lost[i] - lost_at_first_touch(touch, speed_m_per_s[i])));
+    return max_of(differences);
+  }
+  // The largest fraction at the speeds up to a limit, and the smallest above it.
+  double max_lost_up_to(double limit_m_per_s) const {
+    double max = 0;
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      if (speed_m_per_s[i] <= limit_m_per_s) max = std::max(max, lost[i]);
+    return max;
+  }
+  double min_lost_above(double limit_m_per_s) const {
+    double min = 1;
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      if (speed_m_per_s[i] > limit_m_per_s) min = std::min(min, lost[i]);
+    return min;
+  }
+  // Speeds at which the formula lies between 0 and 1.
+  int undecided_speeds() const {
+    return static_cast<int>(std::count_if(speed_m_per_s.begin(), speed_m_per_s.end(), [&](double speed) {
+      const double fraction = lost_at_first_touch(touch, speed);
+      return fraction > 0 && fraction < 1;
+    }));
+  }
+};
+
+Losses measured(const FigureContext& context, Losses losses, const std::vector<std::string>& overrides) {
+  const SweepResult result = context.sweep(Sweep::load("first-touch", overrides));
+  losses.speed_m_per_s = std::get<std::vector<double>>(result.axes[0].values);
+  const std::vector<double>& popped = result.measure("popped_through");
+  const std::size_t phases = result.axes[1].length();
+  for (std::size_t speed = 0; speed < losses.speed_m_per_s.size(); ++speed) {
+    double lost = 0;
+    for (std::size_t phase = 0; phase < phases; ++phase)
+      lost += popped[result.run(result.cell_at({speed, phase}), 0)];
+    losses.lost.push_back(lost / static_cast<double>(phases));
+  }
+  losses.phases = static_cast<double>(phases);
+  return losses;
+}
+
+// The stored sweep is at 30 frames per second. At another rate the same ways from frame to frame are used,
+// and start times that are uniform over one interval between its frames.
+Losses at_rest(const FigureContext& context, double frame_rate_hz) {
+  const SweepResult stored = Sweep::load("first-touch").plan();
+  const double factor = frame_rate_hz / kLift.frame_rate_hz;
+  std::vector<double> speeds = std::get<std::vector<double>>(stored.axes[0].values);
+  for (double& speed : speeds) speed *= factor;
+  const double last_s = std::get<std::vector<double>>(stored.axes[1].values).back() / factor;
+  const std::string rate = std::to_string(std::lround(frame_rate_hz));
+  return measured(context,
+                  {rate + "_hz", rate + " Hz", touch_at(frame_rate_hz, Over::between_points), {}, {}},
+                  {"scenario.frame_rate_hz=" + rate, "axes.0.values=" + nlohmann::json(speeds).dump(),
+                   "axes.1.to=" + nlohmann::json(last_s).dump()});
+}
+
+Losses over_a_point(const FigureContext& context) {
+  return measured(context, {"over_point", "over a point", touch_at(kLift.frame_rate_hz, Over::point), {}, {}},
+                  {"scenario.phase_x=0.5", "scenario.phase_z=0.5"});
+}
+
+// The hand presses onto the surface while it rises, 5 to 9 cm below the place where the hand waited.
+Losses by_hand(const FigureContext& context) {
+  const double last_s = (kHandPhases - 1.0) / kHandPhases / kLift.frame_rate_hz;
+  return measured(
+      context,
+      {"by_hand", "a hand presses onto it", touch_at(kLift.frame_rate_hz, Over::between_points), {}, {}},
+      {"scenario.start_depth_m=0.1", "trajectory.press_at_s=0.15",
+       "axes.1.count=" + std::to_string(kHandPhases), "axes.1.to=" + nlohmann::json(last_s).dump()});
+}
+
+// One row for each speed of each.
+Table loss_table(const std::string& name, const std::string& title, const std::vector<Losses>& list) {
+  std::vector<double> rate, beside, speed, lost, formula;
+  for (const Losses& losses : list)
+    for (std::size_t i = 0; i < losses.lost.size(); ++i) {
+      rate.push_back(losses.touch.frame_rate_hz), beside.push_back(losses.touch.nearest_beside_m);
+      speed.push_back(losses.speed_m_per_s[i]), lost.push_back(losses.lost[i]);
+      formula.push_back(lost_at_first_touch(losses.touch, losses.speed_m_per_s[i]));
+    }
+  Table table{name, title};
+  table.add("frame_rate", "Hz", "f_c", rate);
+  table.add("nearest_beside", "m", "from the proxy's centre to the nearest points, along the surface",
+            beside);
+  table.add("speed", "m/s", "speed of the surface", speed);
+  table.add("lost", "1", "fraction of start times at which the proxy was lost", lost);
+  table.add("at_rest", "1", "fraction that the formula gives for a proxy at rest", formula);
+  return table;
+}
+
+Table formula_table(const Losses& losses) {
+  std::vector<double> speed, lost;
+  const double first = max_first_touch_velocity(losses.touch);
+  for (int percent = 80; percent <= 220; ++percent) {
+    speed.push_back(0.01 * percent * first);
+    lost.push_back(lost_at_first_touch(losses.touch, speed.back()));
+  }
+  Table table{"formula_" + losses.name, "the formula, " + losses.meaning};
+  table.add("speed", "m/s", "speed of the surface", speed);
+  table.add("lost", "1", "fraction of start times at which the proxy is lost", lost);
+  return table;
+}
+
+// The lost start times are one interval of all (first_touch.h), so the number of evenly spaced ones in it
+// differs from the formula by less than one.
+Claim formula_claim(const Losses& losses, const std::string& where) {
+  return claim_at_most(
+      kTouchFigure,
+      where +
+          ": fraction of start times at which a proxy at rest is lost, largest difference to "
+          "the formula",
+      "-", losses.max_difference(), 1 / losses.phases, "fraction");
+}
+
+void add_rate_claims(Figure& figure, const Losses& losses) {
+  const std::string where = losses.meaning;
+  figure.claims.push_back(formula_claim(losses, where));
+  figure.claims.push_back(claim_at_most(
+      kTouchFigure, where + ": proxies lost up to the speed (r_1^2 - s^2 / 2)^(1/2) f_c", "r_1 f_c (4.14)",
+      losses.max_lost_up_to(max_first_touch_velocity(losses.touch)), 0, "fraction"));
+  figure.claims.push_back(set_up(
+      claim_at_least(kTouchFigure, where + ": speeds at which some start times are lost and some are not",
+                     "-", losses.undecided_speeds(), 8, "speeds")));
+}
+
+void add_hand_claims(Figure& figure, const Losses& losses) {
+  const double limit = max_touched_velocity(losses.touch);
+  const std::string what = "a hand presses onto the moving surface, 30 Hz: fraction lost ";
+  figure.claims.push_back(claim_at_most(kTouchFigure, what + "up to (r_c^2 - s^2 / 2)^(1/2) f_c", "-",
+                                        losses.max_lost_up_to(limit), 0, "fraction"));
+  figure.claims.push_back(claim_at_least(kTouchFigure, what + "at higher speeds", "-",
+                                         losses.min_lost_above(limit), 1, "fraction"));
+}
+
+Panel panel(const std::string& title, const std::vector<Losses>& list, const std::string& table) {
+  Panel made{title, "speed of the surface (m/s)", "fraction lost"};
+  for (const Losses& losses : list)
+    made.curves.push_back(
+        {"formula_" + losses.name, "speed", "lost", CurveStyle::line, "derived, " + losses.meaning});
+  made.curves.push_back({table, "speed", "lost", CurveStyle::dots, "measured, proxy at rest"});
+  return made;
+}
+
+}  // namespace
+
+Figure figure_first_touch(const FigureContext& context) {
+  Figure figure{
+      kTouchFigure, "Pop-through at the first touch",
+      "A surface without noise moves evenly towards a proxy at rest. When it first touches the proxy, "
+      "the velocity estimate is 0. Drawn is the fraction of 63 start times, uniform over one interval "
+      "between two frames, at which the surface passes the proxy (dots), and the derived fraction "
+      "(lines). Lower panel: a proxy straight over a point, and a hand that presses onto the moving "
+      "surface, so that it touches it between two frames. Simulated."};
+  std::vector<Losses> rates;
+  for (const double rate_hz : {15.0, 30.0, 60.0}) rates.push_back(at_rest(context, rate_hz));
+  for (const Losses& losses : rates) add_rate_claims(figure, losses);
+  const std::vector<Losses> points = {over_a_point(context)}, hands = {by_hand(context)};
+  figure.claims.push_back(formula_claim(points[0], "over a point, 30 Hz"));
+  add_hand_claims(figure, hands[0]);
+
+  for (const Losses& losses : rates) figure.tables.push_back(formula_table(losses));
+  figure.tables.push_back(formula_table(points[0]));
+  figure.tables.push_back(loss_table("rates", "proxy at rest in the middle of four points", rates));
+  figure.tables.push_back(loss_table("over_point", "proxy at rest over a point", points));
+  figure.tables.push_back(loss_table("by_hand", "a hand presses onto the moving surface", hands));
+  Panel lower = panel("Proxy at rest over a point, and a hand that presses, 30 Hz", points, "over_point");
+  lower.curves.push_back({"by_hand", "speed", "lost", CurveStyle::dots, "measured, " + hands[0].meaning});
+  figure.panels = {panel("Proxy at rest in the middle of four points", rates, "rates"), lower};
+  return figure;
+}
+
+}  // namespace remote_touch

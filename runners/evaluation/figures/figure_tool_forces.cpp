@@ -1,0 +1,363 @@
+// Force and torque of the methods for tools against model scenes in which they are known exactly, in
+// magnitude and direction: the protocol of Weller et al. 2010. Simulated; not in the dissertation.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "analysis/theory/tool_rest.h"
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+const std::string kForcesFigure = "tool-forces";
+constexpr double kBlockHalf_m = 0.02, kBlockHalfHeight_m = 0.005;  // half extents of slab-10
+constexpr double kBallRadius_m = 0.01;                             // radius of ball
+constexpr double kAbove_m = 0.002, kDeep_m = 0.006;                // start above the touch, end below it
+
+struct ToolMethod {
+  const char *column, *label, *renderer;
+};
+constexpr ToolMethod kToolMethods[] = {
+    {"look_ahead", "look-ahead", R"("name": "tool")"},
+    {"continuous", "continuous", R"("name": "tool", "contact_rule": "continuous")"},
+    {"voxels", "as printed", R"("name": "tool", "contact_rule": "voxels")"},
+    {"god_object", "god-object", R"("name": "tool-god-object")"},
+    {"penalty", "penalty", R"("name": "tool-penalty")"},
+    {"voxmap", "voxmap", R"("name": "tool-penalty", "force_law": "voxmap")"}};
+
+constexpr ToolMethod kOfCoupling{"look_ahead", "look-ahead, M of the coupling",
+                                 R"("name": "tool", "motion_metric": "coupling")"};
+
+// A press, and the exact wrench for a pose of the device.
+struct ModelPress {
+  double setting;  // value of the axis of its table
+  std::string tool, scenario, poses;
+  std::function<Wrench(const DeviceState&)> wrench;
+};
+
+std::string row(const Vec3& p_m, const Vec3& turn_deg, double duration_s) {
+  std::ostringstream text;
+  text << '[' << p_m.x() << ", " << p_m.y() << ", " << p_m.z() << ", " << turn_deg.x() << ", " << turn_deg.y()
+       << ", " << turn_deg.z() << ", " << duration_s << ']';
+  return text.str();
+}
+
+std::string press_along(const Vec3& touching_m, const Vec3& normal, double about_z_deg) {
+  const Vec3 turn_deg(0, 0, about_z_deg);
+  return row(touching_m + kAbove_m * normal, turn_deg, 0) + ", " +
+         row(touching_m - kDeep_m * normal, turn_deg, 0.4);
+}
+
+std::string shape(const std::string& settings) {
+  return R"("name": "moving-shape", "columns": 70, "rows": 50, "phase_x": 0.37, "phase_z": 0.21, "normals": true, )" +
+         settings;
+}
+
+Experiment experiment_of(const ModelPress& press, const ToolMethod& method) {
+  const std::string json = R"({"title": "tool-forces", "scenario": {)" + press.scenario +
+                           R"(}, "renderer": {)" + method.renderer + R"(, "tool_mesh": ")" + press.tool +
+                           R"("}, "trajectory": {"name": "poses", "poses": [)" + press.poses + "]}}";
+  return Experiment::from_json(json, kForcesFigure);
+}
+
+double about_z_rad(const DeviceState& device) {
+  return rotation_vector(device.orientation_W).z();
+}
+
+// A block, turned as the plane is, pressed along its normal: k d, and no torque.
+ModelPress on_plane(double tilt_deg) {
+  const auto [sine, cosine] = sin_cos(tilt_deg * kRadiansPerDegree);
+  const Vec3 normal(-sine, cosine, 0);
+  return {tilt_deg, "slab-10", shape(R"("tilt_deg": )" + std::to_string(tilt_deg)),
+          press_along(kBlockHalfHeight_m * normal, normal, tilt_deg), [normal](const DeviceState& device) {
+            const double depth_m = kBlockHalfHeight_m - normal.dot(device.position_W);
+            return Wrench{EvenSpring{}.stiffness_N_per_m * std::max(0.0, depth_m) * normal, Vec3::Zero()};
+          }};
+}
+
+// A block that the hand turns, on a level plane.
+ModelPress turned_block(double turn_deg) {
+  const auto [sine, cosine] = sin_cos(turn_deg * kRadiansPerDegree);
+  return {turn_deg, "slab-10", shape(R"("tilt_deg": 0)"),
+          press_along({0, kBlockHalf_m * sine + kBlockHalfHeight_m * cosine, 0}, Vec3::UnitY(), turn_deg),
+          [](const DeviceState& device) {
+            const RestingWrench at = block_on_line(kBlockHalf_m, kBlockHalfHeight_m, EvenSpring{},
+                                                   device.position_W.y(), about_z_rad(device));
+            return Wrench{{0, at.force_N.y(), 0}, {0, 0, at.torque_Nm}};
+          }};
+}
+
+// A ball pressed into a valley, 2 mm beside its middle.
+ModelPress in_groove(double slope_deg) {
+  const double touching_m = kBallRadius_m / sin_cos(slope_deg * kRadiansPerDegree).second;
+  return {slope_deg, "ball", shape(R"("shape": "valley", "slope_deg": )" + std::to_string(slope_deg)),
+          press_along({0.002, touching_m, 0}, Vec3::UnitY(), 0), [slope_deg](const DeviceState& device) {
+            const Vec3& p = device.position_W;
+            const RestingWrench at =
+                ball_in_groove(kBallRadius_m, slope_deg * kRadiansPerDegree, {}, {p.x(), p.y()});
+            return Wrench{{at.force_N.x(), at.force_N.y(), 0}, Vec3::Zero()};
+          }};
+}
+
+// A bar turned between two walls: no force, and the torque of its two corners.
+ModelPress in_slot() {
+  return {0, "bar", R"("name": "slot", "spacing_m": 0.002)",
+          row(Vec3::Zero(), Vec3::Zero(), 0) + ", " + row(Vec3::Zero(), {0, 32, 0}, 0.5),
+          [](const DeviceState& device) {
+            const double angle_rad = rotation_vector(device.orientation_W).y();
+            return Wrench{Vec3::Zero(), {0, bar_in_slot(0.04, 0.005, 0.02, {}, angle_rad).torque_Nm, 0}};
+          }};
+}
+
+// Deviation of one vector over the ticks of a press in which the exact vector is not small. magnitude: mean
+// deviation of its magnitude, as a fraction of the mean exact magnitude. missing: fraction of ticks without
+// any vector. direction_deg: mean angle between both vectors over the other ticks. NaN without such ticks.
+struct Deviation {
+  double magnitude = 0, missing = 0, direction_deg = 0;
+};
+using Vectors = std::vector<Vec3>;
+Deviation deviation(const Vectors& rendered, const Vectors& exact, double small) {
+  double sum = 0, apart = 0, angle_rad = 0;
+  int ticks = 0, missing = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const double size = exact[i].norm(), got = rendered[i].norm();
+    if (!(size > small)) continue;
+    ++ticks;
+    sum += size, apart += std::abs(got - size);
+    if (got > 0)
+      angle_rad += std::atan2(exact[i].cross(rendered[i]).norm(), exact[i].dot(rendered[i]));
+    else
+      ++missing;
+  }
+  return {apart / sum, static_cast<double>(missing) / ticks,
+          angle_rad / (ticks - missing) / kRadiansPerDegree};
+}
+
+// Results of one run.
+struct PressResult {
+  Deviation force, torque;
+  double torque_error_Nm = 0;  // mean of |torque - exact torque|
+  std::vector<double> angle_deg, torque_Nm, exact_torque_Nm;
+};
+PressResult result_of(const ModelPress& press, const Trace& trace) {
+  constexpr double kSmallForce_N = 0.5, kSmallTorque_Nm = 0.005;
+  Vectors force, torque;
+  PressResult result;
+  double error_Nm = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const DeviceState device{trace.hip_position_m[i], trace.hip_orientation[i]};
+    const Wrench exact = press.wrench(device);
+    force.push_back(exact.force_N), torque.push_back(exact.torque_Nm);
+    error_Nm += (trace.torque_Nm[i] - exact.torque_Nm).norm();
+    result.angle_deg.push_back(rotation_vector(device.orientation_W).y() / kRadiansPerDegree);
+    result.torque_Nm.push_back(-trace.torque_Nm[i].y());
+    result.exact_torque_Nm.push_back(-exact.torque_Nm.y());
+  }
+  result.force = deviation(trace.force_N, force, kSmallForce_N);
+  result.torque = deviation(trace.torque_Nm, torque, kSmallTorque_Nm);
+  result.torque_error_Nm = error_Nm / static_cast<double>(trace.length());
+  return result;
+}
+
+// results[method][press]
+using PressResults = std::vector<std::vector<PressResult>>;
+PressResults results_of(const FigureContext& context, const std::vector<ModelPress>& presses,
+                        std::span<const ToolMethod> methods = kToolMethods) {
+  std::vector<Experiment> runs;
+  for (const ToolMethod& method : methods)
+    for (const ModelPress& press : presses) runs.push_back(experiment_of(press, method));
+  const std::vector<Trace> traces = context.run(runs);
+  PressResults results(methods.size());
+  for (std::size_t m = 0; m < results.size(); ++m)
+    for (std::size_t p = 0; p < presses.size(); ++p)
+      results[m].push_back(result_of(presses[p], traces[m * presses.size() + p]));
+  return results;
+}
+
+Table deviation_table(const std::string& name, const std::string& title, const std::string& setting,
+                      const std::string& what, const std::vector<ModelPress>& presses,
+                      const PressResults& results) {
+  std::vector<double> settings;
+  for (const ModelPress& press : presses) settings.push_back(press.setting);
+  Table table{name, title, {}};
+  table.add(setting, "deg", what, settings);
+  for (std::size_t m = 0; m < results.size(); ++m) {
+    const std::string column = kToolMethods[m].column;
+    const auto add = [&](const std::string& of, const std::string& units, const std::string& meaning,
+                         auto&& value) {
+      std::vector<double> values;
+      for (const PressResult& one : results[m]) values.push_back(value(one));
+      table.add(column + "_" + of, units, meaning, values);
+    };
+    add("force", "1", "mean deviation of |force|, fraction", [](const auto& r) { return r.force.magnitude; });
+    add("force_missing", "1", "fraction of ticks without a force",
+        [](const auto& r) { return r.force.missing; });
+    add("force_direction", "deg", "mean angle to the exact force, where there is one",
+        [](const auto& r) { return r.force.direction_deg; });
+    add("torque", "1", "mean deviation of |torque|, fraction; NaN where none is exact",
+        [](const auto& r) { return r.torque.magnitude; });
+    add("torque_direction", "deg", "mean angle to the exact torque, where there is one",
+        [](const auto& r) { return r.torque.direction_deg; });
+    add("stray_torque", "N m", "mean of |torque - exact torque|",
+        [](const auto& r) { return r.torque_error_Nm; });
+  }
+  return table;
+}
+
+Panel deviation_panel(const Table& table, const std::string& of, const std::string& x_label,
+                      const std::string& y_label, std::pair<double, double> place) {
+  Panel panel{table.title, x_label, y_label};
+  for (const ToolMethod& method : kToolMethods)
+    panel.curves.push_back({table.name, table.columns[0].name, std::string(method.column) + "_" + of,
+                            CurveStyle::line, method.label});
+  panel.place = place;
+  return panel;
+}
+
+Table slot_table(const PressResults& results) {
+  Table table{"slot", "A bar turned between two walls: torque", {}};
+  table.add("angle", "deg", "of the device", results.front().front().angle_deg);
+  table.add("exact", "N m", "closed form", results.front().front().exact_torque_Nm);
+  for (std::size_t m = 0; m < results.size(); ++m)
+    table.add(kToolMethods[m].column, "N m", std::string("torque, ") + kToolMethods[m].label,
+              results[m].front().torque_Nm);
+  return table;
+}
+
+Panel slot_panel(const Table& table, std::pair<double, double> place) {
+  Panel panel{table.title, "angle of the device (deg)", "torque (N m)"};
+  for (const ToolMethod& method : kToolMethods)
+    panel.curves.push_back({table.name, "angle", method.column, CurveStyle::line, method.label});
+  panel.curves.push_back({table.name, "angle", "exact", CurveStyle::dashed, "exact"});
+  panel.x_range = {15, 32};
+  panel.place = place;
+  return panel;
+}
+
+double max_in(const Table& table, const std::string& column) {
+  return max_of(numbers(table, column));
+}
+
+Claim at_most(const std::string& claim, double measured, double limit, const std::string& unit) {
+  return claim_at_most(kForcesFigure, claim, "-", measured, limit, unit);
+}
+Claim at_least(const std::string& claim, double measured, double limit, const std::string& unit) {
+  return claim_at_least(kForcesFigure, claim, "-", measured, limit, unit);
+}
+
+// The gap of 0.05 mm that continuous rule and god-object keep is 1.7 % of the mean depth of a press.
+constexpr double kGapFraction = 0.02;
+
+std::vector<Claim> plane_claims(const Table& planes) {
+  const double sinks = EvenSpring{}.stiffness_N_per_m / (EvenSpring{}.stiffness_N_per_m + 10 * 2400);
+  return {at_most("look-ahead on a tilted plane: deviation of the force", max_in(planes, "look_ahead_force"),
+                  1e-3, "1"),
+          at_most("look-ahead on a tilted plane: angle to the exact force",
+                  max_in(planes, "look_ahead_force_direction"), 0.01, "deg"),
+          at_most("continuous rule on a tilted plane: deviation of the force",
+                  max_in(planes, "continuous_force"), kGapFraction, "1"),
+          at_most("god-object on a tilted plane: deviation of the force", max_in(planes, "god_object_force"),
+                  kGapFraction, "1"),
+          at_most("god-object on a tilted plane: angle to the exact force",
+                  max_in(planes, "god_object_force_direction"), 0.01, "deg"),
+          at_most("printed rule on a tilted plane: deviation of the force", max_in(planes, "voxels_force"),
+                  0.01, "1"),
+          claim_between(kForcesFigure, "penalty on a level plane: the force is too small by k / (k + 10 k_p)",
+                        "-", numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1"),
+          at_least("voxmap on a tilted plane: its steps turn the force, by up to",
+                   max_in(planes, "voxmap_force_direction"), 5, "deg")};
+}
+
+// The torque at a corner has to be that of the force. The constrained motion (6.4) ends where the contacts
+// hold the displacement that is left, times M. The coupling gives the hand k times that displacement, and k
+// r^2 times the angle. Both agree if M is that of the coupling.
+std::vector<Claim> block_claims(const Table& blocks, const Table& of_coupling) {
+  return {at_most("god-object, M of the coupling, tilted block: deviation of the force",
+                  max_in(blocks, "god_object_force"), kGapFraction, "1"),
+          at_most("god-object, M of the coupling, tilted block: deviation of the torque",
+                  max_in(blocks, "god_object_torque"), kGapFraction, "1"),
+          at_least("look-ahead, M of the tool, tilted block: deviation of the torque, up to",
+                   max_in(blocks, "look_ahead_torque"), 1, "1"),
+          at_least("printed rule, M of the tool, tilted block: deviation of the torque, up to",
+                   max_in(blocks, "voxels_torque"), 1, "1"),
+          at_most("look-ahead, M of the coupling, tilted block: deviation of the force",
+                  max_in(of_coupling, "look_ahead_force"), 0.01, "1"),
+          at_most("look-ahead, M of the coupling, tilted block: deviation of the torque",
+                  max_in(of_coupling, "look_ahead_torque"), 0.01, "1")};
+}
+
+std::vector<Claim> groove_and_slot_claims(const Table& grooves, const Table& slot) {
+  const auto missed_Nm = [&](const std::string& column) {
+    return std::abs(numbers(slot, column).back() - numbers(slot, "exact").back());
+  };
+  return {
+      at_most("look-ahead in a valley: deviation of the force", max_in(grooves, "look_ahead_force"),
+              kGapFraction, "1"),
+      at_most("god-object in a valley: deviation of the force", max_in(grooves, "god_object_force"),
+              2 * kGapFraction, "1"),
+      at_most("look-ahead in a valley: angle to the exact force",
+              max_in(grooves, "look_ahead_force_direction"), 0.5, "deg"),
+      at_most("look-ahead in a valley: fraction of ticks without a force",
+              max_in(grooves, "look_ahead_force_missing"), 0, "1"),
+      at_most("god-object in a valley: fraction of ticks without a force",
+              max_in(grooves, "god_object_force_missing"), 0.02, "1"),
+      at_most("god-object in a valley: angle to the exact force",
+              max_in(grooves, "god_object_force_direction"), 2, "deg"),
+      at_least("voxmap in a valley: angle to the exact force, up to",
+               max_in(grooves, "voxmap_force_direction"), 5, "deg"),
+      at_most("look-ahead in a slot: error of the torque at 32 degrees", missed_Nm("look_ahead"), 1e-3,
+              "N m"),
+      at_most("continuous rule in a slot: error of the torque at 32 degrees", missed_Nm("continuous"), 1e-3,
+              "N m"),
+      at_most("god-object in a slot: error of the torque at 32 degrees", missed_Nm("god_object"), 1e-3,
+              "N m"),
+      at_most("printed rule in a slot: error of the torque at 32 degrees", missed_Nm("voxels"), 0.01, "N m")};
+}
+
+}  // namespace
+
+Figure figure_tool_forces(const FigureContext& context) {
+  Figure figure{
+      kForcesFigure, "Force and torque of a tool against model scenes",
+      "Presses of 6 mm in 0.4 s in which force and torque are known in closed form: a block of 40 x 10 mm on a "
+      "plane that is tilted as the block is, and on a level plane where the hand tilts the block; a ball of 10 mm "
+      "in a valley; a bar between two walls. Mean deviation from the closed form of magnitude and direction over "
+      "the ticks with a force of 0.5 N or more; points 1.5 mm apart (slot: 2 mm), no noise; simulated. Protocol: "
+      "Weller et al. 2010."};
+  std::vector<ModelPress> planes, blocks, grooves;
+  for (const double tilt_deg : {0.0, 5.0, 10.0, 20.0, 30.0, 40.0}) planes.push_back(on_plane(tilt_deg));
+  for (const double turn_deg : {2.0, 4.0, 7.0, 10.0, 15.0, 20.0}) blocks.push_back(turned_block(turn_deg));
+  for (const double slope_deg : {15.0, 30.0, 45.0}) grooves.push_back(in_groove(slope_deg));
+  figure.tables = {
+      deviation_table("planes", "A block on a tilted plane", "tilt", "of plane and block", planes,
+                      results_of(context, planes)),
+      deviation_table("blocks", "A tilted block on a level plane", "turn", "of the block, by the hand",
+                      blocks, results_of(context, blocks)),
+      deviation_table("grooves", "A ball in a valley", "slope", "of both sides", grooves,
+                      results_of(context, grooves)),
+      slot_table(results_of(context, {in_slot()})),
+      deviation_table("of_coupling", "A tilted block, M of the coupling", "turn", "of the block, by the hand",
+                      blocks, results_of(context, blocks, {&kOfCoupling, 1}))};
+  const std::string off = " off by (fraction)", turned = "force turned by (deg)";
+  figure.panels = {
+      deviation_panel(figure.tables[0], "force", "tilt (deg)", "|force|" + off, {0, 0}),
+      deviation_panel(figure.tables[0], "force_direction", "tilt (deg)", turned, {0, 1}),
+      deviation_panel(figure.tables[1], "force", "tilt by the hand (deg)", "|force|" + off, {1, 0}),
+      deviation_panel(figure.tables[1], "torque", "tilt by the hand (deg)", "|torque|" + off, {1, 1}),
+      deviation_panel(figure.tables[2], "force_direction", "slope (deg)", turned, {2, 0}),
+      slot_panel(figure.tables[3], {2, 1})};
+  figure.panels[3].curves.push_back(
+      {"of_coupling", "turn", "look_ahead_torque", CurveStyle::dashed, "look-ahead, M of the coupling"});
+  figure.claims = plane_claims(figure.tables[0]);
+  for (const auto& more : {block_claims(figure.tables[1], figure.tables[4]),
+                           groove_and_slot_claims(figure.tables[2], figure.tables[3])})
+    figure.claims.insert(figure.claims.end(), more.begin(), more.end());
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,150 @@
+// Chapter 4's question for tools: up to which speed does a surface carry a plate that is pressed onto it, and
+// what do thickness, tilt, rotation and noise do to that? Simulated; not in the dissertation.
+#include <algorithm>
+
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/carried_limits.h"
+#include "runners/experiment/tool_files/tool_loading.h"
+
+namespace remote_touch {
+
+namespace {
+
+const std::string kLiftFigure = "tool-lifts";
+constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
+
+// Largest distance by which one frame may move a surface against a plate. Printed rule: 6.2.4, with the shell
+// on either side. Look-ahead: the whole plate, if the side of the last contact is known. Continuous rule: the
+// larger of that and the distance by which a held tool is moved out.
+double max_jump_m(Carrier rule, double thickness_m) {
+  switch (rule) {
+    case Carrier::voxels:
+      return thickness_m - 2 * ToolSettings{}.voxel_m;
+    case Carrier::look_ahead:
+      return thickness_m;
+    default:
+      return std::max(thickness_m, ToolParameters{}.frame_reach_m);
+  }
+}
+
+// Limits over a setting, and bound(), the limit that is derived for it; each rule has columns of its own.
+template <class Bound>
+Table limit_table(const std::string& name, const std::string& title, const CarrySweep& sweep, Column setting,
+                  const std::string& units, Bound&& bound) {
+  Table table{name, title, {std::move(setting)}};
+  const std::vector<double> settings = std::get<std::vector<double>>(table.columns[0].values);
+  for (const CarrierName& carrier : kCarriers) {
+    std::vector<double> carried, lost, derived;
+    for (std::size_t i = 0; i < sweep.settings(); ++i) {
+      const CarrySweep::Limit limit = sweep.limit(i, carrier.rule);
+      carried.push_back(limit.carried), lost.push_back(limit.lost);
+      derived.push_back(bound(carrier.rule, settings[i]));
+    }
+    table.add(std::string(carrier.column) + "_carried", units, "all runs are carried up to this", carried);
+    table.add(std::string(carrier.column) + "_lost", units, "the next value: a run is lost", lost);
+    table.add(std::string(carrier.column) + "_bound", units, "derived", derived);
+  }
+  return table;
+}
+
+Table lift_limits(const FigureContext& context) {
+  const CarrySweep sweep(context.sweep(Sweep::load("tool-lifts")));
+  return limit_table("lifts", "Speed up to which a plate is carried", sweep,
+                     {"thickness", "m", "of the plate", std::vector<double>{0.005, 0.01, 0.02}, 1, {}}, "m/s",
+                     [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); });
+}
+
+// The plate lies down on a tilted surface, which comes nearer along its normal by v cos(tilt) / f_c.
+Table tilt_limits(const FigureContext& context) {
+  const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
+  std::vector<double> tilt;
+  for (std::size_t i = 0; i < sweep.settings(); ++i) tilt.push_back(sweep.value(i, 0));
+  return limit_table("tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
+                     {"tilt", "deg", "of the surface", tilt, 1, {}}, "m/s", [](Carrier rule, double deg) {
+                       return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) /
+                              sin_cos(deg * kRadiansPerDegree).second;
+                     });
+}
+
+// The surface turns by A sin(2 pi f t): by 2 pi f A / f_c in the first frame. The end of the plate that is
+// nearer to the axis moves least, and the plate is lost where that passes through it too.
+Table turn_limits(const FigureContext& context) {
+  const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
+  std::vector<double> lever;
+  for (std::size_t i = 0; i < sweep.settings(); ++i) lever.push_back(sweep.value(i, 0));
+  return limit_table("turns", "Angle of a surface that turns at 1 Hz, plate of 5 mm", sweep,
+                     {"lever", "m", "from the axis to the middle of the plate", lever, 1, {}}, "deg",
+                     [](Carrier rule, double lever_m) {
+                       const double near_m = lever_m - 0.5 * kPlateLength_m;
+                       const double turn_rad = sin_cos(360 * kRadiansPerDegree / kLiftFrames_hz).first;
+                       return max_jump_m(rule, kThinPlate_m) / near_m / turn_rad / kRadiansPerDegree;
+                     });
+}
+
+Table noise_limits(const FigureContext& context) {
+  const CarrySweep sweep(context.sweep(Sweep::load("tool-noise")));
+  std::vector<double> noise;
+  for (std::size_t i = 0; i < sweep.settings(); ++i) noise.push_back(sweep.value(i, 0));
+  return limit_table(
+      "noise", "Acceleration with a velocity estimate, plate of 10 mm", sweep,
+      {"noise", "m", "standard deviation of the noise on x, y and z", noise, 1, {}}, "m/s^2",
+      [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); });
+}
+
+// No run is lost below the bound of a rule, or carried above that of another.
+Claim claim_bounded(const Table& table, Carrier rule, Carrier upper, const std::string& claim) {
+  const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
+  return claim_at_most(kLiftFigure, claim + ": number of settings where not", paper,
+                       count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
+                                        column_of(rule) + "_bound", column_of(upper) + "_bound"),
+                       0, "1");
+}
+
+std::vector<Claim> lift_claims(const Table& lifts, const Table& tilts, const Table& turns,
+                               const Table& noise) {
+  using enum Carrier;
+  const std::vector<double>&printed = numbers(noise, "voxels_carried"),
+        &ours = numbers(noise, "continuous_carried");
+  return {
+      claim_bounded(lifts, voxels, voxels, "as printed, a plate is carried up to f_c (h - 2w)"),
+      claim_bounded(lifts, look_ahead, look_ahead, "by look-ahead up to f_c h"),
+      claim_bounded(lifts, continuous, continuous,
+                    "by the continuous rule up to f_c frame_reach_m, however thin the plate is"),
+      claim_bounded(tilts, voxels, continuous,
+                    "on a tilted surface as printed at least up to f_c (h - 2w) / cos(tilt)"),
+      claim_bounded(tilts, look_ahead, look_ahead, "by look-ahead up to f_c h / cos(tilt)"),
+      claim_bounded(tilts, continuous, continuous,
+                    "by the continuous rule up to f_c frame_reach_m / cos(tilt)"),
+      claim_bounded(turns, voxels, look_ahead,
+                    "on a surface that turns as printed until its nearer end passes through, by h - 2w to h"),
+      claim_bounded(turns, look_ahead, look_ahead, "by look-ahead until its nearer end passes through"),
+      claim_bounded(turns, continuous, continuous, "by the continuous rule at all that was tried"),
+      claim_at_least(kLiftFigure,
+                     "noise up to 4 mm does not lower the acceleration carried as printed: minimum", "-",
+                     std::ranges::min(printed) - printed.front(), 0, "m/s^2"),
+      claim_at_least(kLiftFigure,
+                     "by the continuous rule, noise up to 2 mm: acceleration that is always carried", "-",
+                     *std::min_element(ours.begin(), ours.end() - 1), 14, "m/s^2")};
+}
+
+}  // namespace
+
+Figure figure_tool_lifts(const FigureContext& context) {
+  Figure figure{
+      kLiftFigure, "Where a plate loses the surface that it is pressed onto",
+      "A surface of points rises, rises tilted, turns or accelerates under a plate of 40 x 40 mm, by the "
+      "three contact rules; frames at 30 Hz; simulated. Dots: up to here every run is carried. Dashed: "
+      "derived, one frame moves the surface through the plate (printed rule: through what is not shell; "
+      "continuous rule: by more than frame_reach_m, 20 mm)."};
+  figure.tables = {lift_limits(context), tilt_limits(context), turn_limits(context), noise_limits(context)};
+  figure.panels = {limit_panel(figure.tables[0], "thickness h (m)", "speed (m/s)", {0, 0}),
+                   limit_panel(figure.tables[1], "tilt (deg)", "speed (m/s)", {0, 1}),
+                   limit_panel(figure.tables[2], "distance from the axis (m)", "amplitude (deg)", {1, 0}),
+                   limit_panel(figure.tables[3], "noise (m)", "acceleration (m/s^2)", {1, 1})};
+  figure.claims = lift_claims(figure.tables[0], figure.tables[1], figure.tables[2], figure.tables[3]);
+  return figure;
+}
+
+}  // namespace remote_touch

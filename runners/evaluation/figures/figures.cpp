@@ -1,0 +1,124 @@
+#include "runners/evaluation/figures/figures.h"
+
+#include "core/parameters/input_error.h"
+#include "runners/sweep/sweep_run.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Seconds of one core of an AMD EPYC with AVX-512, tools in the cache.
+constexpr FigureEntry kFigures[] = {
+    {"4.10", "the proxy on a flat grid, in 3-D", figure_4_10, 0.05},
+    {"4.11", "a flat grid touched from above: proxy height, and the ripple of the contact point", figure_4_11,
+     0.03},
+    {"4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12, 1.3},
+    {"4.13", "pop-through in 5396 lifts, over noise and acceleration", figure_4_13, 32, true},
+    {"4.13-replicated", "a coarser map with 20 lifts a cell: probability of pop-through",
+     figure_4_13_replicated, 108, true, 3},
+    {"4.13-tracked", "the pop-through map of the renderer tracked-sheet, next to that of the proxy",
+     figure_4_13_tracked, 150, true, 4},
+    {"bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds, 38},
+    {"frame-rates",
+     "up to which acceleration the proxy stays on a surface, at 15, 30 and 60 frames per second",
+     figure_frame_rates, 5},
+    {"first-touch",
+     "how fast a surface may move when it first touches the proxy, at 15, 30 and 60 frames per second",
+     figure_first_touch, 1.3},
+    {"proxy-rates", "whether (4.23), (4.24) and the 16 r_c/s of [1] can come from one machine",
+     figure_proxy_rates, 20},
+    {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15},
+    {"4.15", "ramp and box as the points of a simulated depth camera, in 3-D", figure_4_15, 0.1},
+    {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15, 0.02},
+    {"4.16", "ramp and box seen by a simulated depth camera: proxy path and force", figure_4_16, 1.3},
+    {"4.16-recorded", "the experiment of 4.16 on recorded depth images and clouds", figure_4_16_recorded, 1},
+    {"5.5", "the region around a single point, entered and left", figure_5_5, 0.03},
+    {"5.6", "the step between two fixture radii, and a stiffness that varies across a plane", figure_5_6,
+     0.2},
+    {"5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8, 10},
+    {"5.8-recorded", "the fixture of 5.8 on recorded depth images, camera at rest and moving",
+     figure_5_8_recorded, 15},
+    {"5.9", "the proxy at the distance of a forbidden region from a beating organ, in 3-D", figure_5_9, 4},
+    {"6.2", "a recorded hand as points with normals, and what the filter does to a step", figure_6_2, 0.2},
+    {"6.3",
+     "a tool turned in a narrow box of points: displacement, rotation, counts of contacts over the spacing of "
+     "the points",
+     figure_6_3, 7},
+    {"6.3-angles", "the tool of 6.3 turned by other angles: where it stops, over spacing and contact rule",
+     figure_6_3_angles, 8},
+    {"6.4", "a bunny, a hand and a drill slide over recorded objects", figure_6_4, 8},
+    {"7.1-recorded", "an organ model and a dragon found by hue in recorded images", figure_7_1_recorded, 0.3},
+    {"7.4", "a tool of spheres is pushed towards two valves with forbidden regions", figure_7_4, 15},
+    {"7.5", "guidance leads the hand from one valve to the other, with five and with six motors", figure_7_5,
+     12},
+    {"7.5-guidance", "where guidance leads the hand, over its stiffness, with six and with five motors",
+     figure_7_5_guidance, 18},
+    {"7.5-recorded", "the task of 7.5 on a recorded desk: from an organ model to a dragon",
+     figure_7_5_recorded, 7},
+    {"latency", "how far a forbidden region is violated when frames arrive late, irregularly or not at all",
+     figure_latency, 18},
+    {"tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
+     figure_tool_forces, 8},
+    {"tool-lifts",
+     "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
+     figure_tool_lifts, 50},
+    {"tool-shapes",
+     "what speed lets an edge, a corner, a ball or a wall pass through a plate, by three contact rules",
+     figure_tool_shapes, 60},
+    {"tool-tracked",
+     "a plate on noisy surfaces that accelerate, by tracked sheets and by three contact rules",
+     figure_tool_tracked, 100, true, 2},
+    {"turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4},
+};
+
+}  // namespace
+
+std::span<const FigureEntry> figures() {
+  return kFigures;
+}
+
+Trace FigureContext::run(const Experiment& experiment) const {
+  note(experiment.to_json());
+  inputs_.add(experiment.inputs());
+  return simulated(experiment);
+}
+
+std::vector<Trace> FigureContext::run(const std::vector<Experiment>& experiments) const {
+  for (const Experiment& experiment : experiments) {
+    note(experiment.to_json());
+    inputs_.add(experiment.inputs());
+  }
+  return collect(experiments.size(), [&](std::size_t i) { return simulated(experiments[i]); });
+}
+
+std::string FigureContext::configurations() const {
+  std::string list;
+  for (const std::string& configuration : configurations_)
+    list += (list.empty() ? "[" : ", ") + configuration;
+  return list.empty() ? "[]" : list + "]";
+}
+
+Trace FigureContext::simulated(const Experiment& experiment) const {
+  SimulationOptions options;
+  options.kernels = &kernels_;
+  options.stop = stop_;
+  return simulate(experiment, options);
+}
+
+Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) const {
+  const Sweep whole = Sweep::load(name, overrides);
+  Sweep made = coarse_ > 1 ? whole.thinned(coarse_) : whole;
+  runs_of_maps_ += whole.plan().run_count(), made_runs_of_maps_ += made.plan().run_count();
+  return made;
+}
+
+SweepResult FigureContext::sweep(const Sweep& sweep) const {
+  note(sweep.to_json());
+  inputs_.add(sweep.inputs());
+  SweepResult result = run_sweep(sweep, {&kernels_, stop_, {}, runs_});
+  const auto failed = result.runs_in(RunState::failed);
+  if (!failed.empty()) throw InputError(sweep.title(), "a run failed: " + result.error[failed.front()]);
+  return result;
+}
+
+}  // namespace remote_touch

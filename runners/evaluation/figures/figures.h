@@ -1,0 +1,138 @@
+// The figures that can be reproduced: each runs experiments and hands their traces to analyses.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/figures/figure.h"
+#include "analysis/trace/trace.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/side_by_side.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+// r_c of every figure of chapters 4 and 5: Table 4.2.
+inline constexpr double kContactRadius_m = 0.005;
+
+// Runs the experiments of a figure. Independent runs go in parallel; results do not depend on the number of
+// threads.
+class FigureContext {
+ public:
+  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all.
+  FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, int coarse = 1,
+                SideBySide runs = side_by_side)
+      : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
+
+  Trace run(const Experiment& experiment) const;
+  // Records an experiment whose frames are used without a run.
+  void uses(const Experiment& experiment) const {
+    note(experiment.to_json());
+    inputs_.add(experiment.inputs());
+  }
+  const Kernels& kernels() const { return kernels_; }
+  std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // side by side
+  // The result of of(trace) for each run, in parallel. The first failure is thrown after all have ended.
+  template <class Of>
+  auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
+    if (!experiments.empty()) note(experiments.front().to_json());
+    for (const Experiment& experiment : experiments) inputs_.add(experiment.inputs());
+    return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
+  }
+  // A stored sweep that has thousands of runs, for the two calls below.
+  Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
+  // Over all calls of map(): number of runs of the full maps, and of those that are made.
+  std::size_t runs_of_maps() const { return runs_of_maps_; }
+  std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
+  // Every run of a sweep; throws InputError when one failed.
+  SweepResult sweep(const Sweep& sweep) const;
+  // The result of of(trace) for each run of a sweep's plan, in its order.
+  template <class Of>
+  auto measure(const Sweep& sweep, Of&& of) const {
+    const SweepResult plan = sweep.plan();
+    note(sweep.to_json());
+    inputs_.add(sweep.inputs());
+    return collect(plan.run_count(), [&](std::size_t run) {
+      return of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
+    });
+  }
+  // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
+  // JSON list.
+  std::string configurations() const;
+  // Hashes of the recordings that all of them read, see input_hashes.h.
+  std::string inputs() const { return inputs_.text(); }
+  void require_unchanged_inputs() const { inputs_.require_unchanged(); }
+
+ private:
+  Trace simulated(const Experiment& experiment) const;
+  template <class Work>
+  auto collect(std::size_t count, Work&& work) const {
+    std::vector<decltype(work(std::size_t{}))> results(count);
+    runs_(count, [&](std::size_t i) { results[i] = work(i); });
+    return results;
+  }
+  void note(const std::string& configuration) const { configurations_.push_back(configuration); }
+
+  mutable std::vector<std::string> configurations_;
+  mutable InputHashes inputs_;
+  const Kernels& kernels_;
+  const std::atomic<bool>* stop_;
+  int coarse_;
+  SideBySide runs_;
+  mutable std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
+};
+
+// A new figure is one file and one line in figures.cpp. May throw InputError: the figure is then reported as
+// not run.
+struct FigureEntry {
+  const char* name;
+  const char* summary;
+  Figure (*make)(const FigureContext& context);
+  double expected_s;     // time on one thread, for the order of figures and the time left
+  bool has_map = false;  // most of that time is for the map
+  int quick_coarse = 1;  // value of coarse for a quick figure
+};
+std::span<const FigureEntry> figures();
+
+Figure figure_4_10(const FigureContext& context);
+Figure figure_4_11(const FigureContext& context);
+Figure figure_4_12(const FigureContext& context);
+Figure figure_4_13(const FigureContext& context);
+Figure figure_4_13_replicated(const FigureContext& context);
+Figure figure_4_13_tracked(const FigureContext& context);
+Figure figure_4_14(const FigureContext& context);
+Figure figure_4_15(const FigureContext& context);
+Figure figure_4_16(const FigureContext& context);
+Figure figure_4_16_recorded(const FigureContext& context);
+Figure figure_5_5(const FigureContext& context);
+Figure figure_5_6(const FigureContext& context);
+Figure figure_latency(const FigureContext& context);
+Figure figure_5_8(const FigureContext& context);
+Figure figure_5_8_recorded(const FigureContext& context);
+Figure figure_5_9(const FigureContext& context);
+Figure figure_6_2(const FigureContext& context);
+Figure figure_6_3(const FigureContext& context);
+Figure figure_6_3_angles(const FigureContext& context);
+Figure figure_6_4(const FigureContext& context);
+Figure figure_7_1_recorded(const FigureContext& context);
+Figure figure_7_4(const FigureContext& context);
+Figure figure_7_5(const FigureContext& context);
+Figure figure_7_5_guidance(const FigureContext& context);
+Figure figure_7_5_recorded(const FigureContext& context);
+Figure figure_bounds(const FigureContext& context);
+Figure figure_eq4_15(const FigureContext& context);
+Figure figure_first_touch(const FigureContext& context);
+Figure figure_frame_rates(const FigureContext& context);
+Figure figure_proxy_rates(const FigureContext& context);
+Figure figure_tool_forces(const FigureContext& context);
+Figure figure_tool_lifts(const FigureContext& context);
+Figure figure_tool_shapes(const FigureContext& context);
+Figure figure_tool_tracked(const FigureContext& context);
+Figure figure_turbidity(const FigureContext& context);
+
+}  // namespace remote_touch

@@ -1,0 +1,60 @@
+#include "runners/evaluation/figures/hue_masks.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment) {
+  std::vector<std::unique_ptr<FixtureRule>> rules;
+  const Json resolved = parse_json(experiment.to_json(), "experiment");
+  for (const Json& part : resolved.at("fixtures")) {
+    const auto factory = find_entry(fixtures(), part.at("name").get<std::string>(), "fixture").make();
+    read_parameters(part, factory->settings(), "fixtures", {"name"});
+    rules.push_back(factory->build());
+  }
+  return rules;
+}
+
+std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud) {
+  std::vector<char> picked;
+  for (const double fraction : rule.weights(cloud)) picked.push_back(fraction > 0);
+  return picked;
+}
+
+std::vector<char> measured_points(const PointCloud& cloud) {
+  std::vector<char> measured;
+  for (std::size_t i = 0; i < cloud.size(); ++i) measured.push_back(cloud.is_measured(i));
+  return measured;
+}
+
+Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
+                    const std::vector<std::uint32_t>& colours, const PictureCrop& crop) {
+  const int width = cloud.image->camera.width;
+  std::vector<double> column, row, colour;
+  for (int v = crop.top; v < crop.bottom; v += crop.step)
+    for (int u = crop.left; u < crop.right; u += crop.step) {
+      column.push_back(u), row.push_back(v);
+      colour.push_back(colours[static_cast<std::size_t>(v) * width + u]);
+    }
+  Table table{name, title};
+  table.add("column", "px", "column of the pixel", std::move(column));
+  table.add("row", "px", "row of the pixel", std::move(row));
+  table.add("colour", "1", "red * 65536 + green * 256 + blue", std::move(colour));
+  return table;
+}
+
+Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
+                    const PictureCrop& crop) {
+  Panel panel{title, "", "", true, {{table, "column", "row", CurveStyle::image}}};
+  panel.curves.front().z = "colour";
+  panel.x_range = std::pair(crop.left - 0.5, crop.right - 0.5);
+  panel.y_range = std::pair(crop.bottom - 0.5, crop.top - 0.5);  // rows count downwards
+  panel.place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  return panel;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+// Pixels of an image that colour rules select, and pictures of images.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "runners/evaluation/figures/figures.h"
+
+namespace remote_touch {
+
+// Each fixture rule of an experiment by itself, in order.
+std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment);
+
+// 1 for every point that the rule selects; 1 for every measured point.
+std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
+std::vector<char> measured_points(const PointCloud& cloud);
+
+// Pixels of an image that a picture shows: every step'th of the columns left .. right - 1 and of the rows
+// top .. bottom - 1.
+struct PictureCrop {
+  int left, top, right, bottom, step = 1;
+};
+
+// Columns column, row and colour; the colours of all pixels, 0xRRGGBB. pre: the cloud has an image.
+Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
+                    const std::vector<std::uint32_t>& colours, const PictureCrop& crop);
+// The table of picture_table() as an image.
+Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
+                    const PictureCrop& crop);
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+#include "runners/evaluation/figures/tools/carried_limits.h"
+
+namespace remote_touch {
+
+double CarrySweep::value(std::size_t setting, std::size_t axis) const {
+  const std::size_t place = result_.place(cell(setting, 0, Carrier::voxels)).at(axis);
+  return std::get<std::vector<double>>(result_.axes.at(axis).values).at(place);
+}
+
+Tally CarrySweep::lost(std::size_t setting, std::size_t strength, Carrier rule) const {
+  return tally(result_, result_.measure("tool_popped_through"), cell(setting, strength, rule));
+}
+
+CarrySweep::Limit CarrySweep::limit(std::size_t setting, Carrier rule) const {
+  Limit limit;
+  for (std::size_t i = 0; i < strengths().size(); ++i) {
+    const Tally lost_here = lost(setting, i, rule);
+    const bool any = lost_here.events > 0, all = lost_here.events == lost_here.runs;
+    if (any && limit.lost > strengths()[i]) limit.lost = strengths()[i];
+    if (strengths()[i] < limit.lost) limit.carried = strengths()[i];
+    if (!all)
+      limit.all_lost = std::numeric_limits<double>::infinity();
+    else if (limit.all_lost > strengths()[i])
+      limit.all_lost = strengths()[i];
+  }
+  return limit;
+}
+
+double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
+                        const std::string& low, const std::string& high) {
+  const auto &from = numbers(table, carried), &to = numbers(table, lost), &least = numbers(table, low),
+             &most = numbers(table, high);
+  double apart = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) apart += to[i] < least[i] || from[i] > most[i];
+  return apart;
+}
+
+Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
+                  std::pair<double, double> place) {
+  Panel panel{table.title, x_label, y_label};
+  for (const CarrierName& carrier : kCarriers) {
+    const std::string column = carrier.column, x = table.columns[0].name;
+    panel.curves.push_back(
+        {table.name, x, column + "_bound", CurveStyle::dashed, std::string(carrier.label) + ", derived"});
+    panel.curves.push_back({table.name, x, column + "_carried", CurveStyle::dots, carrier.label});
+  }
+  panel.place = place;
+  return panel;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,42 @@
+// Tables that a picture of a tool in a cloud is drawn from.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/figures/figure.h"
+#include "analysis/trace/trace.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/geometry/point_cloud.h"
+#include "runners/experiment/catalog/experiment.h"
+
+namespace remote_touch {
+
+// The tool that an experiment's 6-DOF renderer moves.
+std::shared_ptr<const VoxelTool> tool_of(const Experiment& experiment);
+
+// A frame's cloud as the renderer gets it: filtered and with normals, if the experiment has a depth pipeline.
+PointCloud processed_cloud(const Experiment& experiment, const Kernels& kernels, int frame);
+
+// Chosen points, with their normals, and colours as 0xRRGGBB if the cloud has them.
+Table cloud_table(const std::string& name, const std::string& title, const PointCloud& cloud,
+                  const std::vector<std::size_t>& chosen);
+Table vertex_table(const std::string& name, const TriangleMesh& mesh);
+Table triangle_table(const std::string& name, const TriangleMesh& mesh);
+// Two rows for each of the ticks: the tool, then the device.
+Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks);
+
+// A cloud, and the tool at tick number `instant` of the pose table: filled at the tool's pose, transparent at
+// the device's. Tables are NAME_cloud, NAME_vertices, NAME_triangles and NAME_poses.
+std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instant, double point_m);
+
+Panel scene_panel(const std::string& title, int row, int column, Scene scene);
+
+// Angle of the rotation from one orientation to the other, rad.
+double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+// Distance and angle between the tool's and the device's pose in a tick.
+double lag_m(const Trace& trace, std::size_t tick);
+double lag_rad(const Trace& trace, std::size_t tick);
+
+}  // namespace remote_touch

@@ -1,0 +1,18 @@
+// A comparison for people: tables, on standard output if nothing else is said.
+#pragma once
+
+#include <cstdio>
+
+#include "runners/evaluation/regression/result_comparison.h"
+
+namespace remote_touch {
+
+void print_comparison(const ResultComparison& comparison, std::FILE* out = stdout);
+
+// "same", "REGRESSED", "CHANGED", "COULD NOT COMPARE".
+const char* word_for(Outcome outcome);
+
+// "exact", or "1e-09 + 1e-06 relative".
+std::string tolerance_text(const Tolerance& tolerance);
+
+}  // namespace remote_touch

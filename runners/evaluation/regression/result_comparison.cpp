@@ -1,0 +1,282 @@
+#include "runners/evaluation/regression/result_comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/hash64.h"
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/regression/measure_comparison.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/settings/configuration_difference.h"
+
+namespace remote_touch {
+
+namespace {
+
+ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
+                       const TextAttributes& candidate) {
+  ResultComparison result{"baseline", "candidate", kind};
+  const auto configuration = [](const TextAttributes& of) {
+    const std::string text = attribute(of, "config");
+    return text.empty() ? std::string("null") : text;
+  };
+  result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
+  for (const char* name : {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler",
+                           "flags", "isa", "program", "program_sha256", "plugins"})
+    if (attribute(baseline, name) != attribute(candidate, name))
+      result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
+                                  attribute(candidate, name));
+  for (const ChangedInput& input :
+       changed_inputs(attribute(baseline, "input_digests"), attribute(candidate, "input_digests")))
+    result.provenance.push_back("input " + input.path + " " + input.before + " against " + input.now);
+  return result;
+}
+
+void conclude(ResultComparison& result, Outcome outcome, std::string verdict) {
+  result.outcome = outcome;
+  result.verdict = std::move(verdict);
+}
+
+// "proxy_position and 3 more of 16 columns"
+std::string count_text(const std::vector<std::string>& names, std::size_t of, const char* things) {
+  std::string text = names.front();
+  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
+  return text + " of " + std::to_string(of) + " " + things;
+}
+
+// "; worse: force_noise; better: max_sink, max_float"; empty where every measure is equal or within a margin.
+std::string judgements_text(const ResultComparison& result) {
+  constexpr std::size_t kNamed = 4;  // names that are listed for each judgement
+  std::string text;
+  for (const Judgement requested :
+       {Judgement::worse, Judgement::better, Judgement::changed, Judgement::undecided}) {
+    std::string names;
+    std::size_t count = 0;
+    for (const MeasureJudgement& measure : judged_measures(result))
+      if (measure.judgement == requested && ++count <= kNamed)
+        names += (names.empty() ? "" : ", ") + measure.name;
+    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+    if (count > 0) text += std::string("; ") + name_of(requested) + ": " + names;
+  }
+  return text;
+}
+
+bool got_worse(const ResultComparison& result) {
+  for (const MeasureJudgement& measure : judged_measures(result))
+    if (measure.judgement == Judgement::worse) return true;
+  return false;
+}
+
+void judge_columns(ResultComparison& result) {
+  const std::vector<ColumnComparison>& columns = result.columns->columns;
+  std::vector<std::string> failed;
+  std::size_t rows = 0;
+  bool exact = true;
+  for (const ColumnComparison& column : columns) {
+    if (!column.is_same()) failed.push_back(column.name);
+    rows = std::max(rows, column.rows);
+    exact &= !column.first_difference;
+  }
+  if (rows == 0) return conclude(result, Outcome::not_comparable, "nothing was compared");
+  if (failed.empty())
+    return conclude(result, Outcome::same,
+                    std::to_string(columns.size()) + " columns, " +
+                        (exact ? "every number is the same" : "every number is within its tolerance"));
+  std::string text = count_text(failed, columns.size(), "columns");
+  if (const auto& first = result.columns->divergence)
+    text += ", from tick " + std::to_string(first->tick) + " on (" + name_of(first->cause) + ")";
+  if (const ColumnComparison& first = columns.front(); first.baseline_rows != first.candidate_rows)
+    text += "; the baseline has " + std::to_string(first.baseline_rows) + " rows, the candidate " +
+            std::to_string(first.candidate_rows) +
+            (result.columns->divergence ? "" : ", and they are the same as far as both go");
+  if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
+  conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
+}
+
+// Each tolerance has to be of something, else a misspelt one would leave its column exact.
+void check_names(const Tolerances& tolerances, const std::vector<std::string>& names,
+                 const Directions& measures = {}) {
+  for (const auto& [name, tolerance] : tolerances) {
+    if (name == "*" || measures.contains(name) || std::find(names.begin(), names.end(), name) != names.end())
+      continue;
+    std::string known;
+    for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+    throw InputError("tolerance of " + name, "there is no such column: expected " + known +
+                                                 (measures.empty() ? "" : ", or a measure"));
+  }
+}
+
+std::string exact_text(const SweepComparison& sweep) {
+  if (sweep.exact == ExactVerdict::equal)
+    return std::to_string(sweep.done_in_both) + " runs, every measure is the same or within its tolerance";
+  std::int64_t outside = 0;
+  for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
+  return "up to " + std::to_string(outside) + " of " + std::to_string(sweep.done_in_both) +
+         " runs differ in a measure, " +
+         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only" +
+         (sweep.newly_failed == 0
+              ? ""
+              : ", of which " + std::to_string(sweep.newly_failed) + " failed in the candidate");
+}
+
+void judge_sweep(ResultComparison& result, const PairedRule& rule) {
+  const SweepComparison& sweep = *result.sweep;
+  const std::string text = exact_text(sweep), measures = judgements_text(result);
+  char margins[160];
+  std::snprintf(margins, sizeof margins, "the margins (%.3g of the runs for events, %.3g for other measures)",
+                rule.margin, rule.shift_margin);
+  if (result.paired ? sweep.paired == PairedVerdict::equal : sweep.exact == ExactVerdict::equal)
+    return conclude(result, Outcome::same, text);
+  if (result.paired && sweep.paired == PairedVerdict::within_margin)
+    return conclude(result, Outcome::same, text + "; all changes are within " + margins);
+  if (result.paired && sweep.paired == PairedVerdict::undecided)
+    return conclude(result, Outcome::not_comparable,
+                    text + "; too few runs to be sure of " + margins + measures);
+  const bool some_failed =
+      sweep.newly_failed > 0 && (!result.paired || sweep.paired == PairedVerdict::runs_missing);
+  conclude(result, got_worse(result) || some_failed ? Outcome::regressed : Outcome::changed, text + measures);
+}
+
+StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
+  if (kind == "hashes") return read_hashes(result);
+  return {hashes_of_trace(StoredTrace(result), 1), result.attributes()};
+}
+
+ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader& second_file,
+                                 const ComparisonRules& rules) {
+  const std::string ours = kind_of(first_file), theirs = kind_of(second_file);
+  const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
+  const bool hashed = ours == "hashes" || theirs == "hashes";
+  if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
+    throw InputError(second_file.file(), "is a " + theirs + ": expected a " + ours + ", as the baseline is");
+  if (hashed) {
+    if (!rules.tolerances.empty())
+      throw InputError("tolerance of " + rules.tolerances.begin()->first,
+                       "hashes are equal or not: expected with traces, sweeps and figures");
+    return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
+  }
+  if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
+  if (ours == "trace") {
+    const StoredTrace first(first_file), second(second_file);
+    return compare_trace(first, first.attributes(), second, second.attributes(), rules);
+  }
+  const StoredSweep first = read_sweep(first_file), second = read_sweep(second_file);
+  return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
+}
+
+}  // namespace
+
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::same:
+      return "same";
+    case Outcome::regressed:
+      return "regressed";
+    case Outcome::changed:
+      return "changed";
+    case Outcome::not_comparable:
+      break;
+  }
+  return "not_comparable";
+}
+
+std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison) {
+  std::vector<MeasureJudgement> all;
+  for (const ValueComparison& measure : comparison.measures) all.push_back({measure.name, measure.judgement});
+  if (comparison.sweep && comparison.sweep->problems.empty())
+    for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i)
+      all.push_back(
+          {comparison.sweep->measures[i].name, judgement_of(*comparison.sweep, i, comparison.paired)});
+  return all;
+}
+
+std::string kind_of(const Hdf5Reader& result) {
+  const std::string schema = attribute(result.attributes(), "schema");
+  for (const char* kind : {"trace", "sweep", "figure", "hashes"})
+    if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
+  throw InputError(result.file(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
+                                      ": expected a trace, a sweep, a figure or hashes of this program");
+}
+
+ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                                const ComparisonRules& rules) {
+  check_names(rules.tolerances, baseline.columns());
+  // A figure's configuration is a list of all that it ran: too long to be told place by place.
+  ResultComparison result = begin("figure", {}, {});
+  result.columns = compare_by_name(baseline, candidate, rules.tolerances);
+  judge_columns(result);
+  return result;
+}
+
+ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes& candidate) {
+  ResultComparison result = begin("hashes", baseline.attributes, candidate.attributes);
+  const HashComparison hashes = compare_hashes(baseline.hashes, candidate.hashes);
+  result.hashes = hashes;
+  const std::string counted = std::to_string(hashes.compared) + " hashes compared";
+  if (hashes.compared == 0)
+    conclude(result, Outcome::not_comparable, "nothing was compared: no tick is in both");
+  else if (hashes.is_same())
+    conclude(result, Outcome::same, counted + ", all the same");
+  else if (hashes.different)
+    conclude(result, Outcome::changed,
+             counted + "; the first divergent tick is after " +
+                 (hashes.same ? "tick " + std::to_string(*hashes.same) : "none") + " and not after tick " +
+                 std::to_string(*hashes.different));
+  else
+    conclude(result, Outcome::changed, counted + ", all the same, but one run is longer");
+  return result;
+}
+
+ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
+                               const ColumnSource& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  std::vector<std::string> names = baseline.columns();
+  std::erase(names, std::string(kRunningHash));  // follows from the others
+  check_names(rules.tolerances, names, directions());
+  ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
+  result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
+  if (!result.columns->is_same()) {
+    result.no_measures = tick_difference(baseline, candidate);
+    auto measures = result.no_measures.empty() ? compare_measures(baseline, baseline_attributes, candidate,
+                                                                  candidate_attributes, rules.tolerances)
+                                               : std::nullopt;
+    if (measures)
+      result.measures = std::move(*measures), result.not_judged = outcome_difference(result.measures);
+    else if (result.no_measures.empty())
+      result.no_measures = "a column is missing, or the runs are not of one length";
+  }
+  judge_columns(result);
+  return result;
+}
+
+ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                               const SweepResult& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
+  result.paired = rules.paired;
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions());
+  for (const std::string& difference : result.configuration) {
+    if (difference.starts_with("experiment.seed "))
+      result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");
+    if (difference.starts_with("experiment.duration_s "))
+      result.sweep->problems.push_back(difference + ": measures of another duration cannot be compared");
+  }
+  if (!result.sweep->problems.empty())
+    conclude(result, Outcome::not_comparable, result.sweep->problems.front());
+  else
+    judge_sweep(result, rules.rule);
+  return result;
+}
+
+ResultComparison compare_results(const Hdf5Reader& baseline, const Hdf5Reader& candidate,
+                                 const ComparisonRules& rules) {
+  ResultComparison result = compare_by_kind(baseline, candidate, rules);
+  result.baseline = baseline.file(), result.candidate = candidate.file();
+  return result;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,313 @@
+#include "runners/evaluation/scorecard/benchmark.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "analysis/measures/settled_contact_measures.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "scenarios/text_files/text_file.h"
+
+namespace remote_touch {
+
+namespace {
+
+Json read_object(const std::string& json, const std::string& label,
+                 std::initializer_list<const char*> parts) {
+  Json object = parse_json(json, label);
+  if (!object.is_object()) throw InputError(label, "not an object: expected {...}");
+  std::string known;
+  for (const char* part : parts) known.append(known.empty() ? "" : ", ").append(part);
+  for (const auto& item : object.items())
+    if (std::find(parts.begin(), parts.end(), item.key()) == parts.end())
+      throw InputError(label + ": " + item.key(), "unknown: expected " + known);
+  return object;
+}
+
+std::string text_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_string())
+    throw InputError(label + ": " + part, "missing: expected a text");
+  return found->get<std::string>();
+}
+
+std::string object_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_object())
+    throw InputError(label + ": " + part, "missing: expected {...}");
+  return found->dump();
+}
+
+// The direction of a measure in a scene. "judged" is the measure's own direction. A scene gives one only to a
+// measure without a direction: less force is better in a scene where nothing should be touched.
+Better better_of(const Json& word, const std::string& measure, const std::string& label) {
+  const Better own = direction_of(directions(), measure);
+  if (word == "reported") return Better::neither;
+  if (word == "judged" && own != Better::neither) return own;
+  for (const auto& [name, better] :
+       {std::pair("larger", Better::larger), {"smaller", Better::smaller}, {"near_zero", Better::near_zero}})
+    if (word == name && (own == Better::neither || own == better)) return better;
+  throw InputError(label + " = " + shown(word),
+                   own == Better::neither ? "expected larger, smaller, near_zero, reported"
+                                          : std::string(text_of(own)) + ": expected judged, reported");
+}
+
+Bound bound_of(const Json& json, const std::string& label) {
+  Bound bound;
+  read_parameters(json,
+                  {{"measure", &bound.measure, 0, 0, "what is bounded"},
+                   {"min", &bound.min, -1e12, 1e12, "lower end"},
+                   {"max", &bound.max, -1e12, 1e12, "upper end"}},
+                  label);
+  return bound;
+}
+
+std::vector<Bound> bounds_of(const Json& success, const char* part, const std::string& rule) {
+  const auto found = success.find(part);
+  if (found == success.end()) return {};
+  if (!found->is_array() || found->empty())
+    throw InputError(rule + "." + part, "no list: expected a list of {\"measure\", \"min\", \"max\"}");
+  std::vector<Bound> bounds;
+  for (const Json& bound : *found) bounds.push_back(bound_of(bound, rule + "." + part));
+  return bounds;
+}
+
+void add_measure(BenchmarkScene& scene, const std::string& name, Better better) {
+  for (const BenchmarkScene::Judged& judged : scene.measures)
+    if (judged.measure == name) return;
+  scene.measures.push_back({name, better});
+}
+void add_judged(BenchmarkScene& scene, const std::string& name) {
+  add_measure(scene, name, direction_of(directions(), name));
+}
+
+// {"rule": "held", "tolerance_m", "bounds" and their "meaning"}: the bounds come in addition.
+void read_held_rule(const Json& success, const std::string& rule, BenchmarkScene& scene) {
+  if (success["rule"] != "held")
+    throw InputError(rule + ".rule = " + shown(success["rule"]), "expected held");
+  double tolerance_m = kScorecardRadius_m;
+  Json own = success;
+  for (const char* part : {"rule", "meaning", "bounds", "old_bounds"}) own.erase(part);
+  read_parameters(own, {{"tolerance_m", &tolerance_m, 1e-6, 1, "how far off the surface the contact may be"}},
+                  rule);
+  scene.meaning = held_meaning(tolerance_m);
+  scene.success = held_bounds(tolerance_m);
+  if (!success.contains("bounds")) return;
+  scene.meaning += "; " + text_of(success, "meaning", rule);
+  for (const Bound& bound : bounds_of(success, "bounds", rule)) scene.success.push_back(bound);
+}
+
+void read_success(const Json& success, const std::string& rule, BenchmarkScene& scene) {
+  scene.old_success = bounds_of(success, "old_bounds", rule);
+  if (success.contains("rule")) {
+    read_held_rule(success, rule, scene);
+    add_judged(scene, "rms_contact_error");
+    for (const char* name : {"max_sink", "max_float"}) add_measure(scene, name, Better::neither);
+    return;
+  }
+  scene.meaning = text_of(success, "meaning", rule);
+  scene.success = bounds_of(success, "bounds", rule);
+  if (scene.success.empty())
+    throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
+}
+
+// Returns the name of a file's method or scene in a scorecard, whose results are files of that name. Throws
+// InputError if the name has other characters than those allowed.
+std::string name_in(const std::string& file, const char* kind) {
+  const std::string name = std::filesystem::path(file).stem().string();
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), is_plain))
+    throw InputError(std::string(kind) + " " + file,
+                     "expected letters, digits, '-', '_' and '.' for its name");
+  return name;
+}
+
+// Returns name and JSON of an embedded method or scene, or of one in a file.
+std::pair<std::string, std::string> found(std::span<const EmbeddedText> stored, const std::string& name,
+                                          const char* kind) {
+  std::string known;
+  for (const EmbeddedText& text : stored) {
+    if (name == text.name) return {name, text.json};
+    known.append(known.empty() ? "" : ", ").append(text.name);
+  }
+  const std::string expected = "expected " + known + ", or a JSON file";
+  if (!name.ends_with(".json")) throw InputError(std::string(kind) + " " + name, "unknown: " + expected);
+  return {name_in(name, kind), read_text_file(name, expected)};
+}
+
+// Reads the methods or scenes with these names; no names: all stored ones. stored: the texts of data/, or a
+// table in a test.
+template <class Item, class Read>
+std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector<std::string>& names,
+                         const char* kind, Read&& read) {
+  std::vector<Item> items;
+  std::set<std::string> taken;
+  for (const std::string& wanted : names) {
+    const auto [name, json] = found(stored, wanted, kind);
+    if (!taken.insert(name).second)
+      throw InputError(std::string(kind) + " " + name, "appears twice: expected once");
+    items.push_back(read(name, json));
+  }
+  if (!names.empty()) return items;
+  for (const EmbeddedText& text : stored) items.push_back(read(text.name, text.json));
+  return items;
+}
+
+// The measures of a scene's sweep: those of its bounds, those it names, and what a renderer did in every
+// tick.
+std::vector<std::string> measured(const BenchmarkScene& scene) {
+  std::vector<std::string> names;
+  const auto add = [&names](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Bound& bound : scene.success) add(bound.measure);
+  for (const Bound& bound : scene.old_success) add(bound.measure);
+  for (const BenchmarkScene::Judged& judged : scene.measures) add(judged.measure);
+  add("mean_steps"), add("non_finite_fraction");
+  return names;
+}
+
+}  // namespace
+
+const std::vector<double>& scorecard_noise_m() {
+  static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
+  return levels;
+}
+
+std::vector<Bound> held_bounds(double tolerance_m) {
+  Bound error{"max_contact_error"}, force{"contact_force_fraction"}, known{"contact_known_fraction"};
+  error.max = tolerance_m, force.min = 0.9, known.min = 0.9;
+  return {error, force, known};
+}
+
+std::string held_meaning(double tolerance_m) {
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "held: from %g s after the HIP got below the true surface on, the contact point is never more "
+      "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
+      kSettling_s, 1e3 * tolerance_m);
+  return text;
+}
+
+Method read_method(const std::string& name, const std::string& json) {
+  const std::string label = "method " + name;
+  const Json object = read_object(json, label, {"title", "renderer"});
+  return {name, text_of(object, "title", label), object_of(object, "renderer", label)};
+}
+
+BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
+  const std::string label = "scene " + name;
+  const Json object =
+      read_object(json, label, {"title", "experiment", "tool", "noise", "measures", "success"});
+  BenchmarkScene scene{
+      name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
+  if (object.contains("tool")) scene.tool = object_of(object, "tool", label);
+  if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
+  const Json measures = parse_json(object_of(object, "measures", label), label);
+  for (const auto& item : measures.items())
+    scene.measures.push_back(
+        {item.key(), better_of(item.value(), item.key(), label + ": measures." + item.key())});
+  const std::string rule = label + ": success";
+  read_success(read_object(object_of(object, "success", label), rule,
+                           {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
+               rule, scene);
+  add_judged(scene, "jump_fraction_10");
+  for (const char* perceived :
+       {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10", "packet_rate_20"})
+    add_measure(scene, perceived, Better::neither);
+  return scene;
+}
+
+namespace {
+
+// The scene's tool, in a method's renderer: a card would state a tool of the method that was not run.
+void bring_tool(const Json& tool, const std::string& scene, const std::string& method, Json& renderer) {
+  for (const auto& item : tool.items()) {
+    const Json stated = renderer.value(item.key(), item.value());
+    if (stated != item.value())
+      throw InputError("method " + method + ": renderer." + item.key() + " = " + shown(stated),
+                       "scene " + scene + " has a tool of its own: expected none");
+  }
+  renderer.update(tool);
+}
+
+}  // namespace
+
+Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
+  const std::string label = "scene " + name + " with " + method.name;
+  Json run = parse_json(experiment, label);
+  if (run.contains("renderer"))
+    throw InputError("scene " + name + ": experiment.renderer",
+                     "set: expected none, because methods define it");
+  if (run.contains("seed"))
+    throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
+  run["renderer"] = parse_json(method.renderer, label);
+  if (!tool.empty()) bring_tool(parse_json(tool, label), name, method.name, run["renderer"]);
+  run["seed"] = kScorecardSeed;
+  // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
+  // It then has as many runs as others have with noise, so that as many pairs decide.
+  const bool own_noise = noise.empty();
+  const auto noisy_levels = static_cast<int>(scorecard_noise_m().size()) - 1;
+  const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
+  return Sweep::from_json(Json{{"title", name + " with " + method.name + ": " + title},
+                               {"experiment", run},
+                               {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
+                               {"replicates", own_noise ? noisy_levels * replicates : replicates},
+                               {"measures", measured(*this)}}
+                              .dump(),
+                          label);
+}
+
+std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
+                          int replicates) {
+  Json all = {{"replicates", replicates},
+              {"noise_sigma_m", scorecard_noise_m()},
+              {"seed", kScorecardSeed},
+              {"tuned_seeds", {1, kLastTunedSeed}}};
+  for (const Method& method : methods) all["methods"][method.name] = parse_json(method.renderer, method.name);
+  for (const BenchmarkScene& scene : scenes) {
+    Json& json = all["scenes"][scene.name];
+    json["experiment"] = parse_json(scene.experiment, scene.name);
+    if (!scene.tool.empty()) json["tool"] = parse_json(scene.tool, scene.name);
+    if (!scene.noise.empty()) json["noise"] = scene.noise;
+    for (const Bound& bound : scene.success) {
+      Json limits = {{"measure", bound.measure}};
+      if (std::isfinite(bound.min)) limits["min"] = bound.min;
+      if (std::isfinite(bound.max)) limits["max"] = bound.max;
+      json["success"].push_back(limits);
+    }
+  }
+  return all.dump();
+}
+
+// The name of a renderer stands for it with its defaults, where no method has that name.
+std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
+  const auto stored = embedded_methods();
+  if (names.empty()) return chosen<Method>(stored, names, "method", read_method);
+  std::vector<EmbeddedText> known(stored.begin(), stored.end());
+  std::deque<std::string> texts;
+  for (const RendererEntry& entry : renderers()) {
+    if (std::any_of(stored.begin(), stored.end(),
+                    [&](const EmbeddedText& text) { return text.name == entry.name; }))
+      continue;
+    texts.push_back(Json{{"title", entry.summary}, {"renderer", {{"name", entry.name}}}}.dump());
+    known.push_back({entry.name.c_str(), texts.back().c_str()});
+  }
+  return chosen<Method>(std::span<const EmbeddedText>(known), names, "method", read_method);
+}
+
+std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names) {
+  return chosen<BenchmarkScene>(embedded_scenes(), names, "scene", read_benchmark_scene);
+}
+
+}  // namespace remote_touch

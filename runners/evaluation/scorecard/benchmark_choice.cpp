@@ -1,0 +1,75 @@
+#include "runners/evaluation/scorecard/benchmark_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+bool is_for_tools(const Method& method) {
+  const std::string label = "method " + method.name + ": renderer";
+  const Json renderer = parse_json(method.renderer, label);
+  if (!renderer.contains("name") || !renderer["name"].is_string())
+    throw InputError(label + ".name", "missing: expected a renderer");
+  const std::string name = renderer["name"];
+  return find_entry(renderers(), name, label + ".name").degrees_of_freedom == DegreesOfFreedom::six;
+}
+
+namespace {
+
+bool has_known_contact(const Method& method) {
+  const Json renderer = parse_json(method.renderer, "method " + method.name);
+  const auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer").make();
+  read_parameters(renderer, factory->settings(), "method " + method.name + ": renderer", {"name"});
+  return !std::isnan(factory->contact().rest_distance_m);
+}
+
+bool judges_contact(const BenchmarkScene& scene) {
+  const auto is_of_contact = [](const Bound& bound) {
+    return std::any_of(measures().begin(), measures().end(), [&](const Measure& measure) {
+      return measure.name == bound.measure && measure.runs == MeasuredRuns::contact;
+    });
+  };
+  return std::any_of(scene.success.begin(), scene.success.end(), is_of_contact);
+}
+
+// Throws InputError if a scene judges the contact of a renderer whose rest distance is not known. Its runs
+// would count as failures.
+void require_known_contact(const Benchmark& chosen) {
+  for (const Method& method : chosen.methods) {
+    if (is_for_tools(method) || has_known_contact(method)) continue;
+    for (const BenchmarkScene& scene : chosen.scenes)
+      if (judges_contact(scene))
+        throw InputError(
+            "method " + method.name,
+            "the rest distance of its renderer is not known, by which scene " + scene.name +
+                " judges: expected rendered_contact() of its settings, or rest_distance_m of a plug-in");
+  }
+}
+
+}  // namespace
+
+Benchmark chosen_benchmark(const std::vector<std::string>& methods, const std::vector<std::string>& scenes,
+                           int replicates, const std::string& folder) {
+  Benchmark chosen{chosen_methods(methods), chosen_scenes(scenes), replicates, folder};
+  const bool tools = !methods.empty()  ? is_for_tools(chosen.methods.front())
+                     : !scenes.empty() ? is_for_tools(chosen.scenes.front())
+                                       : false;
+  const auto fits = [tools](const auto& each) { return is_for_tools(each) == tools; };
+  if (methods.empty()) std::erase_if(chosen.methods, [&](const Method& method) { return !fits(method); });
+  if (scenes.empty()) std::erase_if(chosen.scenes, [&](const BenchmarkScene& scene) { return !fits(scene); });
+  const char* const expected = tools ? "expected only those for tools, like the first"
+                                     : "expected only those for a HIP, like the first";
+  for (const Method& method : chosen.methods)
+    if (!fits(method)) throw InputError("method " + method.name, expected);
+  for (const BenchmarkScene& scene : chosen.scenes)
+    if (!fits(scene)) throw InputError("scene " + scene.name, expected);
+  require_known_contact(chosen);
+  return chosen;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+#include "runners/evaluation/scorecard/card_folder.h"
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/scorecard/stored_card.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+void make_scorecard_folder(const std::string& folder) {
+  for (const char* part : {"runs", "traces"}) {
+    const std::filesystem::path path = std::filesystem::path(folder) / part;
+    std::error_code failure;
+    std::filesystem::create_directories(path, failure);
+    if (failure)
+      throw InputError(path.string(),
+                       "cannot be made (" + failure.message() + "): expected a writable folder");
+  }
+  for (const char* file : {kScorecardFile, "scorecard.json", "costs.json"})
+    require_writable(std::filesystem::path(folder) / file);
+}
+
+void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return;
+  const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
+                                  false);  // broken: not an object
+  const Json wanted = Json::parse(configuration_of(plan));
+  for (const char* kind : {"methods", "scenes"}) {
+    if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
+      throw InputError(file.string(), "is not a scorecard and would be overwritten: expected another folder");
+    for (const auto& item : stored[kind].items())
+      if (!wanted.contains(kind) || !wanted[kind].contains(item.key()))
+        throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
+                                            ", and would be replaced: expected those and others too, or "
+                                            "another folder");
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+#include "runners/evaluation/scorecard/passivity.h"
+
+#include <nlohmann/json.hpp>
+
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kDamper_Ns_per_m = 3;
+
+// All parameters of the renderer, those left out with their defaults.
+Json complete(const Json& renderer) {
+  auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
+  read_parameters(renderer, factory->settings(), "renderer", {"name"});
+  Json all = {{"name", renderer.at("name")}};
+  write_parameters(factory->settings(), all);
+  return all;
+}
+
+// The method with one parameter changed; itself where that is its value already.
+Method with(const Method& method, const char* parameter, const Json& value, const std::string& mark) {
+  Json renderer = parse_json(method.renderer, method.name);
+  if (complete(renderer).at(parameter) == value) return method;
+  renderer[parameter] = value;
+  return {method.name + "+" + mark, method.title + ", " + parameter + " = " + value.dump(), renderer.dump()};
+}
+
+}  // namespace
+
+std::vector<Method> force_laws_of(const Method& method) {
+  const Json own = complete(parse_json(method.renderer, method.name));
+  std::vector<Method> laws = {method};
+  // The velocity term is zero without an estimate, whatever its sign.
+  if (own.contains("velocity_force") && own.value("velocity_estimate", true))
+    for (const char* sign : {"plus", "none"})
+      laws.push_back(with(method, "velocity_force", sign, std::string("v_") + sign));
+  if (!own.contains("damping_Ns_per_m")) return laws;
+  const std::vector<Method> undamped = laws;
+  for (const Method& law : undamped) laws.push_back(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
+  if (!own.contains("damping_sign")) return laws;
+  for (const Method& law : undamped)
+    laws.push_back(
+        with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", "minus", "k_d_minus"));
+  return laws;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,42 @@
+// A scorecard's numbers in a small sealed file of data/, with which a later card is compared.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/scorecard/card_numbers.h"
+#include "analysis/storage/hdf5_file.h"
+#include "runners/evaluation/scorecard/benchmark_plan.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kStoredCardFigure = "stored-scorecard";
+
+struct StoredCard {
+  std::string configuration;  // methods and scenes as JSON, see configuration()
+  int replicates = 0;
+  std::vector<std::string> methods, scenes;  // names in it
+  CardNumbers numbers;
+};
+
+// Returns the digest. provenance: config must be the card's configuration().
+std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
+                              const TextAttributes& provenance);
+// Throws InputError if the file is not a stored card.
+StoredCard read_stored_card(const std::filesystem::path& file);
+
+// Returns the results of the stored card as Markdown: first where the project's own method is not the best,
+// then all methods. Throws InputError if the file is not a stored card.
+std::string stored_summary(const std::filesystem::path& file);
+
+// Returns a sentence for each method and scene of the plan that is not in the stored card, or was defined in
+// another way there, and for each number that does not agree, see differences() of numbers. plan: without
+// scenes that were skipped.
+std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
+                                     const Scorecard& now);
+
+// The configuration() of what a plan runs: without scenes whose recording is not here.
+std::string configuration_of(const BenchmarkPlan& plan);
+
+}  // namespace remote_touch

@@ -1,0 +1,185 @@
+#include "runners/evaluation/verification/metamorphic_checks.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
+
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/verification/metamorphic_relation.h"
+#include "runners/evaluation/verification/tool_scenes.h"
+#include "runners/evaluation/verification/verification_scenes.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+using RendererFactory = Factory<Renderer, double, const Kernels&>;
+using Outputs = std::vector<RenderOutput>;
+
+constexpr CheckName kTouch{
+    "touch", "the renderer pushes back in most ticks, or at least in some if it is one that loses contact"};
+// Share of the ticks. Direct rendering lets the HIP through, a mesh that moves leaves it behind, and who
+// knows no regions meets only the points in their middle: these push back only in the moments before.
+double min_touch(ContactModel contact_model) {
+  const bool lets_go = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
+                       contact_model == ContactModel::oriented;
+  return lets_go ? 0.02 : 0.5;
+}
+
+// The renderer to check, as often as it is needed.
+class Subject {
+ public:
+  Subject(const RendererEntry& entry, const std::vector<std::string>& assignments, const Kernels& kernels)
+      : entry_(entry), assignments_(assignments), kernels_(kernels) {}
+
+  std::unique_ptr<RendererFactory> factory() const {
+    Json configuration = Json::object();
+    if (is_tool())
+      for (const char* assignment : kVerifiedTool) apply_override(configuration, assignment);
+    for (const std::string& assignment : assignments_) apply_override(configuration, assignment);
+    auto factory = entry_.make();
+    read_parameters(configuration, factory->settings(), "");
+    const std::string problem = factory->validate();
+    if (!problem.empty()) throw InputError(problem);
+    return factory;
+  }
+  Outputs play(const MetamorphicScene& scene) const {
+    const auto renderer = factory()->build(scene.haptic_rate_hz, kernels_);
+    return remote_touch::play(scene, *renderer);
+  }
+  Outputs play(const Variation& run) const {
+    const auto changed = factory();
+    change_units(changed->settings(), run.units);
+    if (run.other_stiffness_N_per_m) *stiffness(changed->settings()) = *run.other_stiffness_N_per_m;
+    const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
+    return remote_touch::play(run.scene, *renderer);
+  }
+  // True if the scene determines the output of a renderer of tools; always true for other renderers.
+  bool is_for(const MetamorphicScene& scene) const {
+    if (!is_tool()) return true;
+    switch (entry_.contact_model) {
+      case ContactModel::regions:
+        return !scene.views.front().cloud.fixture_radius_m.empty();
+      case ContactModel::resting_points:
+        return scene.cloud_rests;
+      case ContactModel::sheet:
+        return !scene.has_crease;
+      default:
+        return true;
+    }
+  }
+  DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
+  bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
+  double min_touch_fraction() const { return min_touch(entry_.contact_model); }
+  Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
+    const auto settings_of = factory();
+    const Parameters parameters = settings_of->settings();
+    Variation run{scene, outputs, &kernels_};
+    run.reach_m = max_length_m(parameters);
+    run.view_matters = entry_.contact_model == ContactModel::oriented;
+    run.fits_a_sheet = entry_.contact_model == ContactModel::sheet || run.view_matters;
+    run.order_matters = entry_.contact_model == ContactModel::mesh;
+    run.can_be_mirrored = !is_tool() || (entry_.contact_model != ContactModel::regions && !names_a_tool());
+    if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
+    return run;
+  }
+
+ private:
+  bool names_a_tool() const {
+    return std::any_of(assignments_.begin(), assignments_.end(),
+                       [](const std::string& assignment) { return assignment.starts_with("tool_mesh="); });
+  }
+  // The number of that name; null without one.
+  static double* stiffness(const Parameters& parameters) {
+    for (const Parameter& p : parameters)
+      if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+        return *value;
+    return nullptr;
+  }
+
+  const RendererEntry& entry_;
+  const std::vector<std::string>& assignments_;
+  const Kernels& kernels_;
+};
+
+// Violated in the tick with which too many are without a force.
+CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double min) {
+  const double allowed = (1 - min) * static_cast<double>(outputs.size());
+  Comparison count{.deviations = {{"ticks without force", "1", allowed}}};
+  count.ticks = static_cast<int>(outputs.size());
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    if (!outputs[tick].force_N.isZero(0)) continue;
+    if (++count.deviations.front().max > allowed && count.first_violation < 0)
+      count.first_violation = static_cast<int>(tick);
+  }
+  return {kTouch.name, kTouch.meaning, scene.name, "the other checks mean little without touch", count, {}};
+}
+
+// Returns a remark if a HIP that is 1e-13 m further on violates the tolerance as early as the failed check.
+// Differences as small as rounding then grow, so a tolerance for rounding decides nothing. The check has
+// failed all the same. Empty otherwise.
+std::string remark_on(const CheckResult& failed, const Subject& subject, const MetamorphicScene& scene,
+                      const Outputs& outputs, const OutputTolerance& tolerance) {
+  constexpr double kSmall_m = 1e-13;  // below every tolerance
+  MetamorphicScene moved = scene;
+  for (Vec3& hip : moved.hip_W) hip.array() += kSmall_m;
+  const int tick = compare(outputs, subject.play(moved), tolerance, false).first_violation;
+  if (tick < 0 || tick > failed.comparison.first_violation) return {};
+  return "undecided: moving the HIP by 1e-13 m changes the answers as much, from tick " +
+         std::to_string(tick) + " on";
+}
+
+std::span<const MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_freedom) {
+  return degrees_of_freedom == DegreesOfFreedom::six ? tool_relations() : metamorphic_relations();
+}
+
+std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
+  const Outputs outputs = subject.play(scene);
+  const Variation unvaried = subject.unvaried(scene, outputs);
+  std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction())};
+  for (const MetamorphicRelation& relation : relations_of(subject.degrees_of_freedom())) {
+    Variation run = unvaried;
+    if (!relation.vary(run)) continue;
+    CheckResult result{relation.name, relation.meaning, scene.name, relation.reason, {}, {}};
+    result.comparison = compare(run.expected, subject.play(run), relation.tolerance, run.until_velocity);
+    if (!result.passed() && relation.tolerance.rounded)
+      result.remark = remark_on(result, subject, scene, outputs, relation.tolerance);
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::atomic<bool>* stop) {
+  const bool is_tool = entry.degrees_of_freedom == DegreesOfFreedom::six;
+  return verify_renderer(entry, assignments, kernels,
+                         is_tool ? tool_scenes(kernels) : verification_scenes(kernels), stop);
+}
+
+std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::vector<MetamorphicScene>& scenes,
+                                         const std::atomic<bool>* stop) {
+  const Subject subject(entry, assignments, kernels);
+  std::vector<CheckResult> results;
+  for (const MetamorphicScene& scene : scenes) {
+    if (stop && *stop) throw Interrupted{};
+    if (!subject.is_for(scene)) continue;
+    for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
+  }
+  return results;
+}
+
+std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
+  std::vector<CheckName> names{kTouch};
+  for (const MetamorphicRelation& relation : relations_of(degrees_of_freedom))
+    names.push_back({relation.name, relation.meaning});
+  return names;
+}
+
+}  // namespace remote_touch

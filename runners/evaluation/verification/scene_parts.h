@@ -1,0 +1,54 @@
+// Parts from which the scenes of the metamorphic tests are made.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+#include "runners/evaluation/verification/metamorphic_scene.h"
+#include "scenarios/synthetic/grid.h"
+
+namespace remote_touch {
+
+inline constexpr int kSceneTicks = 320;
+inline constexpr double kJitter_m = 0.0002;  // noise of points on a lattice
+
+// A surface in its own frame L, y up; u and v in metres.
+using SceneSurface = std::function<Vec3(double u, double v)>;
+
+// The HIP at a tick, and the rotation vector of the device; in the frame of the surface.
+struct SceneKnot {
+  int tick;
+  Vec3 hip_L;
+  Vec3 rotation_L = Vec3::Zero();  // rad
+};
+
+// A sine of amplitude 1 and period 1 made of parabolas: the C library's differs between machines.
+double wave(double t);
+
+Vec3 flat_surface(double u, double v);
+Vec3 bumpy_surface(double u, double v);
+Vec3 groove_surface(double u, double v);
+
+// Returns the points of a surface without noise. with_normals: normals of the surface, y upwards.
+PointCloud sheet_of(const Grid& grid, const SceneSurface& surface, bool with_normals);
+// Returns a sheet of 105 mm x 75 mm, points 1.5 mm apart. with_normals: normals of the surface without noise,
+// y upwards.
+PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view, const Kernels& kernels,
+                 bool with_normals = false);
+
+// A path in even motion between the knots, the first of which is at tick 0, and a cloud for each view.
+MetamorphicScene scene_of(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                          const std::function<PointCloud(int view, double time_s)>& cloud);
+// The same with one cloud that rests.
+MetamorphicScene resting_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                               const PointCloud& cloud);
+// The HIP rises with the surface.
+void raise_hip(MetamorphicScene& scene, const std::function<double(double time_s)>& height);
+
+// Rotations from the surface's frame to the world. They need square roots and products only, so all machines
+// compute the same bits.
+inline const Eigen::Quaterniond kSlightTilt(1, 0.11, 0.23, -0.07), kSteepTilt(1, -0.35, 0.6, 0.28);
+void place(MetamorphicScene& scene, const Eigen::Quaterniond& tilt, const Vec3& shift);
+
+}  // namespace remote_touch

@@ -1,0 +1,179 @@
+#include "runners/evaluation/verification/variation.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+template <class Change>
+void change_points(PointCloud& cloud, Change change) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = change(cloud.point(i));
+    cloud.x[i] = p.x(), cloud.y[i] = p.y(), cloud.z[i] = p.z();
+  }
+}
+
+template <class Change>
+void change_normals(PointCloud& cloud, Change change) {
+  if (!cloud.has_normals()) return;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 n = change(cloud.normal(i));
+    cloud.nx[i] = n.x(), cloud.ny[i] = n.y(), cloud.nz[i] = n.z();
+  }
+}
+
+void multiply(std::vector<double>& values, double factor) {
+  for (double& value : values) value *= factor;
+}
+
+void change_units(CloudView& view, const UnitChange& change) {
+  view.captured_s *= change.time, view.arrives_s *= change.time;
+  change_points(view.cloud, [&](const Vec3& p) { return Vec3(change.length * p); });
+  multiply(view.cloud.fixture_radius_m, change.length);
+  multiply(view.cloud.stiffness_N_per_m, change.factor({-1, 0, 1}));
+  if (view.cloud.image) view.cloud.image->X_WC.translation() *= change.length;
+}
+
+void change_units(RenderOutput& out, const UnitChange& change) {
+  out.proxy_W *= change.length, out.nearest_distance_m *= change.length,
+      out.frame_correction_m *= change.length;
+  out.slave_W *= change.length;
+  out.force_N *= change.force;
+  out.surface_velocity_m_per_s *= change.factor({1, -1, 0});
+  if (!out.tool) return;
+  out.tool->torque_Nm *= change.factor({1, 0, 1});
+  out.tool->tool_penetration_m *= change.length;
+}
+
+template <class Value>
+std::vector<Value> picked(const std::vector<Value>& column, const std::vector<int>& order, Value missing) {
+  if (column.empty()) return {};
+  std::vector<Value> out;
+  for (const int i : order) out.push_back(i < 0 ? missing : column[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+}  // namespace
+
+void change_units(Variation& variation, const UnitChange& change) {
+  MetamorphicScene& scene = variation.scene;
+  scene.start_s *= change.time, scene.haptic_rate_hz /= change.time, scene.cell_m *= change.length;
+  for (Vec3& hip : scene.hip_W) hip *= change.length;
+  for (CloudView& view : scene.views) change_units(view, change);
+  for (RenderOutput& out : variation.expected) change_units(out, change);
+  variation.units = change;
+}
+
+void move_rigidly(Variation& variation, const RigidTransform& motion) {
+  const Eigen::Quaterniond rotation(motion.linear());
+  for (Vec3& hip : variation.scene.hip_W) hip = motion * hip;
+  for (Eigen::Quaterniond& device : variation.scene.device_WH) device = rotation * device;
+  for (CloudView& view : variation.scene.views) {
+    change_points(view.cloud, [&](const Vec3& p) { return Vec3(motion * p); });
+    change_normals(view.cloud, [&](const Vec3& n) { return Vec3(motion.linear() * n); });
+    if (view.cloud.image) view.cloud.image->X_WC = motion * view.cloud.image->X_WC;
+  }
+  const auto turn = [&](Vec3& direction) { direction = motion.linear() * direction; };
+  for (RenderOutput& out : variation.expected) {
+    out.proxy_W = motion * out.proxy_W, out.slave_W = motion * out.slave_W;
+    turn(out.force_N), turn(out.normal_W), turn(out.frame_correction_m);
+    if (out.tool) turn(out.tool->torque_Nm), out.tool->orientation_W = rotation * out.tool->orientation_W;
+  }
+}
+
+namespace {
+
+// Rotations and torques are about axes: what lies along the mirror's axis stays.
+Vec3 mirrored_axial(Vec3 v, int axis) {
+  v = -v;
+  v[axis] = -v[axis];
+  return v;
+}
+
+Eigen::Quaterniond mirrored(const Eigen::Quaterniond& q, int axis) {
+  Eigen::Quaterniond other = q;
+  other.vec() = mirrored_axial(q.vec(), axis);
+  return other;
+}
+
+}  // namespace
+
+void mirror(Variation& variation, int axis) {
+  const auto flip = [axis](Vec3& v) { v[axis] = -v[axis]; };
+  replace_search(variation, variation.scene.cell_m);
+  for (Vec3& hip : variation.scene.hip_W) flip(hip);
+  for (Eigen::Quaterniond& device : variation.scene.device_WH) device = mirrored(device, axis);
+  for (CloudView& view : variation.scene.views) {
+    change_points(view.cloud, [&](Vec3 p) { return flip(p), p; });
+    change_normals(view.cloud, [&](Vec3 n) { return flip(n), n; });
+  }
+  for (RenderOutput& out : variation.expected) {
+    flip(out.proxy_W), flip(out.force_N), flip(out.normal_W), flip(out.frame_correction_m), flip(out.slave_W);
+    if (!out.tool) continue;
+    out.tool->torque_Nm = mirrored_axial(out.tool->torque_Nm, axis);
+    out.tool->orientation_W = mirrored(out.tool->orientation_W, axis);
+  }
+}
+
+void replace_search(Variation& variation, double cell_m) {
+  variation.scene.cell_m = cell_m;
+  for (CloudView& view : variation.scene.views) {
+    view.cloud.grid_columns = view.cloud.columns();
+    view.cloud.image.reset();
+  }
+}
+
+void reorder(Variation& variation, const std::function<std::vector<int>(int size)>& order) {
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  for (CloudView& view : variation.scene.views) {
+    PointCloud& cloud = view.cloud;
+    const std::vector<int> from = order(static_cast<int>(cloud.size()));
+    cloud.grid_columns = 0;
+    cloud.x = picked(cloud.x, from, kMissing), cloud.y = picked(cloud.y, from, kMissing);
+    cloud.z = picked(cloud.z, from, kMissing);
+    cloud.nx = picked(cloud.nx, from, kMissing), cloud.ny = picked(cloud.ny, from, kMissing);
+    cloud.nz = picked(cloud.nz, from, kMissing);
+    cloud.fixture_radius_m = picked(cloud.fixture_radius_m, from, 0.0);
+    cloud.stiffness_N_per_m = picked(cloud.stiffness_N_per_m, from, 0.0);
+    cloud.colour = picked(cloud.colour, from, 0u);
+  }
+}
+
+void add_points(Variation& variation, const std::vector<Vec3>& points_W) {
+  for (CloudView& view : variation.scene.views) {
+    PointCloud& cloud = view.cloud;
+    for (const Vec3& p : points_W) {
+      if (cloud.has_normals())
+        cloud.append(p, Vec3::UnitY());
+      else
+        cloud.append(p);
+      if (!cloud.fixture_radius_m.empty()) cloud.fixture_radius_m.push_back(0);
+      if (!cloud.stiffness_N_per_m.empty())
+        cloud.stiffness_N_per_m.push_back(cloud.stiffness_N_per_m.front());
+      if (!cloud.colour.empty()) cloud.colour.push_back(0);
+    }
+  }
+}
+
+std::vector<std::size_t> follow_views(
+    Variation& variation, std::size_t first, int ticks,
+    const std::function<CloudView(const CloudView& view, const CloudView& previous)>& make) {
+  MetamorphicScene& scene = variation.scene;
+  std::vector<CloudView> views;
+  std::vector<std::size_t> followers;
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    const CloudView& view = scene.views[i];
+    views.push_back(view);
+    if (i < first) continue;
+    followers.push_back(views.size());
+    views.push_back(make(view, scene.views[i == 0 ? 0 : i - 1]));
+    views.back().arrives_s = view.arrives_s + ticks / scene.haptic_rate_hz;
+  }
+  scene.views = std::move(views);
+  return followers;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,61 @@
+// A transformed scene together with the outputs that a renderer must then give.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+#include "runners/evaluation/verification/dimension.h"
+#include "runners/evaluation/verification/metamorphic_scene.h"
+
+namespace remote_touch {
+
+// Starts as the scene and the outputs of its reference run; every function below changes both.
+struct Variation {
+  MetamorphicScene scene;
+  std::vector<RenderOutput> expected;  // output of each tick
+  const Kernels* kernels = nullptr;
+  UnitChange units = {};        // change of the renderer's parameters
+  bool until_velocity = false;  // compare only until either run has estimated a surface velocity
+  double reach_m = 0;           // the renderer's largest length
+  // The renderer fits a sheet (ContactModel::sheet): the world's axes matter, for its cells, and the number
+  // of frames, for its estimate of noise.
+  bool fits_a_sheet = false;
+  bool view_matters = false;                     // the layout of an image matters too, for its camera
+  bool order_matters = false;                    // the renderer depends on the points' rows and columns
+  bool can_be_mirrored = true;                   // false: a tool that is not known to be its own mirror image
+  std::optional<double> stiffness_N_per_m = {};  // parameter of the renderer, if it has one of that name
+  std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run
+};
+
+// Multiplies lengths, times and forces, including parameters and k_s of points, by their factors.
+void change_units(Variation& variation, const UnitChange& change);
+
+// Cloud, camera and path move as one rigid body.
+void move_rigidly(Variation& variation, const RigidTransform& motion);
+
+// One coordinate changes its sign; a tool has to be its own mirror image. An image layout cannot be mirrored:
+// the cloud is then searched by a grid.
+void mirror(Variation& variation, int axis);
+
+// Replaces the search by that of a grid, or by brute force for cell_m = 0. An organised cloud keeps only the
+// number of columns of its layout.
+void replace_search(Variation& variation, double cell_m);
+
+// Rebuilds every cloud from the points with the numbers order[0], order[1], ...; -1 stands for a point that
+// was not measured. pre: no cloud is an image, see replace_search(). The points are no
+// longer organised.
+void reorder(Variation& variation, const std::function<std::vector<int>(int size)>& order);
+
+// Adds points to every cloud, with the columns that it has: r_f = 0, and the cloud's first stiffness.
+void add_points(Variation& variation, const std::vector<Vec3>& points_W);
+
+// Inserts a view after each view from number `first` on, that many ticks later. make() derives it from that
+// view and the view before it (itself for the first). Returns the positions of the inserted views in the
+// stream.
+std::vector<std::size_t> follow_views(
+    Variation& variation, std::size_t first, int ticks,
+    const std::function<CloudView(const CloudView& view, const CloudView& previous)>& make);
+
+}  // namespace remote_touch

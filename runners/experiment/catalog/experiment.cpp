@@ -1,0 +1,160 @@
+#include "runners/experiment/catalog/experiment.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "analysis/storage/block_journal.h"
+#include "analysis/storage/file_digest.h"
+#include "runners/experiment/catalog/section_rules.h"
+#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/sessions/session_scene.h"
+#include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+Experiment Experiment::from_json(const std::string& text, const std::string& label,
+                                 const std::vector<std::string>& overrides) {
+  Json configuration = parse_json(text, label);
+  if (!configuration.is_object()) throw InputError(label, "not an object: expected {\"scenario\": ..., ...}");
+  apply_overrides(configuration, overrides);
+  return from_json(configuration);
+}
+
+Experiment Experiment::from_json(const Json& configuration) {
+  Experiment experiment;
+  experiment.configuration_ = read_configuration(configuration);
+  return experiment;
+}
+
+Experiment Experiment::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
+  require_no_journal(name_or_file);
+  const std::string text = has_result_header(name_or_file)
+                               ? session_experiment(name_or_file)
+                               : embedded_or_file(embedded_experiments(), name_or_file, "an experiment's");
+  return from_json(text, name_or_file, overrides);
+}
+
+std::string Experiment::to_json() const {
+  return write_configuration(configuration_).dump();
+}
+
+Json Experiment::value_at_start(const std::string& path) const {
+  const std::vector<std::string> keys = path_keys(path);
+  if (keys.empty()) return {};
+  Json section = write_section_of(configuration_, keys.front());
+  if (keys.front() == "renderer")
+    for (const RendererChange& change : configuration_.changes) {
+      if (change.time_s > 0) continue;
+      Json& value = section["renderer"][path_keys(change.parameter).back()];
+      value = value.is_boolean() ? Json(change.value != 0) : Json(change.value);
+    }
+  const Json* const found = find_value(section, keys);
+  return found ? *found : Json();
+}
+
+std::vector<RecordingPart> Experiment::inputs(const std::vector<std::string>& except) const {
+  std::vector<RecordingPart> all;
+  for (const ExperimentSection& section : experiment_sections())
+    if (std::find(except.begin(), except.end(), section.key) == except.end())
+      section.add_inputs(configuration_, all);
+  return all;
+}
+
+std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) const {
+  auto scenario = configuration_.scenario.factory->build(configuration_.run.key, kernels);
+  if (!configuration_.faults) return scenario;
+  return std::make_unique<FaultySensor>(std::move(scenario), *configuration_.faults, configuration_.run.key,
+                                        kernels);
+}
+
+std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenario) const {
+  return configuration_.trajectory.factory->build(scenario.without_faults());
+}
+
+std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
+                                                     std::shared_ptr<FixtureSwitches> switches) const {
+  auto renderer = configuration_.renderer.factory->build(configuration_.run.haptic_rate_hz, kernels);
+  if (configuration_.sequence.empty() && !configuration_.has_guidance()) return renderer;
+  if (!switches) switches = std::make_shared<FixtureSwitches>();
+  return std::make_unique<GuidedRenderer>(
+      std::move(renderer), configuration_.guidance.value_or(GuidanceSettings{}),
+      configuration_.fixture_values(), configuration_.sequence, std::move(switches));
+}
+
+FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  for (const auto& rule : configuration_.fixtures) rules.push_back(rule.factory->build());
+  // Frames of a scene at rest are sent on only where something can change.
+  return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches));
+}
+
+namespace {
+
+// The default DepthReport: prints the line that an OpenCL device has failed. The results are the same without
+// the device.
+void print_line(const std::string& line) {
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace
+
+FrameProcessing Experiment::build_processing(const Kernels& kernels,
+                                             std::shared_ptr<const FixtureSwitches> switches,
+                                             const DepthReport& report) const {
+  FrameProcessing processing{nullptr,
+                             build_fixtures(std::move(switches)),
+                             {configuration_.renderer.name, renderer_needs(configuration_)}};
+  if (configuration_.depth_pipeline)
+    processing.depth = make_depth_processor(*configuration_.depth_pipeline, kernels,
+                                            report ? report : DepthReport(print_line));
+  return processing;
+}
+
+void Experiment::check_needs(const Scenario& scenario) const {
+  remote_touch::check_needs(configuration_, build_fixtures(), scenario);
+}
+
+void Experiment::check_needs(const SensorView& view) const {
+  remote_touch::check_needs(configuration_, view);
+}
+
+void Experiment::add_depth_device(TextAttributes& provenance) const {
+  if (!configuration_.depth_pipeline) return;
+  const std::string device = depth_device_of(*configuration_.depth_pipeline);
+  if (!device.empty()) provenance.emplace_back("depth_device", device);
+}
+
+SimulatedHand Experiment::build_hand() const {
+  return {configuration_.operator_settings, configuration_.device, 1 / configuration_.run.haptic_rate_hz};
+}
+
+std::vector<LiveParameter> Experiment::live_parameters() const {
+  std::vector<LiveParameter> list;
+  const auto add = [&](const char* section, LiveParameter::Of of, Configurable& settings) {
+    for (const Parameter& p : live_ones(settings.settings())) {
+      const bool is_switch = std::holds_alternative<bool*>(p.value);
+      list.push_back({std::string(section) + "." + p.name, p.help, number_of(p), is_switch ? 0 : p.low,
+                      is_switch ? 1 : p.high, is_switch, of});
+    }
+  };
+  add("renderer", LiveParameter::Of::renderer, *configuration_.renderer.factory);
+  add("scenario", LiveParameter::Of::scenario, *configuration_.scenario.factory);
+  return list;
+}
+
+double Experiment::max_stiffness_N_per_m() const {
+  double holds = max_renderer_stiffness(configuration_), pulls = 0;
+  for (const FixtureValues& v : configuration_.fixture_values()) {
+    if (v.role == FixtureRole::forbidden)
+      holds = std::max(holds, v.stiffness_N_per_m);
+    else
+      pulls += v.stiffness_N_per_m < 0 ? configuration_.guidance->stiffness_N_per_m : v.stiffness_N_per_m;
+  }
+  return holds + pulls;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,93 @@
+// An experiment: a resolved configuration, and all that is built from it.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+#include "runners/experiment/catalog/configuration.h"
+#include "runners/experiment/catalog/scheduled_phases.h"
+#include "runners/experiment/settings/embedded_data.h"
+
+namespace remote_touch {
+
+// A setting that may change while the experiment runs live.
+struct LiveParameter {
+  enum class Of { renderer, scenario };
+  std::string name;  // path as in --set: renderer.stiffness_N_per_m
+  std::string help;
+  double value = 0;  // value in the experiment; 0 or 1 for a switch
+  double low = 0, high = 0;
+  bool is_switch = false;
+  Of of = Of::renderer;
+};
+
+class Experiment {
+ public:
+  // Reads JSON text; label names the source in errors. Overrides are "key=value" and are applied last; the
+  // title names them (changed_settings.h). Throws InputError for anything that cannot be run, so that no run
+  // fails later because of its configuration, and for an override that a later one discards.
+  static Experiment from_json(const std::string& text, const std::string& label,
+                              const std::vector<std::string>& overrides = {});
+  static Experiment from_json(const nlohmann::ordered_json& configuration);
+  // Reads an experiment of data/experiments by its name, a JSON file, or a recorded live session, which is
+  // run again.
+  static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
+
+  const RunSettings& settings() const { return configuration_.run; }
+  const std::vector<SequenceStep>& sequence() const { return configuration_.sequence; }
+  const std::vector<RendererChange>& changes() const { return configuration_.changes; }
+  std::string to_json() const;  // complete: every parameter, one line
+  // The value that the first tick has at a path like "renderer.r1_m": that of the configuration, or of a
+  // change at 0 s. Null if there is none.
+  nlohmann::ordered_json value_at_start(const std::string& path) const;
+  // The recordings that a run reads, as named in the configuration, not yet searched for.
+  // except: keys of sections that this run does not read.
+  std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
+
+  // The scenario as the sensor shows it, with its faults.
+  std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
+  // The same motion whatever the faults, so that their effect can be seen alone.
+  std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
+  // switches: which fixtures are on; a task sets them, and the processing of frames reads them. Not used
+  // without a task.
+  std::unique_ptr<Renderer> build_renderer(const Kernels& kernels,
+                                           std::shared_ptr<FixtureSwitches> switches = nullptr) const;
+  FixtureAssignment build_fixtures(std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
+  // report: gets the line that an OpenCL device has failed, in the thread that processes frames; empty: it
+  // goes to standard error.
+  FrameProcessing build_processing(const Kernels& kernels,
+                                   std::shared_ptr<const FixtureSwitches> switches = nullptr,
+                                   const DepthReport& report = {}) const;
+  // Called before a run. Throws InputError, which says what to add, if the frames of the scenario lack a need
+  // of the renderer, a fixture rule or guidance. build_processing() checks each later frame.
+  void check_needs(const Scenario& scenario) const;
+  void check_needs(const SensorView& view) const;
+  // Adds `depth_device` to the provenance of a result: the name of the OpenCL device that processes its depth
+  // images. Adds nothing if the CPU processes them. Must be called after build_processing().
+  void add_depth_device(TextAttributes& provenance) const;
+  SimulatedHand build_hand() const;
+  // The phases in the sections of the experiment itself: changes of the renderer, schedules of fixtures, and
+  // steps of the sequence that wait for a time.
+  std::vector<Phase> phases() const { return setting_phases(configuration_); }
+  // The button presses of the simulated operator, and the changes of the grip.
+  std::vector<Phase> operator_phases() const { return remote_touch::operator_phases(configuration_); }
+  // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
+  // renderer or of a forbidden region, plus those of all guidance.
+  double max_stiffness_N_per_m() const;
+  // Returns the live parameters of the renderer, in the order of Renderer::live_parameters(), then those of
+  // the scenario.
+  std::vector<LiveParameter> live_parameters() const;
+  // The rest distance, spring and ball radius of the renderer's contact point.
+  RenderedContact rendered_contact() const { return configuration_.renderer.factory->contact(); }
+  // The settings of the live loop. Offline runs ignore them.
+  LiveSettings live() const { return configuration_.live.value_or(LiveSettings{}); }
+  SafetyLimits safety() const { return configuration_.safety.value_or(SafetyLimits{}); }
+
+ private:
+  ExperimentConfiguration configuration_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,146 @@
+#include "runners/experiment/catalog/frame_stream.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "analysis/trace/hash64.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/sessions/sensor_cloud.h"
+
+namespace remote_touch {
+
+namespace {
+
+class ScenarioTruth final : public TrueSurface {
+ public:
+  explicit ScenarioTruth(const Scenario& scenario) : scenario_(scenario) {}
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return scenario_.signed_distance(p_W, time_s);
+  }
+
+ private:
+  const Scenario& scenario_;
+};
+
+}  // namespace
+
+// Points that come with another time stamp are another frame.
+std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
+  return mixed(points_hash(cloud), std::bit_cast<std::uint64_t>(captured_s));
+}
+
+void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) const {
+  if (depth) {
+    if (!cloud.image)
+      throw InputError("depth_pipeline", "this scenario's frames are not depth images: expected none");
+    const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
+    if (steps && depth->process_all(cloud, *steps)) {
+      frame.points = make_search(std::move(cloud));
+      return;
+    }
+    depth->process(cloud);
+  }
+  apply_fixtures(frame, std::move(cloud), off);
+}
+
+void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const SensorView& view,
+                           const RigidTransform& X_WC, std::uint64_t off) const {
+  if (depth && !view.cloud) {
+    const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
+    PointCloud cloud;
+    if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC, sensed.colour},
+                           cloud, steps ? &*steps : nullptr)) {
+      if (steps)  // done; and where all rules are forbidden regions there are no targets
+        frame.points = make_search(std::move(cloud));
+      else
+        apply_fixtures(frame, std::move(cloud), off);
+      return;
+    }
+  }
+  fill(frame, cloud_of(sensed, view, X_WC), off);
+}
+
+// A rule that needs colours refuses the frame that has none, and does not know its number.
+void FrameProcessing::apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const {
+  try {
+    frame.guidance = fixtures.targets(cloud, frame.captured_s);
+    fixtures.assign(cloud, frame.captured_s, off);
+  } catch (const InputError& error) {
+    throw InputError("frame " + std::to_string(frame.index), error.what());
+  }
+  frame.points = make_search(std::move(cloud));
+}
+
+FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
+                         const NoiseKey& key, bool hash_frames, bool generate_all_points)
+    : scenario_(scenario),
+      truth_(std::make_shared<ScenarioTruth>(scenario)),
+      processing_(std::move(processing)),
+      transport_(transport),
+      key_(key),
+      hash_frames_(hash_frames),
+      generate_all_points_(generate_all_points) {}
+
+bool FrameStream::exists(int frame) const {
+  if (frame < scenario_.frame_count()) return true;
+  const bool continues = processing_.fixtures.changes_with_time() || transport_.drop_probability > 0;
+  return continues && !scenario_.ends();
+}
+
+// Beyond the last frame the camera goes on at its rate and sees what it saw.
+int FrameStream::source_frame(int frame) const {
+  return std::min(frame, scenario_.frame_count() - 1);
+}
+
+double FrameStream::captured_s(int frame) const {
+  return scenario_.captured_s(source_frame(frame)) +
+         (frame - source_frame(frame)) / scenario_.frame_rate_hz();
+}
+
+void FrameStream::send(int frame) {
+  const auto chance = uniforms(noise_stream(key_, NoiseUse::transport, static_cast<std::uint32_t>(frame)), 0);
+  if (chance[0] < transport_.drop_probability) return;
+  std::optional<double> out_s;  // time at which the frame leaves the sensor, if not at its capture
+  if (frame == source_frame(frame)) out_s = scenario_.arrives_s(frame);
+  const double there_s = out_s.value_or(captured_s(frame));
+  const FrameInTransit sent{there_s + transport_.latency_s + chance[1] * transport_.jitter_s, frame};
+  const auto after = [](const FrameInTransit& a, const FrameInTransit& b) {
+    return a.arrives_s < b.arrives_s;
+  };
+  in_transit_.insert(std::upper_bound(in_transit_.begin(), in_transit_.end(), sent, after), sent);
+}
+
+void FrameStream::deliver_until(double time_s, Renderer& renderer) {
+  const double now_s = time_s + kSameTime_s;
+  while (exists(next_) && captured_s(next_) + transport_.latency_s <= now_s) send(next_++);
+  while (!in_transit_.empty() && in_transit_.front().arrives_s <= now_s) {
+    const FrameInTransit arrived = in_transit_.front();
+    in_transit_.erase(in_transit_.begin());
+    Frame frame{arrived.frame, captured_s(arrived.frame), arrived.arrives_s, nullptr};
+    frame.truth = truth_;
+    fill(frame);
+    processing_.needs.check(frame);
+    if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
+    renderer.on_frame(frame);
+  }
+}
+
+void FrameStream::fill(Frame& frame) const {
+  if (processing_.changes_points())
+    processing_.fill(frame, scenario_.cloud(source_frame(frame.index)),
+                     scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
+  else
+    frame.points = scenario_.points(source_frame(frame.index));
+  if (generate_all_points_ && !dynamic_cast<const CloudSearch*>(frame.points.get()))
+    frame.points = make_search(scenario_.cloud(source_frame(frame.index)));
+}
+
+std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
+  const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are made when asked for
+  return frame_hash(stored ? stored->cloud() : scenario_.cloud(source_frame(frame)), captured_s(frame));
+}
+
+}  // namespace remote_touch

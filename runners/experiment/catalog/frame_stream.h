@@ -1,0 +1,87 @@
+// The path of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
+// are assigned fixtures, and it arrives late, at irregular times, or not at all.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
+#include "core/numeric/noise.h"
+#include "core/rendering/renderer.h"
+#include "runners/experiment/catalog/frame_needs.h"
+#include "runners/experiment/sessions/sensor_frame.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// Latency, jitter and loss of frames between capture and arrival, independent for each frame, drawn from the
+// run's noise key.
+struct Transport {
+  double latency_s = 0;         // shortest time from capture to arrival
+  double jitter_s = 0;          // maximum added delay, uniformly distributed; frames may overtake each other
+  double drop_probability = 0;  // probability that a frame never arrives
+};
+
+// Processing of a frame's points before they are sent.
+struct FrameProcessing {
+  std::unique_ptr<DepthProcessor> depth;  // null: the points are sent as the scenario gives them
+  FixtureAssignment fixtures;
+  RendererNeeds needs = {};  // the renderer's needs; whoever sends a filled frame on checks them
+
+  bool changes_points() const { return depth || !fixtures.empty(); }
+  // Gives the frame its points and targets, with these fixtures off. Throws InputError if the cloud is not a
+  // depth image, which the pipeline needs, or if a fixture rule cannot be applied to it.
+  void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
+  // The same with the cloud cloud_of(sensed, view, X_WC).
+  void fill(Frame& frame, const SensorFrame& sensed, const SensorView& view, const RigidTransform& X_WC,
+            std::uint64_t off) const;
+
+ private:
+  void apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const;
+};
+
+// 64-bit hash of a frame's points and its time of capture.
+std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
+
+class FrameStream {
+ public:
+  // The scenario must outlive the stream. A scene at rest is sent once; if its fixtures change with time, or
+  // the one frame could be lost, it is repeated at its frame rate. With hash_frames every point of every
+  // frame is computed for newest_hash(). With generate_all_points frames come with every point already
+  // computed, with the same bits, so that measured durations do not contain the generation of noise.
+  FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
+              const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
+
+  // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the truth for
+  // oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks what
+  // the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
+  void deliver_until(double time_s, Renderer& renderer);
+  const FixtureAssignment& fixtures() const { return processing_.fixtures; }
+  // Hash of the newest frame delivered; 0 before the first or without hash_frames.
+  std::uint64_t newest_hash() const { return hash_; }
+
+ private:
+  struct FrameInTransit {
+    double arrives_s;
+    int frame;
+  };
+  bool exists(int frame) const;
+  int source_frame(int frame) const;  // the scenario's frame that this one shows
+  double captured_s(int frame) const;
+  void send(int frame);
+  void fill(Frame& frame) const;  // adds its points and targets
+  std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
+
+  const Scenario& scenario_;
+  std::shared_ptr<const TrueSurface> truth_;
+  FrameProcessing processing_;
+  Transport transport_;
+  NoiseKey key_;
+  bool hash_frames_, generate_all_points_;
+  int next_ = 0;  // the next frame to be sent
+  std::vector<FrameInTransit> in_transit_;
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,55 @@
+#include "runners/experiment/catalog/renderer_contacts.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kUnknownRest = std::numeric_limits<double>::quiet_NaN();
+
+// Integral of the weight from the height h to 1, both in units of R, over the squared distance.
+double weight_above(SurfaceWeight weight, double h) {
+  if (weight == SurfaceWeight::wyvill) {
+    const double a = 1 - h * h;
+    return a * a * a * (5.0 / 27 + a / 9);
+  }
+  const double b = 1 - h, to_fifth = b * b * b * b * b;
+  return 2 * to_fifth * (1 - 1.5 * b + b * b * (4.0 / 7));
+}
+
+}  // namespace
+
+RenderedContact rendered_contact(const ImplicitSurfaceParameters& p) {
+  if (p.surface == SurfaceKind::surfels) return {};
+  const double points = std::numbers::pi * (p.support_radius_m / kReferenceSpacing_m) *
+                        (p.support_radius_m / kReferenceSpacing_m);
+  double low = 0, high = 1;
+  for (double middle = 0.5; middle > low && middle < high; middle = 0.5 * (low + high))
+    (points * weight_above(p.weight, middle) > p.threshold ? low : high) = middle;
+  return {p.support_radius_m * low};
+}
+
+RenderedContact rendered_contact(const LoadedTool::Settings&) {
+  return {kUnknownRest};
+}
+
+RenderedContact rendered_contact(const LoadedTrackedTool::Settings&) {
+  return {kUnknownRest};
+}
+
+RenderedContact rendered_contact(const LoadedToolPenalty::Settings&) {
+  return {kUnknownRest};
+}
+
+RenderedContact rendered_contact(const LoadedToolGodObject::Settings&) {
+  return {kUnknownRest};
+}
+
+RenderedContact rendered_contact(const LoadedSpheres::Settings&) {
+  return {kUnknownRest};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,131 @@
+#include "runners/experiment/catalog/section_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A simulated device has no other buttons than those that the operator's settings press.
+bool can_be_pressed(const ExperimentConfiguration& configuration, const SequenceStep& step) {
+  if (step.start != StepStart::button && step.done != StepEnd::button) return true;
+  const std::string& hand = configuration.trajectory.name;
+  if (configuration.live || find_entry(trajectories(), hand, "trajectory.name").has_buttons)
+    return true;  // the device has its own
+  if (!configuration.operator_settings) return false;
+  const std::vector<double>& presses = configuration.operator_settings->presses;
+  for (std::size_t i = 1; i < presses.size(); i += 3)
+    if (presses[i] == step.button) return true;
+  return false;
+}
+
+using RendererFactory = decltype(Part<RendererEntry>::factory);
+
+RendererFactory copy_of(const Part<RendererEntry>& renderer) {
+  RendererFactory copy = find_entry(renderers(), renderer.name, "renderer.name").make();
+  Json values = Json::object();
+  write_parameters(renderer.factory->settings(), values);
+  read_parameters(values, copy->settings(), "renderer");
+  return copy;
+}
+
+[[noreturn]] void refuse(const std::string& where, const Parameters& live, const std::string& given) {
+  std::string known;
+  for (const Parameter& parameter : live) known += (known.empty() ? "" : ", ") + name_in_changes(parameter);
+  throw InputError(where + ".parameter = " + given,
+                   known.empty() ? "this renderer has no live parameters" : "expected one of " + known);
+}
+
+void make(const RendererChange& change, const Parameters& live, const std::string& where) {
+  const Parameter* const found = find_in_changes(live, change.parameter);
+  if (found == nullptr) refuse(where, live, change.parameter);
+  const bool is_switch = std::holds_alternative<bool*>(found->value);
+  if (!(change.value >= found->low && change.value <= found->high) ||
+      (is_switch && change.value != 0 && change.value != 1))
+    throw InputError(where + ".value = " + shown(change.value),
+                     "expected " + (is_switch ? std::string("0 or 1") : allowed(*found)) + ", the range of " +
+                         change.parameter);
+  set_number(*found, change.value);
+}
+
+// The first tick at or after a time, which is the one that makes a change of that time.
+double first_tick(const ExperimentConfiguration& configuration, const RendererChange& change) {
+  const double rate_hz = configuration.run.haptic_rate_hz;
+  double tick = std::floor(change.time_s * rate_hz);
+  while (tick / rate_hz < change.time_s)
+    ++tick;  // the comparison of the run: the product above may be rounded up
+  return tick;
+}
+
+// Throws InputError if an earlier change sets the same parameter in the same tick: the earlier one would have
+// no effect, whatever its value.
+void refuse_change_without_effect(const ExperimentConfiguration& configuration, std::size_t later) {
+  const std::vector<RendererChange>& changes = configuration.changes;
+  for (std::size_t i = 0; i < later; ++i)
+    if (changes[i].parameter == changes[later].parameter &&
+        first_tick(configuration, changes[i]) == first_tick(configuration, changes[later]))
+      throw InputError("changes." + std::to_string(later) + ".parameter = " + changes[later].parameter,
+                       "changes." + std::to_string(i) + " sets it in the same tick: expected one of them");
+}
+
+// Calls visit(factory, where) with the settings after each time at which some change.
+template <class Visit>
+void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
+  const std::vector<RendererChange>& changes = configuration.changes;
+  if (changes.empty()) return;
+  const RendererFactory factory = copy_of(configuration.renderer);
+  const Parameters live = live_ones(factory->settings());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const std::string where = "changes." + std::to_string(i);
+    if (i > 0 && changes[i].time_s < changes[i - 1].time_s)
+      throw InputError(where + ".time_s = " + shown(changes[i].time_s),
+                       "expected the time of the change before it or later");
+    make(changes[i], live, where);
+    refuse_change_without_effect(configuration, i);
+    if (i + 1 == changes.size() || changes[i + 1].time_s > changes[i].time_s) visit(*factory, where);
+  }
+}
+
+}  // namespace
+
+void check_changes(ExperimentConfiguration& configuration) {
+  after_changes(configuration, [](const auto& factory, const std::string& where) {
+    const std::string problem = factory.validate();
+    if (!problem.empty()) throw InputError(where, "then renderer." + problem);
+  });
+}
+
+double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
+  double max = configuration.renderer.factory->stiffness_N_per_m();
+  after_changes(configuration, [&](const auto& factory, const std::string&) {
+    max = std::max(max, factory.stiffness_N_per_m());
+  });
+  return max;
+}
+
+void check_fixtures(ExperimentConfiguration& configuration) {
+  const std::string problem = validate(configuration.fixture_values(), configuration.sequence);
+  if (!problem.empty()) throw InputError(problem);
+}
+
+void complete_guidance(ExperimentConfiguration& configuration) {
+  const bool needed = configuration.has_guidance();
+  if (configuration.guidance && !needed)
+    throw InputError("guidance", "expected only when a fixture has role = guidance");
+  if (needed && !configuration.guidance) configuration.guidance.emplace();
+}
+
+void check_sequence(ExperimentConfiguration& configuration) {
+  for (std::size_t i = 0; i < configuration.sequence.size(); ++i)
+    if (!can_be_pressed(configuration, configuration.sequence[i]))
+      throw InputError(
+          "sequence." + std::to_string(i) + ".button = " + std::to_string(configuration.sequence[i].button),
+          "expected a button of operator.presses (any button in experiments with a section live)");
+}
+
+}  // namespace remote_touch

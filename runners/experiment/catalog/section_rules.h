@@ -1,0 +1,19 @@
+// Rules between the sections of an experiment.
+#pragma once
+
+#include "runners/experiment/catalog/configuration.h"
+
+namespace remote_touch {
+
+// Each throws InputError if its section does not fit the others.
+void check_fixtures(ExperimentConfiguration& configuration);
+// If a fixture needs guidance and the section is missing, adds it with default values, so that results store
+// the settings used.
+void complete_guidance(ExperimentConfiguration& configuration);
+void check_changes(ExperimentConfiguration& configuration);
+void check_sequence(ExperimentConfiguration& configuration);
+
+// The greatest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
+double max_renderer_stiffness(const ExperimentConfiguration& configuration);
+
+}  // namespace remote_touch

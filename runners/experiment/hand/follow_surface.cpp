@@ -1,0 +1,91 @@
+#include "runners/experiment/hand/follow_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+// The surface is sampled this finely; a vertical step becomes a slope this wide.
+constexpr double kSampling_m = 1e-4;
+}  // namespace
+
+Parameters parameters(FollowSurface::Settings& s) {
+  return {
+      {"from_m", &s.from_m, -100, 100, "start; its height is not used"},
+      {"to_m", &s.to_m, -100, 100, "end; its height is not used"},
+      {"depth_m", &s.depth_m, 0, 1, "depth of the HIP below the surface"},
+      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
+      {"clearance_m", &s.clearance_m, 0, 10,
+       "height above the surface at the start, at the end and over steps"},
+      {"step_m", &s.step_m, 0, 100, "height difference within step_margin_m above which there is a step"},
+      {"step_margin_m", &s.step_margin_m, 1e-4, 1,
+       "distance before and after a step at which the HIP is lifted"},
+  };
+}
+
+std::string validate(const FollowSurface::Settings& s) {
+  return s.from_m == s.to_m ? "to_m: expected different from from_m" : "";
+}
+
+namespace {
+
+// Heights at distance depth inside a profile sampled every spacing: the lower envelope of circles around its
+// samples.
+std::vector<double> inside(const std::vector<double>& heights, double spacing, double depth) {
+  const int count = static_cast<int>(heights.size()), reach = static_cast<int>(std::abs(depth) / spacing);
+  std::vector<double> result(heights.size(), std::numeric_limits<double>::infinity());
+  for (int i = 0; i < count; ++i)
+    for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
+      const double offset = (i - j) * spacing;
+      const double circle = std::sqrt(std::max(0.0, depth * depth - offset * offset));
+      double& lowest = result[static_cast<std::size_t>(i)];
+      lowest = std::min(lowest, heights[static_cast<std::size_t>(j)] - circle);
+    }
+  return result;
+}
+
+// Returns, for each sample of the profile, the height of the upper end of a step within step_margin_m; minus
+// infinity if there is no step.
+std::vector<double> step_tops(const std::vector<double>& heights, double spacing,
+                              const FollowSurface::Settings& s) {
+  const auto count = static_cast<std::ptrdiff_t>(heights.size());
+  const auto reach = static_cast<std::ptrdiff_t>(s.step_margin_m / spacing);
+  std::vector<double> tops(heights.size(), -std::numeric_limits<double>::infinity());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const auto first = heights.begin() + std::max<std::ptrdiff_t>(0, i - reach);
+    const auto last = heights.begin() + std::min(count - 1, i + reach) + 1;
+    const auto [low, high] = std::minmax_element(first, last);
+    if (*high - *low > s.step_m) tops[static_cast<std::size_t>(i)] = *high;
+  }
+  return tops;
+}
+
+}  // namespace
+
+FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path_(s.from_m) {
+  const Vec3 path(s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z());
+  const int pieces = static_cast<int>(std::ceil(path.norm() / kSampling_m));
+  std::vector<double> heights;
+  std::vector<Vec3> places;
+  for (int i = 0; i <= pieces; ++i) {
+    places.push_back(s.from_m + (static_cast<double>(i) / pieces) * path);
+    heights.push_back(scenario.surface_height(places.back().x(), places.back().z(), 0));
+  }
+  if (!std::isfinite(heights.front()))
+    throw InputError("trajectory.name = follow-surface",
+                     "the scenario has no surface height: expected a height field");
+  const std::vector<double> depths = inside(heights, path.norm() / pieces, s.depth_m);
+  const std::vector<double> tops = step_tops(heights, path.norm() / pieces, s);
+  const auto at_height = [&](std::size_t i, double y) { return Vec3(places[i].x(), y, places[i].z()); };
+  path_ = PolylinePath(at_height(0, heights.front() + s.clearance_m));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    path_.go_to(at_height(i, std::max(depths[i], tops[i] + s.clearance_m)), s.speed_m_per_s);
+  path_.go_to(at_height(places.size() - 1, heights.back() + s.clearance_m), s.speed_m_per_s);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,83 @@
+// A device that presses along the ray of one pixel, a set depth behind the surface of the newest frame: it
+// stays in contact while the camera or the scene moves.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "runners/experiment/hand/nearest_object.h"
+#include "runners/experiment/hand/surface_support.h"
+#include "runners/experiment/hand/trajectory.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// If the newest frame shows no surface without gaps around the pixel, the device lifts off: it waits in front
+// of the surface that was shown last, until a frame shows a surface again. Something else may appear in front
+// of this waiting position meanwhile. If the device would then be farther behind it than when it presses, the
+// device moves in front of everything that the newest frame shows around the pixel.
+class ImagePress final : public Trajectory {
+ public:
+  struct Settings {
+    int row = -1;
+    int column = -1;
+    double depth_m = 0.01;
+    double clearance_m = 0.03;
+    double press_at_s = 0.1;
+    double approach_m_per_s = 0.2;
+    double edge_jump_m =
+        0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
+    double bridge_m = kBridge_m;
+    double margin_m = 0.01;
+  };
+
+  // The scenario must outlive the trajectory. Throws InputError if its first frame is not an image or shows
+  // nothing to touch at the pixel, or if the device would be behind the camera.
+  ImagePress(const Settings& settings, const Scenario& scenario);
+  // Throws InputError if a frame has another size or camera than the first, see require_image_of().
+  DeviceState at(double time_s) const override;
+  double duration_s() const override { return 0; }
+  std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
+  // The press is meant to touch from the time at which it reaches the surface.
+  std::optional<SurfacePlan> surface_plan(double time_s) const override;
+  // "image-press, row 220, column 450 at depth 0.523 m"
+  std::string aim() const override;
+  std::vector<Note> notes() const override;
+  int row() const { return row_; }
+  int column() const { return column_; }
+
+ private:
+  // The surface that one frame shows at the pixel. Depths are in m along the optical axis.
+  struct Seen {
+    double supported_m = 0;  // depth of the surface; NaN: no surface without gaps
+    double shown_m = 0;      // median of the depths measured within bridge_m / 2; NaN: none
+    double nearest_m = 0;    // least depth within margin_m or bridge_m / 2, the larger one; infinite: none
+    RigidTransform X_WC = RigidTransform::Identity();  // the camera
+  };
+  const Seen& seen(int frame) const;
+  Support support() const { return {settings_.edge_jump_m, settings_.margin_m}; }
+  NearestObject choose_pixel(BridgeableImage& image);
+  bool has_support(const DepthImage& image, int pixel) const;
+  void note_missed_object(const NearestObject& object, const DepthImage& measured);
+  [[noreturn]] void refuse_pixel(BridgeableImage& image) const;
+  double travelled_m(double time_s) const;
+  double lifted_depth(double planned_m, const Seen& newest) const;
+
+  const Settings settings_;
+  const Scenario& scenario_;
+  ImageLayout image_;
+  int row_ = 0, column_ = 0;
+  bool bridges_holes_ = false;
+  std::string missed_object_;         // the text of the note "object not pressed"; empty: no note
+  mutable std::map<int, Seen> seen_;  // cache, by frame: many ticks use the same one
+};
+
+Parameters parameters(ImagePress::Settings& s);
+inline std::string validate(const ImagePress::Settings&) {
+  return {};
+}
+
+}  // namespace remote_touch

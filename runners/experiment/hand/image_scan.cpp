@@ -1,0 +1,191 @@
+#include "runners/experiment/hand/image_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/hand/image_frames.h"
+#include "runners/experiment/hand/nearest_object.h"
+
+namespace remote_touch {
+
+namespace {
+
+ScanRowRequest request_of(const ImageScan::Settings& s) {
+  return {s.row, s.first_column, s.last_column, s.span_m, s.edge_jump_m, s.bridge_m, s.margin_m};
+}
+
+}  // namespace
+
+Parameters parameters(ImageScan::Settings& s) {
+  return {
+      {"row", &s.row, -1, 4095,
+       "image row; -1: of the nearest large object, the row nearest to its middle that can be touched"},
+      {"first_column", &s.first_column, -1, 4095,
+       "first image column; -1: as far left as the depth stays within span_m"},
+      {"last_column", &s.last_column, -1, 4095,
+       "last image column; -1: as far right as the depth stays within span_m"},
+      {"depth_m", &s.depth_m, -1, 1,
+       "depth of the HIP behind the surface of the first frame, along the viewing ray"},
+      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
+      {"clearance_m", &s.clearance_m, 0, 10,
+       "distance in front of the surface at the start, at the end and over edges and holes"},
+      {"span_m", &s.span_m, 1e-3, 100,
+       "surfaces whose depth differs by more than this from that of the object are not touched, unless "
+       "first_column and last_column are both given"},
+      {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
+       "depth difference of neighbouring pixels within margin_m above which there is an edge; doubled up to "
+       "twice if no patch is left on the object"},
+      {"bridge_m", &s.bridge_m, 0, 1,
+       "used only if no patch is left on the object, for sparse depth: diameter of the largest hole that is taken as "
+       "closed; a closed hole has the depth of the nearest pixel at its rim"},
+      {"margin_m", &s.margin_m, 1e-3, 1, "minimum distance of the HIP from holes and depth edges"},
+  };
+}
+
+std::string validate(const ImageScan::Settings& s) {
+  const bool reversed = s.first_column >= 0 && s.last_column >= 0 && s.first_column >= s.last_column;
+  return reversed ? "first_column = " + std::to_string(s.first_column) + ": expected below last_column" : "";
+}
+
+ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s), path_(Vec3::Zero()) {
+  const FrameImage first = first_image(scenario, "trajectory.name = image-scan");
+  const CameraIntrinsics& camera = first.layout.camera;
+  if (s.row >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
+    throw InputError(
+        "trajectory.row, first_column, last_column",
+        "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
+  scan_ = find_scan_row(first.depth, camera, request_of(s));
+  if (scan_.patches.empty()) refuse_row(first.depth, camera);
+  if (s.row < 0) note_missed_object(first.depth, camera);
+  plan_path(first.depth, first.layout);
+}
+
+// The row shows no patch to touch: tries what the message proposes.
+void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& camera) const {
+  std::string expected = "a smaller margin_m or a larger bridge_m";
+  if (settings_.row < 0) {
+    expected = "another row, " + expected;
+  } else {
+    ScanRowRequest request = request_of(settings_);
+    request.row = -1;
+    const ScanRow other = find_scan_row(image, camera, request);
+    expected = (other.patches.empty() ? "another row, "
+                                      : "-1 (the nearest object: row " + std::to_string(other.row) + "), ") +
+               expected;
+  }
+  throw InputError("trajectory.row = " + std::to_string(scan_.row),
+                   "no surface without edges and with holes of at most " + millimetres(settings_.bridge_m) +
+                       " in this row" + (settings_.row < 0 ? " or another of the nearest object" : "") +
+                       ": expected " + expected);
+}
+
+// Sets missed_object_ if a row that was chosen from the image touches only other things than the nearest
+// object or, if there is no large object, if a small object is nearer than everything that it touches.
+void ImageScan::note_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
+  const std::string row = "row " + std::to_string(scan_.row);
+  if (!scan_.is_on_object) {
+    missed_object_ =
+        row + ": the nearest object has no surface without holes and edges; only others are touched";
+  } else if (scan_.is_whole_scene) {
+    std::vector<int> touched;
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const ScanPatch& patch : scan_.patches)
+      for (int u = patch.first_column; u <= patch.last_column; ++u) {
+        touched.push_back(scan_.row * camera.width + u);
+        nearest_m = std::min(nearest_m, scan_.depth_m[static_cast<std::size_t>(u)]);
+      }
+    const auto nearer = nearer_small_object(image, camera, touched, nearest_m);
+    if (nearer) missed_object_ = row + " is scanned, but " + text_of(*nearer);
+  }
+}
+
+// Plans a path that approaches the first patch, follows each patch, and flies to the next one in front of
+// everything between them.
+void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
+  const Settings& s = settings_;
+  const CameraIntrinsics& camera = layout.camera;
+  const auto depth_at = [&](int u) { return scan_.depth_m[static_cast<std::size_t>(u)]; };
+  const auto place = [&](int u, double offset) {
+    const double z = depth_at(u) + offset;
+    if (!(z > 0))
+      throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
+                                                              millimetres(depth_at(u)) +
+                                                              " from the surface: expected smaller values");
+    return Vec3(layout.X_WC * unproject(camera, u, scan_.row, z));
+  };
+  // The offset from the surface at column u of a flight between two columns, in front of both surfaces and of
+  // all pixels between them.
+  const auto flight_offset = [&](int u, int from, int to) {
+    const double other = depth_at(u == from ? to : from);
+    const double planned = std::min(other - depth_at(u), 0.0) - s.clearance_m;
+    const int half = reach_px(image, camera.fx, s.margin_m, std::min(depth_at(from), depth_at(to)));
+    const double nearest = nearest_depth(image, {from, to, scan_.row - half, scan_.row + half});
+    // Nearer than an edge's jump the hand could touch; farther in front it needs no detour.
+    if (nearest - (depth_at(u) + planned) >= s.edge_jump_m) return planned;
+    return in_front_of(nearest, s.clearance_m) - depth_at(u);
+  };
+
+  path_ = PolylinePath(place(scan_.patches.front().first_column, -s.clearance_m));
+  for (std::size_t i = 0; i < scan_.patches.size(); ++i) {
+    const ScanPatch& patch = scan_.patches[i];
+    for (int u = patch.first_column; u <= patch.last_column; ++u) {
+      path_.go_to(place(u, s.depth_m), s.speed_m_per_s);
+      if (u == patch.first_column) touches_.push_back({path_.duration_s(), 0});
+    }
+    touches_.back().ends_s = path_.duration_s();
+    path_.go_to(place(patch.last_column, -s.clearance_m), s.speed_m_per_s);
+    if (i + 1 == scan_.patches.size()) break;
+    const int from = patch.last_column, to = scan_.patches[i + 1].first_column;
+    path_.go_to(place(from, flight_offset(from, from, to)), s.speed_m_per_s);
+    path_.go_to(place(to, flight_offset(to, from, to)), s.speed_m_per_s);
+    path_.go_to(place(to, -s.clearance_m), s.speed_m_per_s);
+  }
+}
+
+// The depth that is followed is the median over the margin; what one pixel shows may differ by an edge's
+// jump.
+std::optional<SurfacePlan> ImageScan::surface_plan(double time_s) const {
+  const bool touches = std::any_of(touches_.begin(), touches_.end(), [&](const Interval& touch) {
+    return touch.begins_s <= time_s && time_s <= touch.ends_s;
+  });
+  return SurfacePlan{touches, std::min(settings_.depth_m, 0.0) - scan_.edge_jump_m,
+                     std::max(settings_.depth_m, 0.0) + scan_.edge_jump_m, 0.5 * settings_.bridge_m};
+}
+
+std::string ImageScan::aim() const {
+  constexpr std::size_t kMostPatches = 8;  // a noisy row may have many: the line stays readable
+  std::string text = "image-scan, row " + std::to_string(scan_.row);
+  for (std::size_t i = 0; i < std::min(kMostPatches, scan_.patches.size()); ++i) {
+    const ScanPatch& patch = scan_.patches[i];
+    const auto begin = scan_.depth_m.begin();
+    const auto [least, most] = std::minmax_element(begin + patch.first_column, begin + patch.last_column + 1);
+    char columns[100];
+    std::snprintf(columns, sizeof columns, ", columns %d to %d at depth %.3f to %.3f m", patch.first_column,
+                  patch.last_column, *least, *most);
+    text += columns;
+  }
+  if (scan_.patches.size() > kMostPatches)
+    text += ", and " + std::to_string(scan_.patches.size() - kMostPatches) + " more parts of the row";
+  return text;
+}
+
+std::vector<Note> ImageScan::notes() const {
+  std::vector<Note> notes;
+  const std::string row = "row " + std::to_string(scan_.row);
+  if (scan_.bridges_holes)
+    notes.push_back({"holes bridged", row + ": holes up to trajectory.bridge_m = " +
+                                          millimetres(settings_.bridge_m) + " wide are taken as closed"});
+  if (scan_.edge_jump_m > settings_.edge_jump_m)
+    notes.push_back({"edges bridged", row + ": depth jumps up to " + millimetres(scan_.edge_jump_m) +
+                                          " between neighbouring pixels are taken as surface, more than "
+                                          "trajectory.edge_jump_m = " +
+                                          millimetres(settings_.edge_jump_m)});
+  if (!missed_object_.empty()) notes.push_back({"object not scanned", missed_object_});
+  return notes;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,70 @@
+// A simulated operator: the hand is a mass that springs and dampers pull to the intended path, and that the
+// device's force moves. Not in the dissertation, whose operators were people.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+#include "core/parameters/parameter.h"
+#include "core/rendering/frame.h"
+#include "runners/experiment/hand/held_force_step.h"
+
+namespace remote_touch {
+
+struct OperatorSettings {
+  double mass_kg = 0.5;
+  double inertia_kg_m2 = 1e-3;
+  double stiffness_N_per_m = 300;
+  double damping_Ns_per_m = 15;
+  double rotational_stiffness_Nm_per_rad = 1;
+  double rotational_damping_Nms_per_rad = 0.05;
+  std::vector<double> grip{};
+  std::vector<double> presses{};
+};
+
+Parameters parameters(OperatorSettings& s);
+std::string validate(const OperatorSettings& s);
+
+// m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
+// grip. The hand's spring and damper to the intended position are g k and g c, and (1 - g) c damps the motion
+// of a hand that opens. Rotations have the same form. They are rotation vectors in world axes relative to the
+// pose at the beginning of the tick, and the inertia is inertia_kg_m2 about every axis.
+//
+// f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep). The
+// device is a zero-order hold, which adds energy to a hand that a spring pushes. So a stiff device can make
+// the hand unstable.
+class OperatorModel {
+ public:
+  // pre: validate(settings) is empty.
+  OperatorModel(const OperatorSettings& settings, double tick_s);
+
+  // Returns the hand's pose at time_s. intended: the path's pose at time_s. device_wrench: the wrench that
+  // the device has exerted since the last call. If the last call was n ticks ago, the hand makes one step of
+  // n ticks. The first call puts the hand onto the path, at rest. Buttons come from the settings.
+  DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
+
+  // Returns the energies of the last step, translation plus rotation; zero before the second call. A change
+  // of the grip between two ticks adds energy to the springs: half the change of the stiffness times the
+  // squared distance. This energy is not included.
+  StepEnergy last_energy() const;
+
+ private:
+  void prepare(double grip, double duration_s);
+  std::uint32_t buttons(double time_s) const;
+
+  const OperatorSettings s_;
+  const double tick_s_;
+  ToolPose pose_, intended_;  // poses at the last call
+  Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
+  std::optional<double> last_time_s_;
+
+  // The last step, for translation and rotation, and what it was made for.
+  std::optional<HeldForceStep> step_, turning_step_;
+  double grip_ = 0, duration_s_ = 0;
+  HeldForceStep::Start start_, turning_start_;
+};
+
+}  // namespace remote_touch

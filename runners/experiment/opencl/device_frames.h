@@ -1,0 +1,74 @@
+// The depth pipeline on one OpenCL device: uploads, then its kernels, then one download. Only for use inside
+// this folder.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/dissertation/depth/depth_processor.h"
+#include "runners/experiment/opencl/built_kernels.h"
+
+namespace remote_touch {
+
+// A frame with all that the device reads and writes. It belongs to the call: if a caller stops waiting, none
+// of the caller's own memory is written later.
+struct DeviceFrame {
+  // Columns of the cloud, in the order in which they are downloaded.
+  enum Column { x, y, z, nx, ny, nz, fixture_radius, stiffness, kColumns };
+
+  CameraIntrinsics camera;
+  double X_WC[12];              // row-major
+  double X_CW_z[4];             // third row of its inverse
+  std::vector<double> depth_m;  // empty: `units` has the depths
+  std::vector<std::uint16_t> units = {};
+  double metres_per_unit = 0;
+  bool keep_points = false;  // true: columns x, y, z are not written
+  // The columns fixture_radius and stiffness are written according to `steps`; not without colours.
+  std::vector<std::uint32_t> colour = {};
+  HueSteps steps = {};
+  std::vector<double> columns[kColumns] = {};
+
+  bool has_stiffness() const;
+};
+
+class DeviceFrames {
+ public:
+  // kernels: built for these settings. Throws OpenClError.
+  DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings);
+  // Fills the columns of the frame with the same bits as DepthPipeline and FixtureAssignment. Throws
+  // OpenClError; after that this object cannot be used any more, and the device may read the frame until
+  // drain() has returned.
+  void run(DeviceFrame& frame);
+  void drain() noexcept;
+
+ private:
+  using Buffer = OpenClObject<cl_mem>;
+  using Kernel = BuiltKernels::Kernel;
+
+  Buffer buffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE) const;
+  void resize(const CameraIntrinsics& camera);
+  void aim(const CameraIntrinsics& camera);
+  template <class Value>
+  void write(const Buffer& to, const std::vector<Value>& values);
+  void upload(const DeviceFrame& frame);
+  template <class... Arguments>
+  void start(const Kernel& kernel, const Arguments&... arguments);
+  void fill_columns(const DeviceFrame& frame);
+  void upload_steps(const DeviceFrame& frame);
+  void assign_fixtures(const DeviceFrame& frame);
+  void download(DeviceFrame& frame);
+
+  const std::shared_ptr<const BuiltKernels> kernels_;
+  const OpenClLibrary& cl_;
+  const DepthPipelineSettings settings_;
+  OpenClObject<cl_command_queue> queue_;
+  Kernel to_depths_, to_plane_, filter_, normals_of_, place_, fixtures_;
+  CameraIntrinsics camera_;
+  std::size_t stride_ = 0, most_step_numbers_ = 0;
+  Buffer units_, depth_m_, rgb_, steps_;
+  Buffer ray_x_, ray_y_, wide_ray_x_, wide_ray_y_, centre_and_focal_, X_;
+  Buffer change_, raw_, smooth_, columns_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,56 @@
+// The depth pipeline on an OpenCL device, with one on the CPU that takes over if the device fails.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/dissertation/depth/depth_pipeline.h"
+#include "runners/experiment/opencl/deadline_thread.h"
+#include "runners/experiment/opencl/opencl_devices.h"
+
+namespace remote_touch {
+
+class DeviceFrames;
+struct DeviceFrame;
+
+class DevicePipeline final : public DepthProcessor {
+ public:
+  static constexpr std::chrono::milliseconds kFrameLimit{2000};
+  static constexpr std::chrono::milliseconds kBuildLimit{120000};  // limit of the build and the first frame
+
+  // Builds the kernels unless this process has them, and processes a small frame for their first call. Throws
+  // OpenClError if that fails, OpenClTimeout if it takes longer than kBuildLimit.
+  DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
+                 std::function<void(const std::string&)> report,
+                 std::chrono::milliseconds frame_limit = kFrameLimit);
+
+  // report() is called once, with the reason in one line, when the CPU takes over. A frame in which the
+  // device fails, or takes longer than frame_limit, is processed on the CPU, and so is every frame after it.
+  void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
+
+  // True unless the device has failed, before or in this frame, or columns of fixtures cannot be filled: the
+  // cloud has some already, or no colours. A sensor's image is processed only if it is filtered.
+  bool process_all(PointCloud& cloud, const HueSteps& steps) override;
+  bool process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) override;
+
+  bool uses_device() const { return frames_ != nullptr; }
+
+ private:
+  bool process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud);
+  void start(const DepthFrame& frame, const HueSteps* steps, std::span<const std::uint32_t> colour);
+  bool on_device();
+  void give_up(const std::string& why);
+
+  const OpenClDevice device_;
+  const std::function<void(const std::string&)> report_;
+  const std::chrono::milliseconds frame_limit_;
+  DepthPipeline cpu_;
+  std::shared_ptr<DeviceFrames> frames_;  // null after the device has failed
+  std::shared_ptr<DeviceFrame> frame_;
+  std::unique_ptr<DeadlineThread> thread_;
+};
+
+}  // namespace remote_touch

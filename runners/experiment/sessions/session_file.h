@@ -1,0 +1,157 @@
+// A live session on disk, as one HDF5 file: the device's state at every tick, the sensor's frames, and the
+// ticks at which the renderer got them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_appender.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+#include "core/rendering/renderer.h"
+#include "runners/experiment/sessions/sensor_frame.h"
+
+namespace remote_touch {
+
+struct SessionTick {
+  std::int64_t number = 0;  // time of the tick times the haptic rate
+  DeviceState device;       // state that the renderer got
+  int taken = -1;           // the frame that the renderer got before this tick; -1: none
+  Wrench written;           // wrench written to the device, in its axes
+  int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
+};
+
+// The value of the attribute `ended` of a recording that was interrupted and then recovered.
+inline constexpr const char* kInterruptedRecording = "interrupted";
+
+// A live parameter that was changed. tick: number of the first tick with the new value. For a parameter of
+// the scenario: number of the tick at which the change was requested (frames with the new noise come later).
+struct SessionChange {
+  std::uint64_t tick = 0;
+  std::int32_t parameter = 0;  // its index in the list of names
+  double value = 0;
+};
+
+// The shape of the frames of a session.
+struct SessionLayout {
+  std::uint32_t width = 0, height = 0;  // size of the images; 0: clouds
+  std::uint32_t numbers_per_point = 0;  // numbers per point of clouds: 3, or 6 with normals; 0: images
+  bool has_colour = false;
+
+  bool has_clouds() const { return numbers_per_point > 0; }
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
+};
+SessionLayout layout_of(const SensorView& view);
+
+// A frame in the form in which a session stores it. Images are rows of deflated_row(). Points and their
+// colours are not compressed.
+struct StoredFrame {
+  std::int32_t number = 0;
+  double captured_s = 0;
+  std::uint64_t fixtures_off = 0;
+  std::uint32_t point_count = 0;
+  std::string depth, colour;  // the bytes; for clouds depth holds the points, as float
+};
+// pre: is_complete(frame, view), and layout is layout_of(view).
+StoredFrame stored_frame(const SessionLayout& layout, const SensorFrame& frame, double captured_s,
+                         std::uint64_t fixtures_off);
+
+// Returns the attributes of a session: schema, view, provenance, and live_parameters (their names).
+// registered: X_WC of the camera, including its registration.
+TextAttributes session_attributes(const SensorView& view, const RigidTransform& registered,
+                                  const TextAttributes& provenance,
+                                  const std::vector<std::string>& live_parameters);
+
+// /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
+// written to the device, gate. /frames: number, captured, fixtures_off, and for images depth and colour, for
+// clouds point_count, points and colour. /changes: tick, parameter, value. The root's attributes: those of
+// session_attributes(), and those of finish().
+class SessionWriter {
+ public:
+  SessionWriter(const std::filesystem::path& target, const SessionLayout& layout,
+                const TextAttributes& attributes);
+  SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
+                const TextAttributes& provenance, const std::vector<std::string>& live_parameters = {})
+      : SessionWriter(target, layout_of(view),
+                      session_attributes(view, registered, provenance, live_parameters)) {}
+
+  void append(const SessionChange& change);
+  void append(const SessionTick& tick);  // written to the disk a thousand at a time
+  void append(const StoredFrame& frame);
+  // pre: is_complete(frame, view).
+  void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
+    append(stored_frame(layout_, frame, captured_s, fixtures_off));
+  }
+  // attributes: further attributes, which are known only at the end.
+  void finish(const TextAttributes& attributes = {});
+
+ private:
+  void add_cloud_datasets();
+  void flush_ticks();
+
+  Hdf5Appender file_;
+  const SessionLayout layout_;
+  struct {
+    std::vector<std::uint64_t> number;
+    std::vector<double> position, orientation, force, torque;
+    std::vector<std::uint32_t> buttons;
+    std::vector<std::int32_t> taken, gate;
+  } ticks_;
+};
+
+// Throws InputError, which names the file, if it is not a session or is damaged.
+class SessionReader {
+ public:
+  explicit SessionReader(const std::filesystem::path& file) : SessionReader(Hdf5Reader(file)) {}
+  explicit SessionReader(Hdf5Reader file);
+
+  std::string config() const;  // the experiment that was run, as JSON
+  // Returns the reason why the recording ended. kInterruptedRecording: its program did not end it. Empty in
+  // recordings of earlier versions.
+  std::string ended() const;
+  double haptic_rate_hz() const { return haptic_rate_hz_; }
+  const SensorView& view() const { return view_; }
+  std::size_t frame_count() const { return captured_s_.size(); }
+  SensorFrame frame(std::size_t i) const;
+  double captured_s(std::size_t i) const { return captured_s_[i]; }
+  std::uint64_t fixtures_off(std::size_t i) const { return fixtures_off_[i]; }
+
+  // Ticks in the order in which they came; numbers grow, with gaps where ticks were missed.
+  std::size_t tick_count() const { return number_.size(); }
+  std::uint64_t tick_number(std::size_t i) const { return number_[i]; }
+  DeviceState device(std::size_t i) const;
+  std::int32_t taken(std::size_t i) const { return taken_[i]; }
+
+  // Returns the changes in the order of their ticks.
+  const std::vector<SessionChange>& changes() const { return changes_; }
+  const std::string& live_parameter(const SessionChange& change) const {
+    return live_parameters_[static_cast<std::size_t>(change.parameter)];
+  }
+
+ private:
+  void read_view();
+  void read_changes();
+  void require_order() const;
+  void read_point_counts();
+  void read_points(std::size_t i, SensorFrame& frame) const;
+  struct Rows {
+    std::size_t first, count;
+  };
+  template <class Stored, class Number>
+  void read_numbers(const char* dataset, Rows rows, std::size_t expected, std::vector<Number>& numbers) const;
+
+  Hdf5Reader file_;
+  SensorView view_;
+  double haptic_rate_hz_ = 0;
+  std::vector<double> captured_s_, position_, orientation_, buttons_;
+  std::vector<std::uint64_t> fixtures_off_, number_;
+  std::vector<std::int32_t> frame_number_, taken_;
+  std::vector<std::size_t> first_point_;  // index of the first point of each cloud; at the end the total
+  std::vector<SessionChange> changes_;
+  std::vector<std::string> live_parameters_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,85 @@
+// A recorded live session as an experiment: its frames as a scenario, its hand as a trajectory.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "runners/experiment/hand/trajectory.h"
+#include "runners/experiment/sessions/sensed_points.h"
+#include "runners/experiment/sessions/session_file.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+// The frames as the sensor sent them, at the times when the live renderer got them.
+class SessionScene final : public Scenario {
+ public:
+  struct Settings {
+    std::string path;
+  };
+  // Throws InputError when the session cannot be read.
+  SessionScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return session_.view().frame_rate_hz; }
+  int frame_count() const override { return static_cast<int>(session_.frame_count()); }
+  double captured_s(int frame) const override { return session_.captured_s(static_cast<std::size_t>(frame)); }
+  bool ends() const override { return true; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // NaN: the truth is not known.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  std::optional<double> arrives_s(int frame) const override {
+    return arrives_s_[static_cast<std::size_t>(frame)];
+  }
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return session_.fixtures_off(static_cast<std::size_t>(frame));
+  }
+  std::string input() const override;
+  // Notes if this run did not reach all frames that the live renderer got, or if the recording was
+  // interrupted.
+  std::vector<Note> input_notes() const override;
+
+ private:
+  SensorFrame read(std::size_t frame) const;
+
+  const std::string path_;
+  const SessionReader session_;
+  std::vector<double> arrives_s_;  // infinite if the renderer never got the frame
+  mutable SensedPoints sensed_;    // points of the frames that were read; each frame counts once
+  mutable std::vector<bool> is_read_;
+};
+
+Parameters parameters(SessionScene::Settings& s);
+std::string validate(const SessionScene::Settings& s);
+RecordingPart input_files(const SessionScene::Settings& s);
+
+// The state of the session's device at the nearest tick; if that tick was missed, at the tick before.
+class SessionHand final : public Trajectory {
+ public:
+  struct Settings {
+    std::string path;
+  };
+  SessionHand(const Settings& settings, const Scenario& scenario);
+
+  DeviceState at(double time_s) const override;
+  double duration_s() const override;
+  bool is_missed(double time_s) const override;
+
+ private:
+  std::size_t tick_at(double time_s) const;
+
+  const SessionReader session_;
+};
+
+Parameters parameters(SessionHand::Settings& s);
+std::string validate(const SessionHand::Settings& s);
+RecordingPart input_files(const SessionHand::Settings& s);
+
+// Returns the experiment of a session, as JSON: the experiment that was run, with the recorded frames and
+// hand.
+std::string session_experiment(const std::string& path);
+std::string session_experiment(const SessionReader& session, const std::string& path);
+
+}  // namespace remote_touch

@@ -1,0 +1,14 @@
+#include "runners/experiment/settings/embedded_data.h"
+
+#include "scenarios/text_files/text_file.h"
+
+namespace remote_touch {
+
+std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,
+                             const std::string& kind) {
+  for (const EmbeddedText& text : stored)
+    if (name_or_file == text.name) return text.json;
+  return read_text_file(name_or_file, "expected " + kind + " name (see remote-touch list) or a JSON file");
+}
+
+}  // namespace remote_touch

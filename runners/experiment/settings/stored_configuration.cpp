@@ -1,0 +1,86 @@
+#include "runners/experiment/settings/stored_configuration.h"
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kUsualRate_hz = 30;
+
+struct Count {
+  const char* frames;
+  const char* time;
+};
+constexpr Count kCounts[] = {{"wait_frames", "wait_s"},
+                             {"rise_frames", "rise_s"},
+                             {"acceleration_frames", "acceleration_s"},
+                             {"vanish_at_frame", "vanish_at_s"},
+                             {"empty_frame", "empty_frame_at_s"}};
+
+bool is_lifted(const Json& value) {
+  if (!value.is_object()) return false;
+  const auto name = value.find("name");
+  return name != value.end() && (*name == "moving-lift" || *name == "moving-shape");
+}
+
+double number_or(const Json& scenario, const char* name, double otherwise) {
+  const auto found = scenario.find(name);
+  return found != scenario.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+// Null if the key is not a count. A count of -1 means never.
+const Count* count_of(const std::string& key, const Json& value) {
+  const auto found =
+      std::find_if(std::begin(kCounts), std::end(kCounts), [&](const Count& c) { return key == c.frames; });
+  return found != std::end(kCounts) && value.is_number() ? found : nullptr;
+}
+
+// Keeps the order of the keys, because configurations are also compared as texts.
+Json told_in_seconds(const Json& scenario) {
+  const double rate_hz = number_or(scenario, "frame_rate_hz", kUsualRate_hz);
+  Json told = Json::object();
+  bool has_counts = false;
+  for (const auto& [key, value] : scenario.items()) {
+    const Count* const count = count_of(key, value);
+    has_counts |= count != nullptr;
+    if (count)
+      told[count->time] = value.get<double>() < 0 ? -1.0 : value.get<double>() / rate_hz;
+    else
+      told[key] = value;
+  }
+  // The motion was updated with each frame, and linear between frames: other updates would have other bits.
+  const bool accelerates = number_or(scenario, "acceleration_m_per_s2", 0) != 0;
+  const bool moves = accelerates || number_or(scenario, "start_velocity_m_per_s", 0) != 0;
+  if (has_counts && moves && rate_hz != kUsualRate_hz) told["update_rate_hz"] = rate_hz;
+  if (has_counts && accelerates && scenario.value("truth", Json()) == "moving")
+    told["between_updates"] = "line";
+  return told;
+}
+
+void tell_in_seconds(Json& value) {
+  if (!value.is_structured()) return;
+  for (Json& part : value) tell_in_seconds(part);
+  if (is_lifted(value)) value = told_in_seconds(value);
+}
+
+}  // namespace
+
+std::string stored_configuration(const std::string& text) {
+  Json configuration;
+  try {
+    configuration = parse_json(text, "config");
+  } catch (const InputError&) {
+    return text;
+  }
+  const Json before = configuration;
+  tell_in_seconds(configuration);
+  return configuration == before ? text : configuration.dump();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,134 @@
+#include "runners/experiment/simulation/contact_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/search/neighbour_search.h"
+#include "runners/experiment/simulation/point_gap.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The points of a frame within a ball.
+std::vector<Vec3> points_in(const NeighbourSearch& frame, const Ball& ball, const Kernels& kernels) {
+  GatheredPoints found;
+  found.reserve(frame.size(), frame.has_fixture_radius(), frame.has_stiffness());
+  frame.gather(ball, kernels, found);
+  const PointsView view = found.view();
+  std::vector<Vec3> near;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Vec3 p(view.x[i], view.y[i], view.z[i]);
+    if ((p - ball.centre).norm() <= ball.radius) near.push_back(p);  // regions reach farther than points
+  }
+  return near;
+}
+
+// The radius of the widest gap through which a ball passes; 0: there is none. Most runs are decided by the
+// nearest points; a contact near the border of the points, or at scan lines far apart, needs more of them.
+double gap_radius_m(const NeighbourSearch& frame, const Vec3& position_W, double ball_radius_m,
+                    const Kernels& kernels) {
+  for (const double reach : {3.0, 6.0}) {
+    const double known_m = reach * ball_radius_m;
+    const PointGap gap =
+        widest_gap(points_in(frame, {position_W, known_m}, kernels), position_W, ball_radius_m, known_m);
+    if (gap.radius_m > 0 || gap.is_decided) return gap.radius_m;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void ContactWatch::add(double time_s, const Vec3& hand_W, const RenderOutput& out, const Points& points,
+                       double proxy_distance_m) {
+  if (!points) return;
+  if (!start_) start_ = Site{time_s, hand_W, points};
+  const bool is_new_frame = out.frame_index != frame_;
+  frame_ = out.frame_index;
+  const auto now = [&] { return Site{time_s, out.proxy_W, points}; };
+  if (contact_) {
+    frames_ += is_new_frame ? 1 : 0;
+  } else if (out.contact_count > 0) {
+    contact_ = now();
+  } else if (out.nearest_distance_m < nearest_m_) {
+    nearest_m_ = out.nearest_distance_m, nearest_ = now();
+  }
+  if (side_.add(proxy_distance_m))
+    crossing_ = Crossing{now(), contact_.has_value(), frames_};
+  else if (side_.popped_through() != 1)
+    crossing_.reset();
+}
+
+std::vector<Note> ContactWatch::spacing_notes(double ball_radius_m, const Kernels& kernels) const {
+  struct Candidate {
+    const Site* site;
+    const char* where;
+  };
+  const Candidate candidates[] = {
+      {contact_ ? &*contact_ : nullptr, "at the first contact"},
+      {!contact_ && nearest_ ? &*nearest_ : nullptr, "where the proxy came nearest to them"},
+      {crossing_ ? &crossing_->site : nullptr, "where the proxy passed the true surface"}};
+  for (const auto& [site, where] : candidates) {
+    if (!site) continue;
+    const double gap_m = gap_radius_m(*site->points, site->position_W, ball_radius_m, kernels);
+    if (!(gap_m > 0)) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the points leave a gap of radius %.3g mm %s: a proxy of contact radius %.3g mm can fall "
+                  "through it",
+                  1e3 * gap_m, where, 1e3 * ball_radius_m);
+    return {{"wide spacing", text}};
+  }
+  return {};
+}
+
+std::vector<Note> ContactWatch::start_notes(const Scenario& scenario, double rest_distance_m,
+                                            const Kernels& kernels) const {
+  if (!start_) return {};
+  const Vec3& hand_W = start_->position_W;
+  const double distance_m = scenario.signed_distance(hand_W, start_->time_s);
+  if (distance_m > 0 && distance_m >= rest_distance_m) return {};
+  // The true surface may reach farther than the points, so that it is not enough.
+  const double reach_m = rest_distance_m + (distance_m < 0 ? -distance_m : 0);
+  const std::vector<Vec3> near = points_in(*start_->points, {hand_W, reach_m}, kernels);
+  if (near.empty()) return {};
+  char text[200];
+  if (distance_m < 0)
+    std::snprintf(text, sizeof text, "the hand starts %.3g mm behind the true surface", -1e3 * distance_m);
+  else if (std::isnan(distance_m))
+    std::snprintf(text, sizeof text, "the hand starts nearer to a point than the contact radius of %.3g mm",
+                  1e3 * rest_distance_m);
+  else
+    std::snprintf(text, sizeof text,
+                  "the hand starts %.3g mm in front of the true surface, nearer than the contact radius of "
+                  "%.3g mm",
+                  1e3 * distance_m, 1e3 * rest_distance_m);
+  return {{"starts in contact", text}};
+}
+
+std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, double ball_radius_m,
+                                                  const Kernels& kernels) const {
+  constexpr int kFrames = 2;  // see first_touch.h
+  if (!crossing_ || crossing_->frames > kFrames) return {};
+  const Site& site = crossing_->site;
+  const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());
+  const double moved_m = scenario.signed_distance(site.position_W, before_s) -
+                         scenario.signed_distance(site.position_W, site.time_s);
+  if (!(moved_m > 0)) return {};
+  // The true surface may reach farther than the points: a hand beside them loses nothing.
+  const double reach_m = ball_radius_m + moved_m;
+  if (!crossing_->touched && points_in(*site.points, {site.position_W, reach_m}, kernels).empty()) return {};
+  char text[280];
+  std::snprintf(
+      text, sizeof text,
+      "the true surface passed the proxy at %.6g s, %s; it moved at %.3g m/s towards the proxy, and "
+      "even without noise a first touch is safe only up to %.3g m/s at most",
+      site.time_s,
+      crossing_->touched ? "before a third frame came after the first contact"
+                         : "before the proxy touched a point",
+      moved_m / (site.time_s - before_s), ball_radius_m * scenario.frame_rate_hz());
+  return {{"lost at the first touch", text}};
+}
+
+}  // namespace remote_touch

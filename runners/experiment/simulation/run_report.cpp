@@ -1,0 +1,98 @@
+#include "runners/experiment/simulation/run_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string seconds(double time_s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", time_s);
+  return text;
+}
+
+// A press into a moving scene that begins when the scene has come to rest.
+void add_late_phases(const std::vector<Phase>& of_scene, const std::vector<Phase>& of_hand, double end_s,
+                     std::vector<Note>& notes) {
+  if (of_scene.empty()) return;
+  const Phase& last = of_scene.back();
+  for (const Phase& phase : of_hand)
+    if (phase.begins_s >= last.ends_s && phase.begins_s < end_s)
+      notes.push_back({"after the motion", phase.name + " begins at " + seconds(phase.begins_s) + ", after " +
+                                               last.name + " has ended at " + seconds(last.ends_s)});
+}
+
+void add_contact(const Trace& trace, std::vector<Note>& notes) {
+  const auto is_none = [](int count) { return count == 0; };
+  const auto is_zero = [](const Vec3& force) { return force.norm() == 0; };
+  if (std::all_of(trace.frame_index.begin(), trace.frame_index.end(), [](int frame) { return frame < 0; }))
+    notes.push_back({"no frame", "no frame arrived before the run ended"});
+  else if (std::all_of(trace.contact_count.begin(), trace.contact_count.end(), is_none) &&
+           std::all_of(trace.force_N.begin(), trace.force_N.end(), is_zero))
+    notes.push_back(no_contact_note());
+}
+
+}  // namespace
+
+Note no_contact_note() {
+  return {"no contact", "no point was touched, and no force was felt"};
+}
+
+void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes) {
+  std::set<std::string> missed;
+  for (const Phase& phase : phases)
+    if (phase.begins_s >= end_s && missed.insert(phase.name).second)
+      notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) + ", before " + phase.name +
+                                                " begins at " + seconds(phase.begins_s)});
+}
+
+std::string text_of(const RunReport& report) {
+  std::string text;
+  for (const std::string& line : report.inputs) text += "  read " + printable(line) + "\n";
+  if (!report.hand.empty()) text += "  hand: " + printable(report.hand) + "\n";
+  for (const Note& note : report.notes)
+    text += "  note (" + printable(note.kind) + "): " + printable(note.text) + "\n";
+  return text;
+}
+
+RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace,
+                    double end_s) {
+  RunReport report;
+  if (std::string input = scenario.input(); !input.empty()) report.inputs.push_back(std::move(input));
+  report.hand = trajectory.aim();
+  report.notes = scenario.input_notes();
+  for (Note& note : trajectory.notes()) report.notes.push_back(std::move(note));
+  const std::vector<Phase> of_scene = scenario.phases(), of_hand = trajectory.phases();
+  add_missed_phases(of_scene, end_s, report.notes);
+  add_missed_phases(of_hand, end_s, report.notes);
+  // A ticks' time is made of its number, and the end of a motion is a sum of times: both are rounded.
+  if (trajectory.duration_s() > end_s + kSameTime_s)
+    report.notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) +
+                                                     ", before the trajectory ends at " +
+                                                     seconds(trajectory.duration_s())});
+  add_late_phases(of_scene, of_hand, end_s, report.notes);
+  add_contact(trace, report.notes);
+  return report;
+}
+
+void add_report(TextAttributes& attributes, const RunReport& report) {
+  std::string read, notes;
+  for (const std::string& line : report.inputs) read += (read.empty() ? "" : "\n") + line;
+  for (const Note& note : report.notes) notes += (notes.empty() ? "" : "\n") + note.text;
+  if (!read.empty()) attributes.emplace_back("frames_read", read);
+  if (!report.hand.empty()) attributes.emplace_back("hand", report.hand);
+  if (!notes.empty()) attributes.emplace_back("notes", notes);
+}
+
+void refuse_notes(const RunReport& report) {
+  std::string all;
+  for (const Note& note : report.notes) all += (all.empty() ? "" : "; ") + note.kind + ": " + note.text;
+  if (!all.empty()) throw InputError("--strict", all);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,115 @@
+#include "runners/experiment/tool_files/loaded_tool.h"
+
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+template <class Settings>
+Parameters parameters_of(Settings& s) {
+  Parameters all = parameters(s.tool);
+  for (Parameter& p : parameters(s.motion)) all.push_back(std::move(p));
+  return all;
+}
+
+template <class Settings>
+std::string problem_of(const Settings& s) {
+  const std::string tool = validate(s.tool);
+  return tool.empty() ? validate(s.motion) : tool;
+}
+
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolRenderer>(motion, tool, kernels);
+}
+std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
+}
+
+// The rules for comparison have settings of their own, none of which is live.
+class ToolToCompare final : public ToolRenderer {
+ public:
+  using ToolRenderer::ToolRenderer;
+  Parameters live_parameters() override { return {}; }
+};
+std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         make_penalty_motion(motion, *tool));
+}
+std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         std::make_unique<GodObjectMotion>(motion, *tool));
+}
+
+ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
+  ToolSettings tool = settings;
+  tool.outer_field = motion.contact_rule == TouchRule::continuous;
+  return tool;
+}
+ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters& motion) {
+  return tool_for(settings, motion.tool);
+}
+ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
+  return settings;
+}
+ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameters&) {
+  ToolSettings tool = settings;
+  tool.outer_field = true;
+  return tool;
+}
+
+}  // namespace
+
+Parameters parameters(LoadedTool::Settings& s) {
+  return parameters_of(s);
+}
+Parameters parameters(LoadedTrackedTool::Settings& s) {
+  return parameters_of(s);
+}
+Parameters parameters(LoadedToolPenalty::Settings& s) {
+  return parameters_of(s);
+}
+Parameters parameters(LoadedToolGodObject::Settings& s) {
+  return parameters_of(s);
+}
+
+std::string validate(const LoadedTool::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedTrackedTool::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedToolPenalty::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedToolGodObject::Settings& s) {
+  return problem_of(s);
+}
+
+std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {
+  return input_files(s.tool);
+}
+std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s) {
+  return input_files(s.tool);
+}
+std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
+  return input_files(s.tool);
+}
+std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s) {
+  return input_files(s.tool);
+}
+
+template <class MotionSettings>
+ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
+    : renderer_(renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
+
+template class ToolFromMesh<ToolParameters>;
+template class ToolFromMesh<TrackedToolParameters>;
+template class ToolFromMesh<ToolPenaltyParameters>;
+template class ToolFromMesh<ToolGodObjectParameters>;
+
+}  // namespace remote_touch

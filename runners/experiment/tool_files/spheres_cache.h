@@ -1,0 +1,22 @@
+// The cache of tools' sphere trees on disk, beside that of the tools.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/dissertation/sphere_tree/tool_spheres.h"
+
+namespace remote_touch {
+
+// Part of the key: raise it whenever the result of make_tool_spheres() changes.
+inline constexpr int kSpheresFormat = 1;
+
+// Returns the key of the spheres, from the key of the tool in its cache and from max_leaves.
+std::string spheres_key(const std::string& tool_key, int max_leaves);
+
+// These functions do for spheres what read_tool() and write_tool() do for tools.
+std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
+bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
+
+}  // namespace remote_touch

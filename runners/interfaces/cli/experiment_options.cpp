@@ -1,0 +1,147 @@
+// The options of the commands that list names, run experiments and show results.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/changed_settings.h"
+#include "runners/interfaces/cli/other_kinds.h"
+#include "runners/interfaces/cli/subcommands.h"
+#include "runners/presentation/export/export_formats.h"
+#include "runners/sweep/enough_threads.h"
+
+namespace remote_touch {
+
+namespace {
+
+void require_own_kind(const std::string& name, const char* command) {
+  if (const std::string other = other_kind(name, command); !other.empty()) throw InputError(name, other);
+}
+int run_experiment(const CommandLine& line, const RunRequest& request) {
+  require_own_kind(request.experiment, "run");
+  return command_run(line, request);
+}
+int run_sweep(const CommandLine& line, const SweepRequest& request) {
+  require_own_kind(request.sweep, "sweep");
+  return command_sweep(line, request);
+}
+int make_figures(const CommandLine& line, const FigureRequest& request) {
+  for (const std::string& name : request.names) require_own_kind(name, "figure");
+  return command_figure(line, request);
+}
+
+void add_lists(Subcommands& commands) {
+  commands.add("list",
+               "list the names of scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
+               command_list);
+  auto [describe, described] = commands.add(
+      "describe",
+      "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",
+      command_describe);
+  describe->add_option("name", described->name, "a name from `remote-touch list`, or trace")->required();
+  auto [view, viewed] = commands.add(
+      "view", "make a page that shows a trace, two of them, or a sweep, in 3-D and over time", command_view);
+  view->add_option("results", viewed->results, "a trace, two traces to compare, or a sweep")
+      ->required()
+      ->expected(1, 2);
+  view->add_option("-o,--output", viewed->output, "the HTML page to write")->required();
+  view->add_option("--cells", viewed->cells,
+                   "cells of a sweep to show, 3,4 or noise_sigma_m=0.003,..., one for each --cells "
+                   "(default: failures nearest to the limit)")
+      ->allow_extra_args(false);
+  view->add_option("--max-mb", viewed->max_MB, "largest size of the page, MB; points are left out for it")
+      ->check(between(1.0, 1000.0));
+  view->add_option(
+      "--claims", viewed->claims,
+      "claims.json of `remote-touch figure`: the page of a figure's run shows the figure's claims");
+  auto [exporting, exported] =
+      commands.add("export", "write a result in the format of other programs", command_export);
+  exporting->add_option("file", exported->file, "a trace, sweep or figure")->required();
+  exporting
+      ->add_option("output", exported->output,
+                   "the file to write; its ending is the format: " + known_formats())
+      ->required();
+  auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
+  inspect->add_option("file", inspected->file, "an HDF5 file")->required();
+}
+
+void add_run(Subcommands& commands) {
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", run_experiment);
+  command
+      ->add_option("experiment", run->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
+      ->required();
+  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
+  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run->timing, "also store the duration of each tick");
+  command->add_flag("--strict", run->strict,
+                    "a note on the run is an error: exit code 2, and nothing is written");
+}
+
+void add_sweep(Subcommands& commands) {
+  auto [command, sweep] = commands.add(
+      "sweep", "run an experiment over a grid of parameters; the same command resumes it", run_sweep);
+  command->add_option("sweep", sweep->sweep, "a name from `remote-touch list`, or a JSON file")->required();
+  add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
+  command->add_option(
+      "-o,--output", sweep->output,
+      "the HDF5 file to write or to resume; {shard} is replaced by the part, for example 2of7");
+  command->add_option("--threads", sweep->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, kMaxThreads));
+  command->add_option("--shard", sweep->shard,
+                      "i/N: run only part i of N (default: from Slurm or mpirun, else everything)");
+  command->add_flag("--dry-run", sweep->dry_run,
+                    "check every cell, estimate time and file size; write nothing");
+  command->add_flag("--strict", sweep->strict,
+                    "a note on a run is an error: exit code 2, after all runs are stored");
+}
+
+void add_merge_and_replay(Subcommands& commands) {
+  auto [command, merge] =
+      commands.add("merge", "merge the shards (parts) of a sweep into one file", command_merge);
+  command->add_option("shards", merge->shards, "the files of all shards")->required();
+  command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
+
+  auto [again, replay] =
+      commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
+  again->add_option("map", replay->map, "the result of a sweep; `run` replays a live session")->required();
+  again
+      ->add_option(
+          "--cell", replay->cell,
+          "index on each axis, from 0, for example 3,40; or a value of each, for example noise_sigma_m=0.003,rule=none")
+      ->required();
+  again->add_option("--replicate", replay->replicate, "number of the replicate, from 0");
+  again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
+  again->add_flag("--strict", replay->strict,
+                  "a note on the run is an error: exit code 2, and nothing is written");
+}
+
+void add_figure(Subcommands& commands) {
+  auto [command, figure] = commands.add(
+      "figure", "reproduce figures and check their claims; writes HDF5 files and claims.json", make_figures);
+  command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
+  command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+  command
+      ->add_option("--coarse", figure->coarse,
+                   "maps: use only every Nth value of each axis; claims about a whole map then stay open")
+      ->check(CLI::Range(1, 10));
+  command->add_flag("--quick", figure->quick,
+                    "--coarse only for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
+}
+
+}  // namespace
+
+void add_commands_of_experiments(Subcommands& commands) {
+  add_lists(commands);
+  add_run(commands);
+  add_sweep(commands);
+  add_merge_and_replay(commands);
+  add_figure(commands);
+}
+
+void print_replaced(const std::vector<std::string>& overrides) {
+  for (const std::string& line : replaced_settings(overrides))
+    std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(line).c_str());
+}
+
+}  // namespace remote_touch

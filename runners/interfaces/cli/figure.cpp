@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "core/parameters/input_error.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/figure_folder.h"
+#include "runners/interfaces/cli/figure_runs.h"
+#include "runners/interfaces/cli/progress.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Each once.
+std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
+  for (const std::string& name : request.names) {
+    const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
+    if (std::none_of(figures().begin(), figures().end(), is_named))
+      throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
+  }
+  std::vector<FigureRun> chosen;
+  for (const FigureEntry& entry : figures()) {
+    const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
+    const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
+    if (std::any_of(request.names.begin(), request.names.end(), names_it)) chosen.push_back({&entry, coarse});
+  }
+  return quickest_first(chosen);
+}
+
+// A recording that is not there is no failure of the method: the claim says so and the rest goes on.
+Figure made_or_not_run(const FigureEntry& entry, const FigureContext& context) {
+  try {
+    return entry.make(context);
+  } catch (const MissingRecording& error) {
+    Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
+    figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
+    return figure;
+  }
+}
+
+}  // namespace
+
+int command_figure(const CommandLine& line, const FigureRequest& request) {
+  const std::vector<FigureRun> runs = chosen_figures(request);
+  FigureFolder folder(line, request.folder, runs);
+  Progress shown("figures", line.quiet);
+  make_figures(
+      line, runs, made_or_not_run,
+      [&](std::size_t run, const FigureContext& context, Figure figure) {
+        folder.finish(run, context, std::move(figure));
+      },
+      [&](const FigureProgress& progress) { folder.report(progress, shown); });
+  shown.clear();
+  return folder.exit_code();
+}
+
+}  // namespace remote_touch

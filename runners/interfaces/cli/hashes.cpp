@@ -1,0 +1,23 @@
+#include <cstdio>
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/tick_hashes.h"
+#include "analysis/figures/result_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+
+namespace remote_touch {
+
+int command_hashes(const CommandLine& line, const HashesRequest& request) {
+  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
+  const FileLock lock = lock_output(line, request.output, {request.trace});
+  const StoredTrace trace(request.trace);
+  const TickHashes hashes = hashes_of_trace(trace, request.every);
+  write_hashes(request.output, hashes, provenance_of(trace.attributes()));
+  std::printf("%s: %zu hashes, the last of tick %d\n", printable(request.output).c_str(), hashes.tick.size(),
+              hashes.tick.empty() ? -1 : hashes.tick.back());
+  return kDone;
+}
+
+}  // namespace remote_touch

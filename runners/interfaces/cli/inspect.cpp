@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/block_journal.h"
+#include "analysis/storage/file_digest.h"
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/sessions/unfinished_session.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/interfaces/cli/commands.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The columns of the table are printed in two parts: what a dataset is, and what its values are.
+void print_dataset(const std::string& path, const std::string& extent, const std::string& units) {
+  std::printf("  %-32s %12s  %-6s", path.c_str(), extent.c_str(), units.c_str());
+}
+
+// "867 x 3": rows and numbers in a row. An array of a sweep, which is over its axes and replicates, has their
+// lengths instead: "3 x 7 x 3".
+class Extents {
+ public:
+  explicit Extents(const Hdf5Content& content) {
+    scales_ = split_names(attribute(content.attributes, "axes"));
+    scales_.emplace_back("replicate");
+    for (const std::string& scale : scales_)
+      for (const auto& [path, column] : content.datasets)
+        if (path == "/sweep/" + scale) {
+          text_ += (text_.empty() ? "" : " x ") + std::to_string(column.length());
+          runs_ *= column.length(), ++dimensions_;
+        }
+  }
+  std::string of(const std::string& path, const Column& column) const {
+    const bool is_scale = std::any_of(scales_.begin(), scales_.end(),
+                                      [&](const std::string& scale) { return path == "/sweep/" + scale; });
+    const std::size_t size = column.length() * static_cast<std::size_t>(column.width);
+    if (path.starts_with("/sweep/") && !is_scale && dimensions_ > 1 && size == runs_) return text_;
+    return std::to_string(column.length()) + " x " + std::to_string(column.width);
+  }
+
+ private:
+  std::vector<std::string> scales_;
+  std::string text_;
+  std::size_t runs_ = 1;
+  int dimensions_ = 0;
+};
+
+// Least, mean and greatest of the finite values, and how many are not.
+void print_numbers(const std::vector<double>& values) {
+  double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+  std::size_t finite = 0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v), high = std::max(high, v), sum += v;
+    ++finite;
+  }
+  if (finite > 0) std::printf("  %.6g .. %.6g, mean %.6g", low, high, sum / static_cast<double>(finite));
+  if (finite < values.size()) std::printf("  (%zu not finite)", values.size() - finite);
+  std::puts("");
+}
+
+void print_states(const Column& column, const std::vector<std::int32_t>& values) {
+  for (std::size_t i = 0; i < column.value_names.size(); ++i) {
+    const auto count = std::count(values.begin(), values.end(), static_cast<std::int32_t>(i));
+    if (count > 0) std::printf("  %s %td", column.value_names[i].c_str(), count);
+  }
+  std::puts("");
+}
+
+// Prints the number of texts that are not empty, and the first of them.
+void print_texts(const std::vector<std::string>& texts) {
+  const auto is_empty = [](const std::string& text) { return text.empty(); };
+  const auto first = std::find_if_not(texts.begin(), texts.end(), is_empty);
+  std::printf("  %td not empty%s%s\n",
+              static_cast<std::ptrdiff_t>(texts.size()) - std::count_if(texts.begin(), texts.end(), is_empty),
+              first == texts.end() ? "" : ": ", first == texts.end() ? "" : first->c_str());
+}
+
+void print_hashes(const std::vector<std::uint64_t>& values) {
+  if (!values.empty()) std::printf("  last %016" PRIx64, values.back());
+  std::puts("");
+}
+
+// Prints how many runs of a sweep have each kind of note, see SweepResult::notes. kinds: the names of the
+// kinds, separated by commas.
+void print_notes(const std::vector<std::int32_t>& all, const std::string& kinds) {
+  const std::vector<std::string> names = split_names(kinds);
+  for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 31); ++bit) {
+    const auto has = [bit](std::int32_t notes) { return (notes >> bit & 1) != 0; };
+    if (const auto count = std::count_if(all.begin(), all.end(), has); count > 0)
+      std::printf("  %s %td", names[bit].c_str(), count);
+  }
+  std::puts("");
+}
+
+void print_values(const Column& column) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return print_numbers(*numbers);
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return print_texts(*texts);
+  if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values))
+    return print_hashes(*hashes);
+  const auto& integers = std::get<std::vector<std::int32_t>>(column.values);
+  if (column.value_names.empty())
+    print_numbers({integers.begin(), integers.end()});
+  else
+    print_states(column, integers);
+}
+
+// A unit is printed where a number is.
+void print_datasets(const Hdf5Content& content) {
+  const Extents extents(content);
+  const std::string note_kinds = attribute(content.attributes, "note_kinds");
+  for (const auto& [path, column] : content.datasets) {
+    const auto* notes = std::get_if<std::vector<std::int32_t>>(&column.values);
+    const bool has_unit = std::holds_alternative<std::vector<double>>(column.values) ||
+                          (notes && column.value_names.empty() && path != "/sweep/notes");
+    print_dataset(path, extents.of(path, column), has_unit ? column.units : "");
+    if (path == "/sweep/notes" && notes)
+      print_notes(*notes, note_kinds);
+    else
+      print_values(column);
+  }
+}
+
+// A text of several lines, as input files make it, stays in its column.
+void print_attribute(const std::string& name, std::string value) {
+  constexpr const char* kNextLine = "\n               ";
+  for (std::size_t at = value.find('\n'); at != std::string::npos; at = value.find('\n', at + 1))
+    value.replace(at, 1, kNextLine);
+  std::printf("  %-12s %s\n", name.c_str(), value.c_str());
+}
+
+void print_attributes(const std::string& file, const TextAttributes& attributes) {
+  for (const auto& [name, value] : attributes) {
+    if (name == "config" && !value.empty())
+      std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());
+    else
+      print_attribute(name, value);
+  }
+}
+
+void print_unfinished(const std::string& file) {
+  const UnfinishedSession session = read_unfinished(file);
+  std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
+              session.ticks, session.frames, session.is_growing ? "; it is being recorded" : "");
+  if (session.has_end) std::puts("  note         the recording has ended, but its file was not made");
+  if (session.left_out_bytes > 0)
+    std::printf("  note         the last %" PRIu64
+                " bytes are left out, from the first damaged or incomplete block on\n",
+                session.left_out_bytes);
+  std::printf("  next         remote-touch recover %s -o FILE\n", printable(file).c_str());
+  print_attributes(file, session.attributes);
+  print_attributes(file, session.ending);
+}
+
+}  // namespace
+
+int command_inspect(const CommandLine&, const InspectRequest& request) {
+  const std::string& file = request.file;
+  if (is_journal(file)) {
+    print_unfinished(file);
+    return kDone;
+  }
+  const Hdf5Content content = read_hdf5(file);
+  std::printf("%s\n", printable(file).c_str());
+  if (was_opened_for_writing(file))
+    std::puts(
+        "  note         another program opened it for writing; every value is as it was written (SHA-256)");
+  print_attributes(file, content.attributes);
+  print_datasets(content);
+  return kDone;
+}
+
+}  // namespace remote_touch

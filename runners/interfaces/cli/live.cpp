@@ -1,0 +1,235 @@
+#include "runners/live/loop/live_run.h"
+
+#include <spawn.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <stdexcept>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/block_journal.h"
+#include "analysis/storage/digest.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/provenance/shell_command.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/live/loop/live_inputs.h"
+#include "runners/live/view/live_view.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string device_of(const LiveRequest& request) {
+  if (!request.device.empty()) return request.device;
+  return request.view ? "browser:" : "sim:";
+}
+
+std::string normalised(const LiveRequest& request) {
+  std::vector<std::string> words = program_words();
+  words.insert(words.end(),
+               {"live", request.experiment, "--device", device_of(request), "--depth", request.depth});
+  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
+  return shell_command(words);
+}
+
+void report_line(const std::string& text) {
+  std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
+}
+
+// The files that a live run reads: those of the experiment, of replay:FILE and of pcd:FILE.
+std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment& experiment) {
+  std::vector<std::string> files = with_parts(request.experiment, experiment.inputs());
+  for (const std::string& address : {request.depth, request.device})
+    files.push_back(address.substr(address.find(':') + 1));
+  return files;
+}
+
+// A haptic device must be let go whatever ends the program, and a program that is halted holds on to it.
+void see_to_every_end() {
+  struct sigaction interrupt {};
+  sigaction(SIGINT, nullptr, &interrupt);
+  sigaction(SIGQUIT, &interrupt, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGTSTP, SIG_IGN);
+}
+
+// A page that leads to the address. The address itself would be in the list of all processes, and whoever has
+// it can move the hand.
+std::string page_that_leads_to(const std::string& address) {
+  std::string file = (std::filesystem::temp_directory_path() / "remote-touch-XXXXXX.html").string();
+  const int descriptor = mkstemps(file.data(), 5);  // only this user can read it
+  if (descriptor < 0) return {};
+  const std::string text =
+      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
+  const bool written = write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  close(descriptor);
+  return written ? file : std::string();
+}
+
+// Opens the address in the browser of the desktop; Ctrl-C does not end that browser. Without a desktop
+// nothing is opened, and the user reads the address. Returns a file that is to be removed at the end, or an
+// empty name.
+std::string show_in_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
+  std::string program = "xdg-open", place = page_that_leads_to(address);
+  if (place.empty()) return {};
+  char* const arguments[] = {program.data(), place.data(), nullptr};
+  posix_spawnattr_t own_session;
+  posix_spawnattr_init(&own_session);
+  posix_spawnattr_setflags(&own_session, POSIX_SPAWN_SETSID);
+  pid_t child = 0;
+  posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
+  posix_spawnattr_destroy(&own_session);
+  return place;
+}
+
+std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& request,
+                                    const Experiment& experiment, LiveOptions& options) {
+  auto view = std::make_unique<LiveView>(experiment,
+                                         LiveViewSource{normalised(request), options.device, options.depth},
+                                         *line.kernels, request.view_port);
+  view->connect(options);
+  return view;
+}
+
+// Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
+// The page only shows the run if the session has another device.
+std::string lead_to(const LiveView& view, const std::string& device) {
+  std::printf("open this page to see the run%s: %s\n", device == "browser:" ? " and to move the hand" : "",
+              view.address().c_str());
+  std::fflush(stdout);
+  return show_in_browser(view.address());
+}
+
+// Removed with the run.
+struct LeadingPage {
+  std::string file;
+  ~LeadingPage() {
+    if (!file.empty()) unlink(file.c_str());
+  }
+};
+
+// While it runs: a file that cannot be written does not end it.
+void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
+  report_line("so far\n" + text(report));
+  if (!file.empty()) write_figure(file, live_figure(report), origin);
+} catch (const std::exception& error) {
+  report_line(error.what());
+}
+
+// Writes it, if it is wanted, and tells its digest, which that of the recording is.
+void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttributes& origin) {
+  const std::string sum = request.output.empty()
+                              ? digest(log.trace.columns())
+                              : write_trace(request.output, log.trace, origin, log.row_step_s);
+  if (log.is_whole())
+    std::printf("  digest of the trace: %s\n", sum.c_str());
+  else
+    std::printf("  only the first %zu of %lld ticks were kept as a trace; --record keeps all of them\n",
+                log.trace.length(), static_cast<long long>(log.ticks));
+}
+
+// A hand motion cannot be repeated: that one file cannot be written is no reason to leave out the others.
+void note_failure(std::string& lost, const std::function<void()>& write) {
+  std::string why;
+  try {
+    write();
+    return;
+  } catch (const std::bad_alloc&) {
+    why = "out of memory";
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  lost += (lost.empty() ? "" : "; ") + why;
+}
+
+// The files of a run that was refused say why, and state no hashes of files that it may not have read.
+void add_refusal(TextAttributes& origin, const LiveResult& result) {
+  std::erase_if(origin, [](const auto& attribute) { return attribute.first == "input_digests"; });
+  origin.emplace_back("ended", result.ended);
+}
+
+// Printed before the loop begins.
+void print_files(const LiveRequest& request) {
+  if (!request.record.empty())
+    report_line("recording " + request.record + "; until the end it is " +
+                journal_of(request.record).string() + ", which is kept if the program is interrupted");
+  else if (!request.output.empty())
+    report_line(
+        request.output +
+        " is only in memory until the end; use --record to keep the session if the program is interrupted");
+}
+
+}  // namespace
+
+int command_live(const CommandLine& line, const LiveRequest& request) {
+  const std::string journal = request.record.empty() ? "" : journal_of(request.record).string();
+  require_distinct({{"--record", request.record},
+                    {"--record", journal},
+                    {"--output", request.output},
+                    {"--report", request.report}});
+  const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  std::vector<FileLock> locks;
+  for (const std::string& file : {request.record, request.output, request.report})
+    if (!file.empty()) locks.push_back(lock_output(line, file, inputs_of(request, experiment)));
+  if (!request.record.empty()) require_no_journal_beside(request.record);
+  LiveOptions options;
+  options.device = device_of(request), options.depth = request.depth;
+  options.duration_s = request.duration_s.value_or(0);
+  options.record = request.record;
+  options.kernels = line.kernels;
+  options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;
+  const std::vector<RecordingPart> inputs =
+      live_inputs(experiment, options.device, options.depth, request.view);
+  const std::string digests = input_hashes(inputs);
+  options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa, digests);
+  options.check_inputs = [&] { require_unchanged(inputs, digests); };
+  if (!line.quiet) options.report_line = report_line;
+  options.on_report = [&](const LiveReport& report) {
+    report_now(report, request.report, options.provenance);
+  };
+  const auto view = request.view ? open_view(line, request, experiment, options) : nullptr;
+  LeadingPage leading;
+  options.on_start = [&] {
+    if (view) leading.file = lead_to(*view, options.device);
+    if (!line.quiet) print_files(request);
+  };
+  see_to_every_end();
+  print_replaced(request.overrides);
+  const LiveResult result = run_live(experiment, options);
+  if (view) view->end(result.ended);
+  experiment.add_depth_device(options.provenance);
+  add_report(options.provenance, result.report);
+  if (!result.refused.empty()) add_refusal(options.provenance, result);
+
+  std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
+              result.real_time.c_str(), result.ended.c_str());
+  const LiveReport report = live_report(result.log, result.counts);
+  if (result.force_scale < 1)
+    std::printf(
+        "    forces and torques were scaled by %.3g, so that no spring exceeds the maximum stiffness of the device\n",
+        result.force_scale);
+  std::fputs(text(report).c_str(), stdout);
+  std::fputs(text_of(result.report).c_str(), stdout);
+  std::string lost = result.lost;
+  note_failure(lost, [&] { print_trace(request, result.log, options.provenance); });
+  note_failure(lost, [&] {
+    if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
+  });
+  // No InputError: after Ctrl-C the program takes that for the end of a wait, and does not print it.
+  if (lost.empty()) lost = result.refused;
+  if (!lost.empty()) throw std::runtime_error(lost);
+  if (request.strict) refuse_notes(result.report);
+  return result.failed ? kCheckFailed : kDone;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,140 @@
+#include "runners/interfaces/cli/program.h"
+
+#include <malloc.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include "analysis/storage/sha256.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/cache_folder.h"
+#include "runners/experiment/provenance/kernel_choice.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/cli/command_line.h"
+#include "runners/interfaces/cli/last_resorts.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::atomic<bool> stop_requested{false}, report_requested{false}, rearm_requested{false};
+
+void request_stop(int) {
+  stop_requested = true;
+}
+
+void request_report(int) {
+  report_requested = true;
+}
+
+void request_rearm(int) {
+  rearm_requested = true;
+}
+
+// REMOTE_TOUCH_ISA: the instruction set of the kernels, in place of the fastest one.
+const Kernels& chosen_kernels() {
+  const char* forced = std::getenv("REMOTE_TOUCH_ISA");
+  return choose_kernels(forced != nullptr ? forced : "", cache_folder());
+}
+
+// REMOTE_TOUCH_DATA: where recordings and meshes with relative names are, if not here.
+void take_data_folder() {
+  if (const char* folder = std::getenv("REMOTE_TOUCH_DATA")) set_data_folder(folder);
+}
+
+void complain(const std::string& problem) {
+  std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(problem).c_str());
+}
+
+// Before the constants of all files are made, which may find no memory.
+[[gnu::constructor(101)]] void take_last_resorts() {
+  install_last_resorts(kBadInput);
+}
+
+int interrupted() {
+  complain("interrupted: no incomplete file is left");
+  return kInterrupted;
+}
+
+// Sets the catalog of the program. A program with entries of its own is not the one that the sources
+// describe, so results identify it by the name and the SHA-256 of its file.
+void take_catalog(Catalog catalog, const std::string& called) {
+  if (!own_entries(catalog).is_empty())
+    identify_program({std::filesystem::path(called).filename().string(), sha256_of_file("/proc/self/exe")});
+  use_catalog(std::move(catalog));
+}
+
+CommandLine with_signals() {
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup had set SIG_IGN
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes then fails with an error
+  std::signal(SIGUSR1, request_report);
+  std::signal(SIGUSR2, request_rearm);
+  CommandLine line;
+  line.stop = &stop_requested;
+  line.report = &report_requested;
+  line.rearm = &rearm_requested;
+  return line;
+}
+
+int flushed(int code) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw InputError("standard output", "cannot be written: expected a place with room");
+  return code;
+}
+
+// make_catalog may throw.
+int run(const std::function<Catalog()>& make_catalog, int argc, char** argv) {
+  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  const CommandLine line = with_signals();
+  try {
+    take_catalog(make_catalog(), argc > 0 ? argv[0] : "");
+    take_data_folder();
+    return flushed(run_command_line(argc, argv, line, chosen_kernels));
+  } catch (const Interrupted&) {
+    return interrupted();
+  } catch (const InputError& error) {
+    if (stop_requested) return interrupted();  // it ended the wait for a file
+    complain(error.what());
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::length_error&) {
+    complain("out of memory");
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    complain(no_thread ? "a thread cannot be started: out of memory, or of threads" : error.what());
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return kBadInput;
+}
+
+}  // namespace
+
+int command_line(Catalog catalog, int argc, char** argv) {
+  return run([&catalog] { return std::move(catalog); }, argc, argv);
+}
+
+int command_line(const std::function<void(Catalog&)>& add_entries, int argc, char** argv) {
+  const auto with_added = [&add_entries] {
+    Catalog catalog = built_in_catalog();
+    add_entries(catalog);
+    return catalog;
+  };
+  return run(with_added, argc, argv);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,80 @@
+#include <bit>
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/maker.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep_replay.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Prints each measure beside the stored one. True when they agree bit for bit, or nothing is stored.
+bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
+  const bool stored = result.state[run] == RunState::done;
+  bool same = true;
+  for (std::size_t i = 0; i < result.measures.size(); ++i) {
+    const double now = value_of(sweep.measures()[i], trace);
+    const double then = std::get<std::vector<double>>(result.measures[i].values)[run];
+    const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
+    same &= equal || !stored;
+    std::printf("  %-20s %12.6g %-6s %s", result.measures[i].name.c_str(), now,
+                result.measures[i].units.c_str(), stored ? equal ? "as stored\n" : "" : "not stored\n");
+    if (stored && !equal) std::printf("stored %.17g, now %.17g\n", then, now);
+  }
+  return same;
+}
+
+// Why the values may be others: who made the sweep, and which of the run's recordings have changed since.
+void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
+  std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
+  std::vector<RecordingPart> parts;  // all that the sweep reads of them: it has one hash for that
+  for (const RecordingPart& part : sweep.inputs())
+    for (const RecordingPart& mine : experiment.inputs())
+      if (part.path == mine.path) parts.push_back(part);
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), input_hashes(parts)))
+    if (input.now != "absent")
+      std::printf("  from %s: %s; now %s\n", input.path.c_str(), input.before.c_str(), input.now.c_str());
+}
+
+}  // namespace
+
+int command_replay(const CommandLine& line, const ReplayRequest& request) {
+  const FileLock lock = lock_output(line, request.output, {request.map});
+  const StoredSweep stored = read_sweep(request.map);
+  const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
+    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
+                            request.map + " config");
+  });
+  const SweepResult& result = stored.result;
+  sweep.require_fits(result, request.map);
+  const std::size_t cell = cell_of({"--cell", request.cell}, result);
+  if (request.replicate < 0 || request.replicate >= result.replicates)
+    throw InputError("--replicate " + std::to_string(request.replicate),
+                     "expected 0 to " + std::to_string(result.replicates - 1));
+
+  Progress progress("replay", line.quiet);
+  SimulationOptions options;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  const std::size_t run = result.run(cell, request.replicate);
+  const Replay replay =
+      replay_run(stored, sweep, run, options, request.output, request.strict ? Strict::yes : Strict::no);
+  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), replay.trace.length(),
+              replay.digest.c_str());
+  std::fputs(text_of(replay.report).c_str(), stdout);
+  if (agrees(sweep, result, run, replay.trace)) return kDone;
+  print_origin(stored, sweep, replay.experiment);
+  return kCheckFailed;
+}
+
+}  // namespace remote_touch

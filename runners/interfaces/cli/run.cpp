@@ -1,0 +1,78 @@
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/trace/sequence_log.h"
+#include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/progress.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The log of a task: a line for every step.
+void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    std::printf("  sequence.%zu %s: ", i, name_of(steps[i]).c_str());
+    if (i >= log.size()) {
+      std::puts("has not begun");
+      continue;
+    }
+    const SequenceEntry& entry = log[i];
+    std::printf("began at %.3f s", entry.began_s);
+    if (std::isnan(entry.ended_s))
+      std::printf(", has not ended");
+    else
+      std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
+    if (steps[i].done == StepEnd::reached && !std::isnan(entry.distance_m))
+      std::printf(", %.2g m and %.2g deg from the goal", entry.distance_m,
+                  entry.angle_rad / kRadiansPerDegree);
+    std::puts("");
+  }
+}
+
+}  // namespace
+
+int command_run(const CommandLine& line, const RunRequest& request) {
+  const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  const FileLock lock =
+      lock_output(line, request.output, with_parts(request.experiment, experiment.inputs()));
+  Progress progress(request.experiment, line.quiet);
+  std::vector<double> durations;
+  SimulationOptions options;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  options.hash_frames = true;
+  options.find_true_contact = true;
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  RunReport report;
+  options.report = &report;
+  if (request.timing) options.step_duration_s = &durations;
+  const std::string inputs = input_hashes(experiment.inputs());
+  TextAttributes origin = provenance(
+      experiment.to_json(), Recipe{"run", request.experiment, request.overrides}, line.kernels->isa, inputs);
+  const Trace trace = simulate(experiment, options);
+  require_unchanged(experiment.inputs(), inputs);
+  if (request.strict) refuse_notes(report);
+  experiment.add_depth_device(origin);
+  add_report(origin, report);
+  const std::string sum = write_trace(request.output, trace, origin, durations);
+  print_replaced(request.overrides);
+  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), trace.length(), sum.c_str());
+  std::fputs(text_of(report).c_str(), stdout);
+  for (const Measure& measure : measures())
+    if (applies(measure, trace))
+      std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.of(trace), measure.unit.c_str());
+  print_sequence(experiment.sequence(), sequence_log(trace));
+  return kDone;
+}
+
+}  // namespace remote_touch

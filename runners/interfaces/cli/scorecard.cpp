@@ -1,0 +1,96 @@
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/scorecard/benchmark_choice.h"
+#include "runners/evaluation/scorecard/card_folder.h"
+#include "runners/evaluation/scorecard/evaluation.h"
+#include "runners/evaluation/scorecard/report_json.h"
+#include "runners/evaluation/scorecard/stored_card.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/scorecard_runs.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string normalised(const ScorecardRequest& request) {
+  std::string command = program_text() + " scorecard";
+  for (const std::string& name : request.methods) command += " " + name;
+  if (!request.scenes.empty()) command += " --scene";
+  for (const std::string& name : request.scenes) command += " " + name;
+  return command + " --seeds " + std::to_string(request.seeds);
+}
+
+// Returns the digest.
+std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& plan,
+                          const ScorecardReport& report) {
+  const std::filesystem::path folder = request.folder;
+  std::string sum = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
+                                 provenance(configuration_of(plan), normalised(request), ""));
+  const std::string text = to_json(report);
+  write_file_atomically(folder / "scorecard.json", text.data(), text.size());
+  return sum;
+}
+
+// A method or a scene may be a file in the folder; none that is written there.
+void require_inputs_kept(const ScorecardRequest& request) {
+  for (const auto* names : {&request.methods, &request.scenes})
+    for (const std::string& name : *names)
+      for (const char* written : {kScorecardFile, "scorecard.json", "costs.json"})
+        require_different_file(std::filesystem::path(request.folder) / written, name);
+}
+
+void print(const ScorecardReport& report) {
+  const Scorecard& card = report.card;
+  for (const SceneScore& scene : card.scenes) {
+    std::printf("%s\n", scene.name.c_str());
+    for (std::size_t c = 0; c < card.methods.size(); ++c) {
+      std::printf("  %-18s", card.methods[c].c_str());
+      for (const Proportion& fraction : scene.success[c].at_level)
+        std::printf(" %3d/%d", fraction.events, fraction.runs);
+      std::printf("\n");
+    }
+  }
+  for (const auto& [name, why] : report.skipped)
+    std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
+}
+
+}  // namespace
+
+int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
+  if (request.folder.empty()) throw InputError("--output", "is missing: expected a folder to write to");
+  require_inputs_kept(request);
+  const BenchmarkPlan plan =
+      plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
+  const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
+  require_same_benchmark(sweeps);
+  require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);
+  make_scorecard_folder(request.folder);
+  try {
+    do_scorecard_runs(line, sweeps);
+    Progress after("traces and results", line.quiet);
+    ScorecardReport report = evaluate(plan, *line.kernels, line.stop, [&](std::size_t done, std::size_t all) {
+      after.update(done, all, 0, "scenes");
+    });
+    after.clear();
+    if (request.view) make_failure_pages(line, request.folder, report);
+    const std::string sum = write_results(request, plan, report);
+    print(report);
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n",
+                (std::filesystem::path(request.folder) / kScorecardFile).c_str(), report.card.scenes.size(),
+                report.card.methods.size(), sum.c_str());
+    const int code = report_runs(sweeps);
+    std::printf("make the page: scripts/plot %s\n", request.folder.c_str());
+    return code;
+  } catch (const Interrupted&) {
+    return report_interrupted(request.folder);
+  }
+}
+
+}  // namespace remote_touch

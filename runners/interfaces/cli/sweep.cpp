@@ -1,0 +1,130 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/sweep_summary.h"
+#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/sweep_session.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string with_shard(std::string output, const Shard& shard) {
+  const std::string mark = "{shard}";
+  if (const auto at = output.find(mark); at != std::string::npos)
+    output.replace(at, mark.size(), std::to_string(shard.index) + "of" + std::to_string(shard.count));
+  return output;
+}
+
+TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, const Shard& shard) {
+  TextAttributes list = provenance(sweep.to_json(), Recipe{"sweep", request.sweep, request.overrides}, "",
+                                   input_hashes(sweep.inputs()));
+  if (shard.count > 1) list.emplace_back("shard", shard.text());
+  return list;
+}
+
+// A few runs spread over the sweep, for at most about two seconds.
+struct Sample {
+  double seconds_per_run = 0;
+  int failed = 0;
+  SweepResult tried;  // only these runs are done in it
+};
+Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandLine& line) {
+  const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
+  SimulationOptions options;
+  RunReport report;
+  options.report = &report;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  const auto start = Clock::now();
+  constexpr std::size_t kSamples = 16;
+  std::size_t done = 0;
+  Sample sample{0, 0, sweep.plan()};
+  for (; done < std::min(kSamples, runs.size()) && seconds_since(start) < 2; ++done) {
+    // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
+    const std::size_t run = runs[(7 * done % kSamples) * runs.size() / kSamples];
+    try {
+      simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
+      sample.tried.notes[run] = note_bits(report.notes), sample.tried.state[run] = RunState::done;
+    } catch (const std::exception&) {
+      ++sample.failed;  // the sweep would record it
+    }
+  }
+  if (done > 0) sample.seconds_per_run = seconds_since(start) / static_cast<double>(done);
+  return sample;
+}
+
+int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, const SweepRequest& request) {
+  const std::size_t runs = plan.result.runs_in(RunState::pending).size();
+  const Sample sample = sample_runs(sweep, plan.result, line);
+  std::printf("%s\n  %s cells, %zu runs to do, all valid", sweep.title().c_str(),
+              extent_text(plan.result).c_str(), runs);
+  if (plan.is_there) std::printf("; %zu are done", plan.result.runs_in(RunState::done).size());
+  if (const auto rule = sweep.refinement())
+    std::printf("\n  refinement: up to %llu runs in all", static_cast<unsigned long long>(rule->budget));
+  std::printf("\n  about %.3g s on %d threads (%.3g ms a run, some tried)",
+              sample.seconds_per_run * static_cast<double>(runs) / omp_get_max_threads(),
+              omp_get_max_threads(), 1e3 * sample.seconds_per_run);
+  if (sample.failed > 0) std::printf("; %d of those tried failed", sample.failed);
+  std::printf("\n  file: %.3g MB while it runs, less when it is finished\n",
+              1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
+  for (const std::string& note : note_lines(sample.tried))
+    std::printf("  note on the runs that were tried: %s\n", note.c_str());
+  print_replaced(request.overrides);
+  if (request.strict) refuse_notes(sample.tried);
+  return kDone;
+}
+
+}  // namespace
+
+int command_sweep(const CommandLine& line, const SweepRequest& request) {
+  const auto value_of = [](const char* variable) -> const char* { return std::getenv(variable); };
+  const Shard shard =
+      request.shard.empty() ? shard_from_environment(value_of).value_or(Shard{}) : parse_shard(request.shard);
+  const Sweep sweep = Sweep::load(request.sweep, request.overrides);
+  const std::string file = with_shard(request.output, shard);
+  if (file.empty() && !request.dry_run)
+    throw InputError("--output", "is required; see remote-touch sweep --help");
+  if (!request.dry_run) require_writable(file);
+  const TextAttributes attributes = attributes_of(sweep, request, shard);
+  if (request.dry_run) return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
+
+  SweepSession session(sweep, shard, attributes, file);
+  Progress progress(request.sweep, line.quiet);
+  try {
+    const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
+      progress.update(done, total, earlier, "runs");
+    });
+    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
+  } catch (const Interrupted&) {
+    std::fprintf(stderr,
+                 "%s: interrupted; %zu finished runs are kept in %s, and the same command continues\n",
+                 program_identity().name.c_str(), session.result().runs_in(RunState::done).size(),
+                 printable(file).c_str());
+    return kInterrupted;
+  }
+  print_replaced(request.overrides);
+  const int code = print_summary(file, session.result());
+  if (request.strict) refuse_notes(session.result());
+  return code;
+}
+
+}  // namespace remote_touch

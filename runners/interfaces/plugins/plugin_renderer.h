@@ -1,0 +1,46 @@
+// A renderer of a shared library as one of this program.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
+#include "runners/experiment/catalog/factory.h"
+#include "runners/interfaces/plugins/remote_touch_plugin.h"
+
+namespace remote_touch {
+
+// All methods throw InputError if the library throws. prepare(), on_frame() and step() also throw it if the
+// library reports a problem.
+class PluginRenderer final : public Renderer {
+ public:
+  // functions must outlive this object. Throws InputError if the library makes no renderer of these values.
+  PluginRenderer(const remote_touch_renderer& functions, const std::vector<double>& values,
+                 double haptic_rate_hz, const Kernels& kernels);
+  ~PluginRenderer() override;
+
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  const remote_touch_renderer& functions_;
+  const Kernels& kernels_;
+  std::vector<double> values_;
+  PointCloud buffer_;  // the points of a frame that is not stored as a cloud
+  void* renderer_ = nullptr;
+  FrameOrder order_;
+  std::shared_ptr<const FramePreparation> prepared_;  // newest frame's: the library may point into it
+};
+
+using RendererFactory = Factory<Renderer, double, const Kernels&>;
+
+// Returns a factory with the default values of the settings.
+std::unique_ptr<RendererFactory> plugin_factory(const remote_touch_renderer& functions);
+
+}  // namespace remote_touch

@@ -1,0 +1,61 @@
+// The objects that classes of Python receive and return: clouds, frames, outputs, scenes.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <optional>
+
+#include "core/kernels/kernels.h"
+#include "core/numeric/noise.h"
+#include "core/rendering/renderer.h"
+#include "runners/interfaces/python/arrays.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// A cloud that does not change. Its arrays in Python share the memory of its points.
+struct PythonCloud {
+  std::shared_ptr<const NeighbourSearch> source =
+      nullptr;  // keeps what `shown` points to, if that is not `own`
+  PointCloud own = {};
+  const PointCloud* shown = &own;
+
+  PythonCloud() = default;
+  explicit PythonCloud(PointCloud cloud) : own(std::move(cloud)) {}
+  PythonCloud(const PythonCloud&) = delete;
+  PythonCloud& operator=(const PythonCloud&) = delete;
+};
+
+struct PythonFrame : PythonCloud {
+  PythonFrame(const Frame& frame, const Kernels& kernels);
+  int index;
+  double captured_s, arrives_s;
+};
+
+// An array of points, or a Cloud. Throws InputError.
+PointCloud cloud_of(const pybind11::handle& value, const Subject& subject);
+
+// The output that step() returns. Its proxy is the HIP unless it was given.
+struct PythonOutput {
+  RenderOutput output;
+  bool has_proxy = false;
+  std::optional<Vec3> torque_Nm = {};
+  std::optional<Eigen::Quaterniond> tool_orientation = {};
+};
+
+// A scenario of the catalog, for classes of Python. The scene owns it, or it is lent to a trajectory and
+// taken back.
+class PythonScene {
+ public:
+  PythonScene(std::unique_ptr<const Scenario> scenario) : own_(std::move(scenario)), scenario_(own_.get()) {}
+  explicit PythonScene(const Scenario& lent) : scenario_(&lent) {}
+  const Scenario& operator*() const;  // throws InputError after take_back()
+  void take_back() { scenario_ = nullptr; }
+
+ private:
+  std::unique_ptr<const Scenario> own_;
+  const Scenario* scenario_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,186 @@
+// A run, and a run of a sweep again.
+#include <pybind11/stl.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/file_digest.h"
+#include "analysis/storage/file_lock.h"
+#include "analysis/storage/schema.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/python/arrays.h"
+#include "runners/interfaces/python/bindings.h"
+#include "runners/interfaces/python/long_work.h"
+#include "runners/interfaces/python/outputs.h"
+#include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep_replay.h"
+
+namespace remote_touch {
+
+namespace py = pybind11;
+
+namespace {
+
+using Texts = std::vector<std::string>;
+
+SimulationOptions options_of(const LongWork& work) {
+  SimulationOptions options;
+  options.kernels = &work.kernels;
+  options.stop = &work.stop;
+  options.progress = work.progress;
+  return options;
+}
+
+// The result of a run for Python.
+struct RunResult {
+  std::vector<Column> columns, measures, timing;
+  TextAttributes attributes;
+};
+
+std::vector<Column> measures_of(const Trace& trace) {
+  std::vector<Column> list;
+  for (const Measure& measure : measures())
+    if (applies(measure, trace))
+      list.push_back(
+          {measure.name, measure.unit, measure.meaning, std::vector<double>{measure.of(trace)}, 1, {}});
+  return list;
+}
+
+TextAttributes trace_attributes(const TextAttributes& origin, const std::string& digest_of_all,
+                                const std::vector<Column>& columns) {
+  TextAttributes list = {{"schema", schema_name("trace")}};
+  list.insert(list.end(), origin.begin(), origin.end());
+  std::string names;
+  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
+  list.insert(list.end(), {{"digest", digest_of_all}, {"columns", names}});
+  return list;
+}
+
+struct RunRequest {
+  std::string subject;              // a name or a file; of a text its label
+  std::optional<std::string> text;  // JSON
+  Texts overrides;
+  std::string output;  // empty: no file
+  bool force = false, timing = false;
+};
+
+RunResult run(const RunRequest& request, const LongWork& work) {
+  const Experiment experiment = request.text
+                                    ? Experiment::from_json(*request.text, request.subject, request.overrides)
+                                    : Experiment::load(request.subject, request.overrides);
+  const OutputFile output(request.output, request.force, request.subject, experiment.inputs());
+  SimulationOptions options = options_of(work);
+  options.hash_frames = options.find_true_contact = true;
+  std::vector<double> durations;
+  RunReport report;
+  options.report = &report;
+  if (request.timing) options.step_duration_s = &durations;
+  const std::string inputs = input_hashes(experiment.inputs());
+  TextAttributes origin = provenance(experiment.to_json(), Recipe{"run", request.subject, request.overrides},
+                                     work.kernels.isa, inputs);
+  const Trace trace = simulate(experiment, options);
+  require_unchanged(experiment.inputs(), inputs);
+  experiment.add_depth_device(origin);
+  add_report(origin, report);
+  RunResult result{trace.columns(), measures_of(trace), {}, {}};
+  result.attributes = trace_attributes(
+      origin,
+      output.write([&](const auto& file) { return write_trace(file, result.columns, origin, durations); },
+                   [&] { return digest(result.columns); }),
+      result.columns);
+  if (request.timing)
+    result.timing.push_back({"step_duration", "s", "wall clock of one tick", std::move(durations), 1, {}});
+  return result;
+}
+
+py::dict as_dict(RunResult result) {
+  py::dict all;
+  all["columns"] = to_python(std::move(result.columns));
+  all["measures"] = to_python(std::move(result.measures));
+  all["timing"] = to_python(std::move(result.timing));
+  all["attributes"] = to_python(result.attributes);
+  return all;
+}
+
+py::dict run_experiment(const std::string& subject, const std::optional<std::string>& text,
+                        const Texts& overrides, const std::string& output, bool force, bool timing,
+                        const py::object& report) {
+  const RunRequest request{subject, text, overrides, output, force, timing};
+  RunResult result;
+  do_long_work(report, 0, [&](const LongWork& work) { result = run(request, work); });
+  return as_dict(std::move(result));
+}
+
+// --- replay ---
+
+StoredSweep stored_sweep(const std::string& file) {
+  const FileTurn turn;
+  return read_sweep(file);
+}
+
+// A sweep that was run in this process is known by its attributes alone.
+StoredSweep sweep_of(const TextAttributes& attributes) {
+  StoredSweep stored;
+  stored.attributes = provenance_of(attributes);
+  stored.result =
+      Sweep::from_json(stored_configuration(attribute(attributes, "config")), "config of the data set")
+          .plan();
+  return stored;
+}
+
+struct ReplayRequest {
+  std::string file;  // empty: by the attributes
+  TextAttributes attributes;
+  std::string cell;
+  int replicate;
+  std::string output;
+  bool force;
+};
+
+RunResult replay(const ReplayRequest& request, const LongWork& work) {
+  const StoredSweep stored = request.file.empty() ? sweep_of(request.attributes) : stored_sweep(request.file);
+  const Sweep sweep = Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
+                                       request.file.empty() ? "config" : request.file + " config");
+  sweep.require_fits(stored.result, request.file);
+  const std::size_t cell = cell_of({"cell", request.cell}, stored.result);
+  if (request.replicate < 0 || request.replicate >= stored.result.replicates)
+    throw InputError("replicate = " + std::to_string(request.replicate),
+                     "expected 0 to " + std::to_string(stored.result.replicates - 1));
+  const OutputFile output(request.output, request.force, request.file, {});
+  Replay again = replay_run(stored, sweep, stored.result.run(cell, request.replicate), options_of(work), "");
+  RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};
+  output.write([&](const auto& file) { return write_trace(file, result.columns, again.attributes, {}); },
+               [] { return std::string(); });
+  result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
+  return result;
+}
+
+py::dict replay_sweep(const std::string& file, const TextAttributes& attributes, const std::string& cell,
+                      int replicate, const std::string& output, bool force, const py::object& report) {
+  const ReplayRequest request{file, attributes, cell, replicate, output, force};
+  RunResult result;
+  do_long_work(report, 0, [&](const LongWork& work) { result = replay(request, work); });
+  return as_dict(std::move(result));
+}
+
+}  // namespace
+
+void bind_experiments(py::module_& module) {
+  module.def("run", &run_experiment, py::arg("subject"), py::arg("text"), py::arg("overrides"),
+             py::arg("output"), py::arg("force"), py::arg("timing"), py::arg("report"),
+             "Runs an experiment: columns, measures and attributes of its trace.");
+  module.def("replay", &replay_sweep, py::arg("file"), py::arg("attributes"), py::arg("cell"),
+             py::arg("replicate"), py::arg("output"), py::arg("force"), py::arg("report"),
+             "Runs a run of a sweep again.");
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,197 @@
+"""Base classes of own renderers, scenarios and trajectories, and their place in the catalog."""
+import math
+
+from remote_touch import _core
+from remote_touch._core import InputError
+
+
+class Setting:
+    """A setting of a class: its default value, a float, bool, str or three numbers, or an int with integer=True.
+
+    low and high: the range of numbers, ends included. live: may change during a run.
+    """
+
+    def __init__(self, value, low=-1e12, high=1e12, help="", live=False, integer=False):
+        self.name = ""
+        self.value, self.low, self.high = value, float(low), float(high)
+        self.help, self.live, self.integer = help, live, integer
+
+
+class _Base:
+    settings = {}
+
+    def validate(self):
+        """None, or what is wrong with the settings together: "radius_m = 1: expected less than depth_m".
+
+        Called on an object that has its settings as attributes, but whose __init__ was not called.
+        """
+        return None
+
+
+class Renderer(_Base):
+    """Computes the force. Each setting is an attribute of the object, set before __init__(self) is called.
+
+    A renderer in Python is slow (see the page runners/interfaces/python/README.md) and holds the interpreter's lock: a sweep
+    over it uses one core.
+    """
+
+    degrees_of_freedom = 3  # or 6: outputs have torque_Nm and tool_orientation
+    contact_model = "points"  # or regions, mesh, sheet, nothing, oriented: see runners/experiment/catalog/factory.h
+    needs = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
+    haptic_rate_hz = 1000.0  # set before __init__ too
+
+    def on_frame(self, frame):
+        """A new Frame arrived. Drop it if its captured_s is not later than that of the last one."""
+
+    def step(self, device, time_s):
+        """One tick: returns an Output for a Device at a time. Equal calls must give equal numbers."""
+        raise NotImplementedError("step(self, device, time_s) is missing")
+
+    def parameters_changed(self):
+        """Live settings, which are attributes, have changed between two steps."""
+
+    def max_stiffness_N_per_m(self):
+        """Upper bound of how fast the force grows with the displacement of the hand. Uses settings only."""
+        if not hasattr(self, "stiffness_N_per_m"):
+            raise NotImplementedError("max_stiffness_N_per_m(self) is missing, and there is no setting stiffness_N_per_m")
+        return self.stiffness_N_per_m
+
+    def rest_distance_m(self):
+        """Distance of the proxy from a flat surface in contact; NaN: not known, then no contact is measured."""
+        return math.nan
+
+    def spring_N_per_m(self):
+        """Of a renderer without a proxy: the stiffness with which its force pushes the HIP out; else 0."""
+        return 0.0
+
+
+class Scenario(_Base):
+    """A scene: point clouds, and the true surface behind them. The settings are attributes, and so is key.
+
+    key: a NoiseKey. A cloud must be a function of settings, key and frame number alone: the same call gives the same
+    numbers. Take random numbers from self.key.normals(use, frame, count), never from numpy.random.
+    """
+
+    frame_rate_hz = 30.0  # an attribute or a method
+    frame_count = 1  # a scene with one frame never changes
+    key = None
+
+    def cloud(self, frame):
+        """The points of a frame: an array of shape (n, 3) in metres, NaN where nothing was measured, or a Cloud."""
+        raise NotImplementedError("cloud(self, frame) is missing")
+
+    def signed_distance(self, p, time_s):
+        """Distance of p to the true surface, positive on the side that the sensor sees; NaN: not known."""
+        return math.nan
+
+    def surface_height(self, x, z, time_s):
+        """Height y of the true surface over (x, z); NaN where the scene is no height field."""
+        return math.nan
+
+
+class Trajectory(_Base):
+    """A motion of the hand. The settings are attributes, and so is scene, a Scene without the faults of a sensor."""
+
+    duration_s = 0.0  # an attribute or a method; 0: it has no end
+    scene = None
+
+    def at(self, time_s):
+        """A position, or (position, quaternion w x y z), or a Device."""
+        raise NotImplementedError("at(self, time_s) is missing")
+
+
+_KINDS = {"renderer": Renderer, "scenario": Scenario, "trajectory": Trajectory}
+_registered = {}  # (kind, name) -> class
+
+
+def register(cls=None, name=None, *, summary=None):
+    """Puts a class into the catalog, so that experiments can name it; returns the class.
+
+    rt.register(Mine, "mine"), @rt.register("mine") or @rt.register. Without a name Mine is "mine" and SpringPlane
+    "spring-plane". The first line of the docstring is the summary. A class of the same name takes its place. From now on
+    results of this process record the classes and the SHA-256 of their sources.
+    """
+    if cls is None or isinstance(cls, str):
+        given = cls if cls is not None else name
+        return lambda later: register(later, given, summary=summary)
+    kind = _kind_of(cls)
+    name = _hyphened(cls.__name__) if name is None else name
+    lines = (cls.__doc__ or "").strip().splitlines() if "__doc__" in vars(cls) else []
+    text = summary or (lines[0] if lines else f"a {kind} in Python")
+    _core.register_class(kind, name, text, cls, _settings_of(cls, f"{kind} {name}"))
+    _registered[kind, name] = cls
+    _identify()
+    return cls
+
+
+def name_of(cls):
+    """The name under which a class is registered."""
+    for (_, name), registered in reversed(_registered.items()):
+        if registered is cls:
+            return name
+    raise InputError(f"class {cls.__name__}: is not in the catalog: expected rt.register({cls.__name__}) before")
+
+
+def scene(name, *, key=None, **settings):
+    """A scenario of the catalog with settings, to be queried for clouds and distances: rt.scene("moving-lift")."""
+    from remote_touch.calls import _json, _native
+    if key is not None and not isinstance(key, _core.NoiseKey):
+        raise InputError(f"key = {key!r}: expected an rt.NoiseKey")
+    return _core.Scene(_native(name), _json(settings, "scene: "), key if key is not None else _core.NoiseKey())
+
+
+def _kind_of(cls):
+    for kind, base in _KINDS.items():
+        if isinstance(cls, type) and issubclass(cls, base) and cls is not base:
+            return kind
+    raise InputError(f"{getattr(cls, '__name__', cls)}: expected a class derived from rt.Renderer, rt.Scenario or "
+                     "rt.Trajectory")
+
+
+def _hyphened(name):
+    return "".join(("-" if i > 0 and c.isupper() and not name[i - 1].isupper() else "") + c.lower()
+                   for i, c in enumerate(name.strip("_")))
+
+
+def _settings_of(cls, subject):
+    """Those of the class and of the classes that it is derived from, each with its name."""
+    found = {}
+    for part in reversed(cls.__mro__):
+        found.update(vars(part).get("settings", {}))
+    for name, setting in found.items():
+        if not isinstance(setting, Setting):
+            raise InputError(f"{subject}: setting {name}: expected rt.Setting(...)")
+        if not name.isidentifier() or hasattr(_Base, name):
+            raise InputError(f"{subject}: setting {name}: expected the name of an attribute")
+        setting.name = name
+    return [*found.values()]
+
+
+def _identify():
+    """Tells the results which classes take part, by file, and the hash of those files."""
+    import hashlib
+    files, sources = {}, {}
+    for cls in _registered.values():
+        file, source = _source_of(cls)
+        files.setdefault(file, []).append(cls.__qualname__)
+        sources.setdefault(file, set()).add(source)
+    digest = hashlib.sha256()
+    for file in sorted(sources):
+        for source in sorted(sources[file]):
+            digest.update(source)
+    text = "; ".join(f"{file}: {', '.join(sorted(set(names)))}" for file, names in sorted(files.items()))
+    _core.identify_program(f"Python {text}", digest.hexdigest())
+
+
+def _source_of(cls):
+    """The name of its file and the bytes of that, or of its own source where there is none, as in a notebook."""
+    import inspect
+    import pathlib
+    import sys
+    file = getattr(sys.modules.get(cls.__module__), "__file__", None)
+    try:
+        if file is not None:
+            return pathlib.Path(file).name, pathlib.Path(file).read_bytes()
+        return cls.__module__, inspect.getsource(cls).encode()
+    except (OSError, TypeError):
+        return f"{cls.__module__} (no source)", b""

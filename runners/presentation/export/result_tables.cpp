@@ -1,0 +1,134 @@
+#include "runners/presentation/export/result_tables.h"
+
+#include <algorithm>
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kStepDuration = "/timing/step_duration";
+
+Table table_of_trace(const Hdf5Reader& result) {
+  const StoredTrace trace(result);
+  Table table{"trace", "one row for each tick"};
+  for (const std::string& name : trace.columns()) table.columns.push_back(trace.column(name));
+  if (result.has(kStepDuration)) table.columns.push_back(result.column(kStepDuration));
+  return table;
+}
+
+// The value of each run in a column that has one for each place.
+template <class PlaceOf>
+Column over_runs(const Column& column, std::size_t runs, PlaceOf place_of) {
+  Column all = column;
+  std::visit(
+      [&](auto& values) {
+        const auto of_places = values;
+        values.clear();
+        for (std::size_t run = 0; run < runs; ++run) values.push_back(of_places[place_of(run)]);
+      },
+      all.values);
+  return all;
+}
+
+std::vector<std::int32_t> states_of(const SweepResult& result) {
+  std::vector<std::int32_t> states;
+  for (const RunState state : result.state) states.push_back(static_cast<std::int32_t>(state));
+  return states;
+}
+
+// The kinds of notes on each run, with "; " between two of them.
+std::vector<std::string> notes_of(const SweepResult& result) {
+  std::vector<std::string> texts;
+  for (const std::int32_t bits : result.notes) {
+    std::string& text = texts.emplace_back();
+    for (std::size_t kind = 0; kind < result.note_kinds.size(); ++kind)
+      if ((bits >> kind & 1) != 0) text += (text.empty() ? "" : "; ") + result.note_kinds[kind];
+  }
+  return texts;
+}
+
+Table table_of_sweep(const Hdf5Reader& file) {
+  const SweepResult result = read_sweep(file).result;
+  const std::size_t runs = result.run_count();
+  Table table{"sweep", "one row for each run"};
+  for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
+    table.columns.push_back(over_runs(
+        result.axes[axis], runs, [&](std::size_t run) { return result.place(result.cell_of(run))[axis]; }));
+  if (result.replicates > 1) {
+    std::vector<std::int32_t> numbers;
+    for (std::size_t run = 0; run < runs; ++run) numbers.push_back(result.replicate_of(run));
+    table.columns.push_back({"replicate", "1", "repetition with other noise", std::move(numbers), 1, {}});
+  }
+  table.columns.push_back({"state",
+                           "1",
+                           "what became of the run",
+                           states_of(result),
+                           1,
+                           {"not_sampled", "pending", "done", "failed", "elsewhere"}});
+  table.columns.insert(table.columns.end(), result.measures.begin(), result.measures.end());
+  if (!result.round.empty())
+    table.columns.push_back({"round", "1", "round of refinement, -1: none", result.round, 1, {}});
+  if (!result.notes.empty())
+    table.columns.push_back({"notes", "1", "kinds of the notes on the run", notes_of(result), 1, {}});
+  table.columns.push_back({"error", "1", "why the run failed", result.error, 1, {}});
+  return table;
+}
+
+std::vector<Table> tables_of_figure(const Hdf5Reader& result) {
+  const StoredFigure figure(result);
+  std::vector<Table> tables;
+  for (const std::string& path : figure.columns()) {
+    const std::string name = path.substr(0, path.find('/'));
+    if (tables.empty() || tables.back().name != name) tables.push_back({name, ""});
+    tables.back().columns.push_back(figure.column(path));
+  }
+  if (tables.empty()) result.damaged("it has no tables");
+  return tables;
+}
+
+void require_exportable(const Hdf5Reader& result, const Table& table) {
+  constexpr int kMaxWidth = 4096;  // each of them gets a name
+  if (table.columns.empty()) result.damaged("it names no columns");
+  for (const Column& column : table.columns) {
+    if (column.length() != table.columns.front().length())
+      result.damaged(column.name + " is not as long as " + table.columns.front().name);
+    if (column.width > kMaxWidth)
+      result.damaged(column.name + " has rows of " + std::to_string(column.width) + " numbers");
+  }
+}
+
+}  // namespace
+
+std::string exported_kind(const Hdf5Reader& result) {
+  const std::string schema = attribute(result.attributes(), "schema");
+  for (const char* kind : {"trace", "sweep", "figure"})
+    if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
+  std::string what = schema.empty() ? "names no schema" : "is of schema ";
+  throw InputError(result.file(),
+                   what.append(schema).append(": expected a trace, a sweep, or a figure of this program"));
+}
+
+std::vector<Table> result_tables(const Hdf5Reader& result) {
+  const std::string kind = exported_kind(result);
+  std::vector<Table> tables = kind == "trace"   ? std::vector{table_of_trace(result)}
+                              : kind == "sweep" ? std::vector{table_of_sweep(result)}
+                                                : tables_of_figure(result);
+  for (const Table& table : tables) require_exportable(result, table);
+  return tables;
+}
+
+std::vector<std::string> component_names(const Column& column) {
+  if (column.width == 1) return {column.name};
+  const std::string known = column.width == 3 ? "xyz" : column.width == 4 ? "wxyz" : "";
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(column.width); ++i)
+    names.push_back(column.name + "_" + (known.empty() ? std::to_string(i) : std::string(1, known[i])));
+  return names;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,162 @@
+#include "runners/presentation/export/vtp_files.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "runners/presentation/export/exported_run.h"
+#include "runners/presentation/export/little_endian.h"
+#include "runners/presentation/export/result_tables.h"
+#include "runners/presentation/export/vtk_poly_data.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+template <class Number>
+VtkArray numbers_of(const std::string& name, const char* type, const std::vector<Number>& values) {
+  VtkArray array{name, type, 1, {}};
+  for (const Number value : values) put(array.bytes, value);
+  return array;
+}
+
+// Both lines have the same ticks: every value twice.
+VtkArray twice(const Column& column) {
+  VtkArray array{column.name, "Float64", column.width, {}};
+  if (std::holds_alternative<std::vector<std::int32_t>>(column.values)) array.type = "Int32";
+  if (std::holds_alternative<std::vector<std::uint64_t>>(column.values)) array.type = "UInt64";
+  std::visit(
+      [&](const auto& values) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::string>>)
+          for (int line = 0; line < 2; ++line)
+            for (const auto value : values) put(array.bytes, value);
+      },
+      column.values);
+  return array;
+}
+
+VtkPolyData paths_of(const ExportJob& job, const ExportedRun& run) {
+  VtkPolyData data;
+  data.points = run.hip_W;
+  data.points.insert(data.points.end(), run.proxy_W.begin(), run.proxy_W.end());
+  data.lines.resize(2);
+  for (std::size_t i = 0; i < data.points.size(); ++i)
+    data.lines[i / run.ticks()].push_back(static_cast<std::int64_t>(i));
+  const std::vector<Table> tables = result_tables(job.result);
+  for (const Column& column : tables.front().columns)
+    if (!std::holds_alternative<std::vector<std::string>>(column.values))
+      data.of_points.push_back(twice(column));
+  data.of_cells.push_back(numbers_of("path", "Int32", std::vector<std::int32_t>{0, 1}));
+  return data;
+}
+
+VtkPolyData cloud_of(const ExportedFrame& frame, double time_s) {
+  const PointCloud& cloud = frame.points;
+  VtkPolyData data;
+  data.time_s = time_s;
+  data.has_vertices = true;
+  for (std::size_t i = 0; i < cloud.size(); ++i) data.points.push_back(cloud.point(i));
+  if (!cloud.colour.empty()) {
+    VtkArray colour{"colour", "UInt8", 3, {}};
+    for (const std::uint32_t c : cloud.colour)
+      for (const int shift : {16, 8, 0}) put(colour.bytes, static_cast<std::uint8_t>(c >> shift));
+    data.of_points.push_back(std::move(colour));
+  }
+  if (cloud.has_normals()) {
+    VtkArray normals{"normal", "Float64", 3, {}};
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) put(normals.bytes, cloud.normal(i)[axis]);
+    data.of_points.push_back(std::move(normals));
+  }
+  if (!cloud.fixture_radius_m.empty())
+    data.of_points.push_back(numbers_of("fixture_radius", "Float64", cloud.fixture_radius_m));
+  if (!cloud.stiffness_N_per_m.empty())
+    data.of_points.push_back(numbers_of("stiffness", "Float64", cloud.stiffness_N_per_m));
+  return data;
+}
+
+VtkPolyData tool_at(const VoxelTool& tool, const ToolPose& pose, double time_s) {
+  VtkPolyData data;
+  data.time_s = time_s;
+  for (const Vec3& v : tool.mesh.vertices) data.points.push_back(pose.p_W + pose.q_WT * v);
+  for (const auto& face : tool.mesh.triangles) data.faces.push_back({face[0], face[1], face[2]});
+  return data;
+}
+
+// The files of one thing over time.
+struct Series {
+  std::vector<std::string> names;
+  std::vector<double> time_s;
+
+  void write(const ExportJob& job, const std::filesystem::path& file) const {
+    constexpr const char* kOpening = "{\"file-series-version\":\"1.0\",";  // as dump() writes it
+    Json list = Json::array();
+    for (std::size_t i = 0; i < names.size(); ++i) list.push_back({{"name", names[i]}, {"time", time_s[i]}});
+    job.begin(file, kOpening);
+    job.files.append(Json{{"file-series-version", "1.0"}, {"files", list}}.dump() + "\n");
+  }
+};
+
+class VtpFolder {
+ public:
+  explicit VtpFolder(const ExportJob& job) : job_(job), stem_(job.output.stem().string()) {}
+
+  void add(Series& series, const std::string& thing, const VtkPolyData& data) {
+    std::array<char, 16> number{};
+    std::snprintf(number.data(), number.size(), "%04zu", series.names.size());
+    const std::string name = stem_ + "_" + thing + "_" + number.data() + ".vtp";
+    write(name, vtp_file(data));
+    series.names.push_back(name);
+    series.time_s.push_back(data.time_s);
+  }
+  void write(const std::string& name, const std::string& content) {
+    job_.begin(path_of(name), kVtkOpening);
+    job_.files.append(content);
+  }
+  // Everything over time: of each time its cloud and tool, and the paths.
+  void write_collection(const Series& clouds, const Series& tools) {
+    std::string xml =
+        std::string(kVtkOpening) +
+        "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+    const auto add = [&](double time_s, int part, const std::string& name) {
+      xml += "<DataSet timestep=\"" + Json(time_s).dump() + "\" part=\"" + std::to_string(part) +
+             "\" file=\"" + xml_escaped(name) + "\"/>\n";
+    };
+    if (clouds.names.empty()) add(0, 0, path_name());
+    for (std::size_t i = 0; i < clouds.names.size(); ++i) {
+      add(clouds.time_s[i], 0, path_name());
+      add(clouds.time_s[i], 1, clouds.names[i]);
+      if (i < tools.names.size()) add(clouds.time_s[i], 2, tools.names[i]);
+    }
+    write(stem_ + ".pvd", xml + "</Collection>\n</VTKFile>\n");
+  }
+  void write_series(const Series& series, const std::string& thing) const {
+    if (!series.names.empty()) series.write(job_, path_of(stem_ + "_" + thing + ".vtp.series"));
+  }
+  std::string path_name() const { return job_.output.filename().string(); }
+
+ private:
+  std::filesystem::path path_of(const std::string& name) const { return job_.output.parent_path() / name; }
+  const ExportJob& job_;
+  const std::string stem_;
+};
+
+}  // namespace
+
+void write_vtp(const ExportJob& job) {
+  const ExportedRun run = exported_run(job);
+  VtpFolder folder(job);
+  folder.write(folder.path_name(), vtp_file(paths_of(job, run)));
+  Series clouds, tools;
+  for_each_frame(job, run, [&](const ExportedFrame& frame) {
+    const double time_s = run.time_s[frame.first_tick];
+    folder.add(clouds, "cloud", cloud_of(frame, time_s));
+    if (run.tool) folder.add(tools, "tool", tool_at(*run.tool, run.tool_pose(frame.first_tick), time_s));
+  });
+  folder.write_series(clouds, "cloud");
+  folder.write_series(tools, "tool");
+  folder.write_collection(clouds, tools);
+}
+
+}  // namespace remote_touch

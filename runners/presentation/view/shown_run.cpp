@@ -1,0 +1,274 @@
+#include "runners/presentation/view/shown_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "analysis/comparison/trace_comparison.h"
+#include "analysis/trace/column.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/presentation/view/frames_again.h"
+#include "runners/presentation/view/shown_frames.h"
+#include "runners/presentation/view/shown_sensor.h"
+#include "runners/presentation/view/shown_tool.h"
+#include "runners/presentation/view/trace_event.h"
+#include "runners/presentation/view/true_heights.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kRoom_m = 0.03;
+constexpr const char* kOtherFrames =
+    "These are not the frames of the run: from its configuration this program makes other frames than the program that ran it.";
+constexpr const char* kOtherRadii =
+    "The contact radius changes during this run: the proxy and the touching points are drawn with that of the start.";
+
+template <class T>
+std::vector<T> values(const ColumnSource& columns, const std::string& name) {
+  return std::get<std::vector<T>>(columns.column(name).values);
+}
+
+std::vector<Vec3> vectors(const ColumnSource& columns, const std::string& name) {
+  const auto flat = values<double>(columns, name);
+  std::vector<Vec3> list;
+  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) list.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return list;
+}
+
+// A length of the renderer's; 0 for one without.
+double length_m(const Json& renderer, const char* name) {
+  return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
+}
+
+// Hashes say nothing to the eye and are left out.
+Json columns_json(const ColumnSource& columns, PackedArrays& numbers) {
+  Json list = Json::array();
+  for (const std::string& name : columns.columns()) {
+    const Column column = columns.column(name);
+    Json entry{{"name", name},
+               {"unit", column.units},
+               {"meaning", column.long_name},
+               {"width", column.width},
+               {"names", column.value_names}};
+    if (const auto* doubles = std::get_if<std::vector<double>>(&column.values))
+      entry["numbers"] = json_of(numbers.add(*doubles));
+    else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values))
+      entry["numbers"] = json_of(numbers.add(*integers));
+    else
+      continue;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json frame_json(const ShownFrame& frame, PackedArrays& numbers) {
+  Json json{{"index", frame.index},
+            {"captured_s", frame.captured_s},
+            {"measured", frame.measured},
+            {"positions", json_of(numbers.add(frame.positions))}};
+  if (!frame.colours.empty()) json["colours"] = json_of(numbers.add(frame.colours));
+  if (!frame.fixture_radius_m.empty())
+    json["fixture_radius_m"] = json_of(numbers.add(frame.fixture_radius_m));
+  json["touching"] = json_of(numbers.add(frame.touching));
+  json["touching_end"] = json_of(numbers.add(frame.touching_end));
+  return json;
+}
+
+std::string text_of(const std::vector<ShownFrame>& frames) {
+  std::size_t measured = 0, in_box = 0, shown = 0;
+  for (const ShownFrame& frame : frames)
+    measured += frame.measured, in_box += frame.in_box, shown += frame.positions.size() / 3;
+  const std::size_t count = std::max<std::size_t>(frames.size(), 1);
+  return std::to_string(frames.size()) + (frames.size() == 1 ? " frame; of " : " frames; of ") +
+         std::to_string(measured / count) + " points a frame " + std::to_string(in_box / count) +
+         " are around the action, " + std::to_string(shown / count) + " are shown" +
+         (shown == in_box ? "" : ": all near the proxy, of the others some");
+}
+
+}  // namespace
+
+struct ShownRun::State {
+  State(RunSource run, const Kernels& best, const std::atomic<bool>* when)
+      : source(std::move(run)),
+        kernels(best),
+        stop(when),
+        configuration(parse_json(of("config"), source.name)),
+        experiment(experiment_of_run(source.attributes, source.name)),
+        r2_m(length_m(configuration["renderer"], "r2_m")),
+        contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
+    if (note.empty() && changes_radii()) note = kOtherRadii;
+    add_stored_notes();
+    read_path();
+    if (source.columns->has("tool_orientation")) read_tool();
+    find_action();
+  }
+
+  std::string of(const char* name) const { return attribute(source.attributes, name); }
+
+  // Adds the notes that the run stored, see RunReport.
+  void add_stored_notes() {
+    for (const char c : of("notes")) note_of_run += c == '\n' ? std::string("; ") : std::string(1, c);
+    if (!note_of_run.empty()) note += (note.empty() ? "" : "; ") + note_of_run;
+  }
+  bool changes_radii() const {
+    const auto& changes = experiment.changes();
+    return std::any_of(changes.begin(), changes.end(), [](const RendererChange& change) {
+      return change.parameter == "renderer.r1_m" || change.parameter == "renderer.r2_m";
+    });
+  }
+  void read_path() {
+    path.time_s = values<double>(*source.columns, "time");
+    path.proxy_W = vectors(*source.columns, "proxy_position");
+    path.frame = values<std::int32_t>(*source.columns, "frame_index");
+    path.touch_radius_m = r2_m;
+    if (source.columns->has("frame_hash"))
+      path.frame_hash = values<std::uint64_t>(*source.columns, "frame_hash");
+  }
+  void read_tool() {
+    tool = shown_tool(configuration["renderer"]);
+    path.tool = tool->tool;
+    const auto flat = values<double>(*source.columns, "tool_orientation");
+    for (std::size_t i = 0; i + 3 < flat.size(); i += 4)
+      path.tool_orientation_W.emplace_back(flat[i], flat[i + 1], flat[i + 2], flat[i + 3]);
+  }
+  void find_action() {
+    BoundingBox box;
+    for (const Vec3& p : vectors(*source.columns, "hip_position"))
+      if (p.allFinite()) box.extend(p);
+    if (path.time_s.empty() || box.isEmpty())
+      throw InputError(source.name, "has no tick with a position: expected a run of one tick or more");
+    box.extend(bounding_box(path.proxy_W));
+    const Vec3 room = (0.15 * box.sizes()).cwiseMax(kRoom_m + (path.tool ? path.tool->reach_m : 0));
+    shown_box_W = {box.min() - room, box.max() + room};
+  }
+
+  Json description() const {
+    return {{"file", std::filesystem::path(source.name).filename().string()},
+            {"title", configuration.value("title", "")},
+            {"command", of("command")},
+            {"version", of("version")},
+            {"digest", of("digest")},
+            {"note", note},
+            {"claims", Json::parse(source.claims)},
+            {"configuration", configuration},
+            {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
+            {"contact_radius_m", contact_radius_m}};
+  }
+  // "activate right" of each step of the task.
+  std::vector<std::string> steps() const {
+    std::vector<std::string> list;
+    for (const SequenceStep& step : experiment.sequence()) list.push_back(name_of(step));
+    return list;
+  }
+  Json events() const {
+    std::vector<TraceEvent> all =
+        trace_events(*source.columns, steps(), held_depth_m(experiment.rendered_contact()));
+    if (divergence) all.push_back(*divergence);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });
+    Json list = Json::array();
+    for (const TraceEvent& event : all)
+      list.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}});
+    return list;
+  }
+  void add_frames(Json& run, PackedArrays& numbers, std::size_t wanted_others) {
+    const PointScale scale = point_scale(shown_box_W);
+    run["corner_m"] = json_of(scale.low_W), run["step_m"] = scale.step_m;
+    run["low_m"] = json_of(Vec3(shown_box_W.min())), run["high_m"] = json_of(Vec3(shown_box_W.max()));
+    if (made.frames.empty()) {
+      const ShownPointsRule rule{shown_box_W, std::max(r2_m, 1.5 * contact_radius_m), wanted_others};
+      made = shown_frames(experiment, path, rule, kernels, stop);
+    }
+    std::vector<ShownFrame> some;
+    for (const ShownFrame& frame : made.frames) some.push_back(thinned(frame, wanted_others));
+    Json list = Json::array();
+    for (const ShownFrame& frame : some) list.push_back(frame_json(frame, numbers));
+    run["frames"] = std::move(list);
+    if (!made.are_those_of_the_run)
+      run["note"] = note = kOtherFrames + (note_of_run.empty() ? "" : "; " + note_of_run);
+    run["shown"] = shown = text_of(some);
+    if (made.X_WC) run["sensor"] = sensor_json(*made.X_WC);
+  }
+  void add_truth(Json& run, PackedArrays& numbers) const {
+    const auto scenario = experiment.build_scenario(kernels);
+    const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s);
+    if (heights.empty()) return;
+    run["truth"] = {{"columns", TrueHeights::kColumns},
+                    {"stays", heights.stays},
+                    {"low_m", json_of(shown_box_W.min())},
+                    {"high_m", json_of(shown_box_W.max())},
+                    {"time_s", json_of(numbers.add(heights.time_s))},
+                    {"height_m", json_of(numbers.add(heights.height_m))}};
+  }
+
+  const RunSource source;
+  const Kernels& kernels;
+  const std::atomic<bool>* stop;
+  const Json configuration;
+  const Experiment experiment;
+  const double r2_m, contact_radius_m;
+  RunPath path;
+  std::optional<ShownTool> tool;
+  ShownFrames made;  // frames with as many points as the first json() requested
+  BoundingBox shown_box_W;
+  std::optional<TraceEvent> divergence;
+  std::string shown, note_of_run, note = source.note;
+};
+
+ShownRun::ShownRun(RunSource source, const Kernels& kernels, const std::atomic<bool>* stop)
+    : state_(std::make_unique<State>(std::move(source), kernels, stop)) {}
+ShownRun::~ShownRun() = default;
+
+const RunSource& ShownRun::source() const {
+  return state_->source;
+}
+std::string ShownRun::title() const {
+  const std::string title = state_->configuration.value("title", "");
+  return title.empty() ? state_->source.name : title;
+}
+const BoundingBox& ShownRun::box_W() const {
+  return state_->shown_box_W;
+}
+void ShownRun::set_box(const BoundingBox& box_W) {
+  state_->shown_box_W = box_W;
+}
+const std::string& ShownRun::shown() const {
+  return state_->shown;
+}
+const std::string& ShownRun::note() const {
+  return state_->note;
+}
+
+std::size_t ShownRun::frame_count() const {
+  const std::vector<std::int32_t>& frame = state_->path.frame;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    count += frame[i] >= 0 && (i == 0 || frame[i] != frame[i - 1]) ? 1 : 0;
+  return std::max<std::size_t>(count, 1);
+}
+
+void ShownRun::mark_divergence_from(const ShownRun& other) {
+  const TraceComparison comparison =
+      compare_traces(*state_->source.columns, *other.state_->source.columns, {},
+                     configuration_differences(state_->of("config"), other.state_->of("config")));
+  if (comparison.divergence)
+    state_->divergence = {comparison.divergence->tick, "divergence",
+                          "The first difference: " + comparison.divergence->quantity + ". " +
+                              comparison.divergence->explanation};
+}
+
+Json ShownRun::json(PackedArrays& numbers, std::size_t wanted_others) {
+  Json run = state_->description();
+  run["columns"] = columns_json(*state_->source.columns, numbers);
+  run["events"] = state_->events();
+  state_->add_frames(run, numbers, wanted_others);
+  state_->add_truth(run, numbers);
+  if (state_->tool) run["tool"] = json_of(*state_->tool, numbers);
+  return run;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,181 @@
+#include "runners/presentation/view/sweep_page.h"
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "analysis/measures/measures.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/maker.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/presentation/view/sweep_cells.h"
+#include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_notes.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Finished, and as large as its configuration says.
+StoredSweep finished_sweep(const std::filesystem::path& file) {
+  StoredSweep stored = read_sweep(file);
+  if (stored.in_progress)
+    throw InputError(file.string(), "is not finished: expected the same `remote-touch sweep` to end first");
+  return stored;
+}
+
+void require_same_recordings(const StoredSweep& stored, const Sweep& sweep, const std::string& file) {
+  for (const ChangedInput& input :
+       changed_inputs(attribute(stored.attributes, "input_digests"), input_hashes(sweep.inputs())))
+    throw InputError(file, "its recording " + input.path + " has changed: expected " + input.before +
+                               ", found " + input.now);
+}
+
+Sweep sweep_of(const StoredSweep& stored, const std::string& file) {
+  Sweep sweep = read_configuration(stored.attributes, file, [&] {
+    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")), file + " config");
+  });
+  sweep.require_fits(stored.result, file);
+  require_same_recordings(stored, sweep, file);
+  return sweep;
+}
+
+// The measure that decides whether a run failed, and the value above which it did.
+struct Judged {
+  std::string measure;
+  double threshold = 0.5;
+};
+
+Judged judged(const Sweep& sweep, const SweepResult& result) {
+  if (const auto refined = sweep.refinement()) return {refined->measure, refined->threshold};
+  for (const Column& measure : result.measures)
+    if (measure.name == "popped_through") return {measure.name};
+  return {result.measures.front().name};
+}
+
+// Returns the first failed run among the finished runs of the cell, or the first finished run if none failed.
+std::size_t run_of_cell(const SweepResult& result, const std::string& text, const Judged& judged) {
+  const std::vector<double>& measure = result.measure(judged.measure);
+  const std::size_t begin = result.run(cell_of({"--cells", text}, result), 0);
+  std::vector<std::size_t> done;
+  for (std::size_t run = begin; run < begin + static_cast<std::size_t>(result.replicates); ++run)
+    if (result.state[run] == RunState::done) done.push_back(run);
+  if (done.empty()) throw InputError("--cells " + text, "has no finished run");
+  const auto failed = std::find_if(done.begin(), done.end(),
+                                   [&](std::size_t run) { return measure[run] > judged.threshold; });
+  return failed == done.end() ? done.front() : *failed;
+}
+
+std::vector<std::size_t> runs_to_show(const SweepResult& result, const std::vector<std::string>& cells,
+                                      const Judged& judged) {
+  if (cells.empty())
+    return default_runs(result, result.measure(judged.measure), judged.threshold, kRunsOfSweepPage);
+  std::vector<std::size_t> runs;
+  for (const std::string& text : cells) runs.push_back(run_of_cell(result, text, judged));
+  std::sort(runs.begin(), runs.end());
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  return runs;
+}
+
+std::string name_of(const SweepResult& result, std::size_t run) {
+  const std::string cell = "cell " + cell_text(result, result.cell_of(run));
+  return result.replicates == 1 ? cell : cell + ", replicate " + std::to_string(result.replicate_of(run));
+}
+
+// Bit for bit; NaN is equal to NaN.
+bool measures_are_stored(const StoredSweep& stored, const Sweep& sweep, std::size_t run, const Trace& trace) {
+  for (std::size_t i = 0; i < stored.result.measures.size(); ++i) {
+    const double then = std::get<std::vector<double>>(stored.result.measures[i].values)[run];
+    const double now = value_of(sweep.measures()[i], trace);
+    if (std::bit_cast<std::uint64_t>(now) != std::bit_cast<std::uint64_t>(then)) return false;
+  }
+  return true;
+}
+
+// Returns the attributes of a run: its own configuration and input hashes, and the command and version of its
+// sweep. It has no digest.
+TextAttributes attributes_of_run(const StoredSweep& stored, const Experiment& experiment) {
+  TextAttributes attributes{{"config", experiment.to_json()},
+                            {"input_digests", input_hashes(experiment.inputs())}};
+  for (const char* name : {"command", "version"})
+    attributes.emplace_back(name, attribute(stored.attributes, name));
+  return attributes;
+}
+
+std::unique_ptr<ShownRun> run_again(const StoredSweep& stored, const Sweep& sweep, std::size_t run,
+                                    const ViewOptions& options) {
+  const Experiment experiment = sweep.experiment(stored.result.cell_of(run), stored.result.replicate_of(run));
+  SimulationOptions simulation;
+  simulation.kernels = options.kernels;
+  simulation.stop = options.stop;
+  simulation.find_true_contact = sweep.needs_true_contact();
+  RunReport report;
+  simulation.report = &report;
+  const Trace trace = simulate(experiment, simulation);
+  RunSource source{name_of(stored.result, run), std::make_shared<ColumnsInMemory>(trace.columns()),
+                   attributes_of_run(stored, experiment)};
+  add_report(source.attributes, report);
+  if (!measures_are_stored(stored, sweep, run, trace))
+    source.note =
+        "This is not the stored run: its measures differ. Another version of the program made the sweep.";
+  return std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop);
+}
+
+Json axis_json(const Column& axis) {
+  Json values = std::holds_alternative<std::vector<double>>(axis.values)
+                    ? Json(std::get<std::vector<double>>(axis.values))
+                    : Json(axis.value_names);
+  return {{"name", axis.name}, {"unit", axis.units}, {"values", std::move(values)}};
+}
+
+// Returns the number of finished runs in each cell.
+std::vector<int> done_in_cells(const SweepResult& result) {
+  std::vector<int> done(result.cell_count(), 0);
+  for (const std::size_t run : result.runs_in(RunState::done)) ++done[result.cell_of(run)];
+  return done;
+}
+
+// runs: those that the page shows, in the order of its list of runs.
+Json map_json(const std::string& file, const std::string& title, const SweepResult& result,
+              const std::vector<std::size_t>& runs, const Judged& judged, PackedArrays& numbers) {
+  Json map{{"file", file},
+           {"title", title},
+           {"replicates", result.replicates},
+           {"judged", judged.measure},
+           {"threshold", judged.threshold},
+           {"runs", runs},
+           {"done", done_in_cells(result)},
+           {"notes", note_lines(result)},
+           {"axes", Json::array()},
+           {"measures", Json::array()}};
+  for (const Column& axis : result.axes) map["axes"].push_back(axis_json(axis));
+  for (const Column& measure : result.measures)
+    map["measures"].push_back(
+        {{"name", measure.name},
+         {"unit", measure.units},
+         {"meaning", measure.long_name},
+         {"numbers", json_of(numbers.add(std::get<std::vector<double>>(measure.values)))}});
+  return map;
+}
+
+}  // namespace
+
+ViewPage sweep_page(const std::filesystem::path& file, const std::vector<std::string>& cells,
+                    const ViewOptions& options) {
+  const StoredSweep stored = finished_sweep(file);
+  const Sweep sweep = sweep_of(stored, file.string());
+  const Judged by = judged(sweep, stored.result);
+  const std::vector<std::size_t> runs = runs_to_show(stored.result, cells, by);
+  if (runs.empty()) throw InputError(file.string(), "has no finished run: expected one or more");
+  std::vector<std::unique_ptr<ShownRun>> shown;
+  for (const std::size_t run : runs) shown.push_back(run_again(stored, sweep, run, options));
+  PackedArrays numbers;
+  const Json map = map_json(file.filename().string(), sweep.title(), stored.result, runs, by, numbers);
+  return view_page(sweep.title(), shown, {{"sweep", map}}, numbers, options);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,118 @@
+#include "runners/presentation/view/trace_event.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/measures/surface_side.h"
+#include "core/geometry/rotation.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMaxSpells = 50;
+
+template <class T>
+std::vector<T> values_or_none(const ColumnSource& trace, const std::string& name) {
+  if (!trace.has(name)) return {};
+  Column column = trace.column(name);
+  auto* of_type = std::get_if<std::vector<T>>(&column.values);
+  return of_type ? std::move(*of_type) : std::vector<T>{};
+}
+
+void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vector<TraceEvent>& events) {
+  const auto distance_m = values_or_none<double>(trace, "signed_distance");
+  SurfaceSide side(held_depth_m);
+  for (std::size_t i = 0; i < distance_m.size(); ++i)
+    if (side.add(distance_m[i]))
+      events.push_back({i, "pop-through", "The proxy's centre gets behind the true surface."});
+}
+
+void find_force_jump(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+  const auto force_N = values_or_none<double>(trace, "force");
+  double largest = 0;
+  std::size_t tick = 0;
+  for (std::size_t i = 3; i + 2 < force_N.size(); i += 3) {
+    const double jump = std::hypot(force_N[i] - force_N[i - 3], force_N[i + 1] - force_N[i - 2],
+                                   force_N[i + 2] - force_N[i - 1]);
+    if (jump > largest) largest = jump, tick = i / 3;
+  }
+  if (largest == 0) return;
+  char text[80];
+  std::snprintf(text, sizeof text, "The largest force jump, %.3g N in a tick.", largest);
+  events.push_back({tick, "force jump", text});
+}
+
+// exhausted: the value that says so, in a column of numbers with names.
+void find_spells(const ColumnSource& trace, const std::string& name, std::int32_t exhausted,
+                 std::vector<TraceEvent>& events) {
+  const auto column = values_or_none<std::int32_t>(trace, name);
+  std::size_t found = 0;
+  for (std::size_t i = 1; i < column.size() && found < kMaxSpells; ++i)
+    if (column[i] == exhausted && column[i - 1] != exhausted) {
+      std::size_t end = i;
+      while (end < column.size() && column[end] == exhausted) ++end;
+      events.push_back({i, "not converged",
+                        end - i == 1 ? "A tick without convergence."
+                                     : std::to_string(end - i) + " ticks without convergence."});
+      ++found;
+    }
+}
+
+std::string name_of_step(std::int32_t step, const std::vector<std::string>& steps) {
+  const auto number = static_cast<std::size_t>(std::max(step, 0));
+  return "Step " + std::to_string(step) + " of the task" +
+         (number < steps.size() ? " (" + steps[number] + ")" : "");
+}
+
+// Empty where the step had no goal.
+std::string from_goal(double distance_m, double angle_rad) {
+  if (!std::isfinite(distance_m) || !std::isfinite(angle_rad)) return {};
+  char text[80];
+  std::snprintf(text, sizeof text, ", %.2g mm and %.2g deg from its goal", 1000 * distance_m,
+                angle_rad / kRadiansPerDegree);
+  return text;
+}
+
+// Adds the events of the task's steps, with the words of `run`. If several steps end in one tick, only the
+// first can have missed its deadline.
+void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& steps,
+                     std::vector<TraceEvent>& events) {
+  const auto step = values_or_none<std::int32_t>(trace, "sequence_step");
+  auto missed = values_or_none<std::int32_t>(trace, "sequence_missed");
+  auto running = values_or_none<std::int32_t>(trace, "sequence_running");
+  auto distance_m = values_or_none<double>(trace, "sequence_distance");
+  auto angle_rad = values_or_none<double>(trace, "sequence_angle");
+  missed.resize(step.size()), running.resize(step.size());
+  distance_m.resize(step.size(), NAN), angle_rad.resize(step.size(), NAN);
+  for (std::size_t i = 1; i < step.size(); ++i) {
+    for (std::int32_t ended = step[i - 1]; ended < step[i]; ++ended) {
+      const bool is_late = ended == step[i - 1] && missed[i] > missed[i - 1];
+      events.push_back({i, "task",
+                        name_of_step(ended, steps) + (is_late ? " is missed" : " is done") +
+                            from_goal(distance_m[i], angle_rad[i]) + "."});
+    }
+    if (running[i] != 0 && (running[i - 1] == 0 || step[i] != step[i - 1]))
+      events.push_back({i, "task", name_of_step(step[i], steps) + " begins."});
+  }
+}
+
+}  // namespace
+
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps,
+                                     double held_depth_m) {
+  std::vector<TraceEvent> events;
+  find_pop_throughs(trace, held_depth_m, events);
+  find_force_jump(trace, events);
+  if (trace.has("budget_exhausted"))
+    find_spells(trace, "budget_exhausted", 1, events);
+  else
+    find_spells(trace, "converged", 0, events);
+  find_task_steps(trace, steps, events);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });
+  return events;
+}
+
+}  // namespace remote_touch

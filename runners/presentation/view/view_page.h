@@ -1,0 +1,33 @@
+// A page of the viewer that is small enough: one self-contained HTML file, which reads nothing else.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+#include "runners/presentation/view/shown_run.h"
+
+namespace remote_touch {
+
+struct ViewOptions {
+  std::size_t max_bytes = 20'000'000;       // size of the page; points are left out until it fits
+  std::filesystem::path claims = {};        // a claims.json, for shown_claims(); empty: none
+  const Kernels* kernels = nullptr;         // pre: set
+  const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted
+};
+
+struct ViewPage {
+  std::string html;
+  std::string shown;  // number of shown points in words, a line for each run
+};
+
+// Shows the runs and the entries of `page`. numbers: arrays that `page` already names. Throws InputError,
+// about the first run, if the page would be too large without any points, and in a program that was built
+// without the viewer (see viewer_script()).
+ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
+                   const Json& page, const PackedArrays& numbers, const ViewOptions& options);
+
+}  // namespace remote_touch

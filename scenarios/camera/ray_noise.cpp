@@ -1,0 +1,92 @@
+#include "scenarios/camera/ray_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kMaxAge = 16;
+
+// Standard normals of these numbers, with what they keep of the frames before.
+std::vector<double> remembered(const std::vector<std::uint32_t>& numbers, double memory, const NoiseKey& key,
+                               int frame, const Kernels& kernels) {
+  std::vector<double> sum(numbers.size()), x(numbers.size()), y(numbers.size()), z(numbers.size());
+  double weight = 1, squares = 0;
+  for (int age = 0; age <= std::min(frame, kMaxAge) && weight > 0; ++age, weight *= memory) {
+    const NoiseStream stream =
+        noise_stream(key, NoiseUse::sensor_ray, static_cast<std::uint32_t>(frame - age));
+    kernels.noise.normals(stream, numbers.data(), numbers.size(), x.data(), y.data(), z.data());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * x[i];
+    squares += weight * weight;
+  }
+  for (double& value : sum) value /= std::sqrt(squares);
+  return sum;
+}
+
+// The nodes of a lattice around all places.
+struct Lattice {
+  double pitch;
+  int first_x = 0, first_z = 0, columns = 0, rows = 0;
+
+  Lattice(const PointCloud& places, double pitch_m) : pitch(pitch_m) {
+    double low_x = std::numeric_limits<double>::infinity(), high_x = -low_x, low_z = low_x, high_z = -low_x;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (!places.is_measured(i)) continue;
+      low_x = std::min(low_x, places.x[i]), high_x = std::max(high_x, places.x[i]);
+      low_z = std::min(low_z, places.z[i]), high_z = std::max(high_z, places.z[i]);
+    }
+    if (!(low_x <= high_x)) return;
+    first_x = cell(low_x), first_z = cell(low_z);
+    columns = cell(high_x) - first_x + 2, rows = cell(high_z) - first_z + 2;
+  }
+  // Far out all places share a node, so that the number stays in range.
+  int cell(double place) const {
+    return static_cast<int>(std::floor(std::clamp(place / pitch, -30000.0, 30000.0)));
+  }
+  // A node has the same number, and so the same noise, whatever the lattice around the places of a frame.
+  std::vector<std::uint32_t> numbers() const {
+    std::vector<std::uint32_t> all;
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column)
+        all.push_back(static_cast<std::uint32_t>(first_z + row + 32768) << 16 |
+                      static_cast<std::uint32_t>(first_x + column + 32768));
+    return all;
+  }
+  double interpolate(const std::vector<double>& values, double x, double z) const {
+    const int column = cell(x), row = cell(z);
+    const double fx = std::clamp(x / pitch - column, 0.0, 1.0), fz = std::clamp(z / pitch - row, 0.0, 1.0);
+    const double weights[] = {(1 - fx) * (1 - fz), fx * (1 - fz), (1 - fx) * fz, fx * fz};
+    double sum = 0, squares = 0;
+    for (int corner = 0; corner < 4; ++corner) {
+      const auto node =
+          static_cast<std::size_t>((row - first_z + corner / 2) * columns + column - first_x + corner % 2);
+      sum += weights[corner] * values[node];
+      squares += weights[corner] * weights[corner];
+    }
+    return sum / std::sqrt(squares);
+  }
+};
+
+}  // namespace
+
+std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& places, const NoiseKey& key,
+                                   int frame, const Kernels& kernels) {
+  if (noise.correlation_m == 0) {
+    std::vector<std::uint32_t> numbers(places.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return remembered(numbers, noise.memory, key, frame, kernels);
+  }
+  const Lattice lattice(places, noise.correlation_m);
+  const std::vector<double> nodes = remembered(lattice.numbers(), noise.memory, key, frame, kernels);
+  std::vector<double> values(places.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places.is_measured(i)) values[i] = lattice.interpolate(nodes, places.x[i], places.z[i]);
+  return values;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,299 @@
+#include "scenarios/camera/sensor_faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace remote_touch {
+
+namespace {
+
+// Indices into the random numbers of a point and of a frame.
+enum PointDraw { drops = 0, is_outlier = 1, flies = 2, how_far = 3 };
+enum FrameDraw { repeats = 0, is_late = 1 };
+
+NoiseStream of_points(const NoiseKey& key, int frame) {
+  return noise_stream(key, NoiseUse::sensor_point, static_cast<std::uint32_t>(frame));
+}
+NoiseStream of_frame(const NoiseKey& key, int frame) {
+  return noise_stream(key, NoiseUse::sensor_frame, static_cast<std::uint32_t>(frame));
+}
+
+void lose(PointCloud& cloud, std::size_t i) {
+  cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  if (cloud.has_normals()) cloud.nx[i] = cloud.ny[i] = cloud.nz[i] = cloud.x[i];
+}
+
+void move(PointCloud& cloud, std::size_t i, const Vec3& to) {
+  if (!to.allFinite()) return lose(cloud, i);
+  cloud.x[i] = to.x(), cloud.y[i] = to.y(), cloud.z[i] = to.z();
+}
+
+// Returns for each point when its row is read, as a fraction of the readout time: 0 for the first row of the
+// image (or the smallest z), 1 for the last row (or the largest z).
+std::vector<double> readout(const PointCloud& cloud) {
+  std::vector<double> fraction(cloud.size(), 1);
+  if (cloud.image) {
+    const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+    const double last = cloud.image->camera.height - 1;
+    for (std::size_t i = 0; last > 0 && i < fraction.size(); ++i) {
+      const std::size_t row = i / width;
+      fraction[i] = static_cast<double>(row) / last;
+    }
+    return fraction;
+  }
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double z : cloud.z) low = z < low ? z : low, high = z > high ? z : high;  // NaN is neither
+  for (std::size_t i = 0; high > low && i < fraction.size(); ++i)
+    fraction[i] = (cloud.z[i] - low) / (high - low);
+  return fraction;
+}
+
+}  // namespace
+
+Parameters parameters(SensorFaults& s) {
+  return {
+      {"view_direction", &s.view_direction, -1, 1,
+       "viewing direction of the sensor; for images the ray of each pixel is used instead"},
+      {"repeat_probability", &s.repeat_probability, 0, 1,
+       "probability that a frame repeats the previous one"},
+      {"rolling_shutter_s", &s.rolling_shutter_s, 0, 10,
+       "rolling shutter: time from reading the first row to the last; needs a scene whose true surface is known between frames"},
+      {"ray_noise_m", &s.ray_noise.sigma_m, 0, 1,
+       "standard deviation of the noise along the viewing direction at 1 m from the sensor; it grows with the square of the distance"},
+      {"ray_noise_correlation_m", &s.ray_noise.correlation_m, 0, 10,
+       "noise is interpolated between the nodes of a lattice of this pitch across the view, in images at a depth of 1 m; 0: independent in each point"},
+      {"ray_noise_memory_fraction", &s.ray_noise.memory, 0, 0.99,
+       "correlation of the noise of successive frames, as behind a filter in time; 0: new noise in every frame"},
+      {"sensor_distance_m", &s.sensor_distance_m, 0, 100,
+       "distance of the sensor from the origin, against view_direction, for ray_noise_m; in images the distance of each point from the camera is used instead"},
+      {"flying_probability", &s.flying_probability, 0, 1,
+       "probability that a point is a flying pixel, that is displaced along the viewing direction"},
+      {"max_flying_distance_m", &s.max_flying_distance_m, 0, 100,
+       "maximum displacement of such a point in either direction, uniformly distributed"},
+      {"outlier_probability", &s.outlier_probability, 0, 1,
+       "probability that a point is an outlier anywhere along the viewing direction"},
+      {"max_outlier_distance_m", &s.max_outlier_distance_m, 0, 100,
+       "maximum distance of an outlier from its true position, uniformly distributed"},
+      {"quantisation_m", &s.quantisation_m, 0, 1, "depth is rounded to multiples of this; 0: not rounded"},
+      {"hole_fraction", &s.hole_fraction, 0, 1,
+       "fraction of the points that are lost in round holes, which are elsewhere in each frame"},
+      {"hole_radius_m", &s.hole_radius_m, 1e-4, 10,
+       "radius of a hole, perpendicular to the viewing direction"},
+      {"dropout_probability", &s.dropout_probability, 0, 1,
+       "probability that a point is lost, independently of others"},
+      {"late_probability", &s.late_probability, 0, 1,
+       "probability that a frame is late; later frames may overtake it"},
+      {"late_delay_s", &s.late_delay_s, 0, 100, "additional delay of a late frame"},
+  };
+}
+
+std::string validate(const SensorFaults& s) {
+  return s.view_direction.norm() < 0.001 ? "view_direction: expected 0.001 or longer" : "";
+}
+
+bool use_view_direction(const SensorFaults& s) {
+  return s.ray_noise.sigma_m > 0 || s.flying_probability > 0 || s.outlier_probability > 0 ||
+         s.quantisation_m > 0 || s.hole_fraction > 0;
+}
+
+FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,
+                           const NoiseKey& key, const Kernels& kernels)
+    : scenario_(std::move(scenario)), settings_(settings), key_(key), kernels_(kernels) {
+  if (!validate(settings).empty()) throw std::invalid_argument(validate(settings));
+}
+
+bool FaultySensor::needs_view_coordinates() const {
+  return settings_.hole_fraction > 0 || settings_.ray_noise.sigma_m > 0;
+}
+
+bool FaultySensor::moves_points() const {
+  return settings_.ray_noise.sigma_m > 0 || settings_.flying_probability > 0 ||
+         settings_.outlier_probability > 0 || settings_.quantisation_m > 0;
+}
+
+int FaultySensor::frame_count() const {
+  const SensorFaults& s = settings_;
+  const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
+                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0;
+  const bool continues = !ends() && (change || loses_points());
+  return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
+}
+
+int FaultySensor::seen(int frame) const {
+  return std::min(frame, scenario_->frame_count() - 1);
+}
+
+int FaultySensor::shown(int frame) const {
+  while (frame > 0 && uniforms(of_frame(key_, frame), 0)[repeats] < settings_.repeat_probability) --frame;
+  return frame;
+}
+
+double FaultySensor::captured_s(int frame) const {
+  const int last = seen(frame);
+  return scenario_->captured_s(last) + (frame - last) / frame_rate_hz();
+}
+
+std::optional<double> FaultySensor::arrives_s(int frame) const {
+  std::optional<double> out_s;
+  if (frame == seen(frame)) out_s = scenario_->arrives_s(frame);
+  if (!(uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_probability)) return out_s;
+  return out_s.value_or(captured_s(frame)) + settings_.late_delay_s;
+}
+
+std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {
+  if (moves_points() || loses_points() || settings_.rolling_shutter_s > 0) return make_search(cloud(frame));
+  return scenario_->points(seen(shown(frame)));
+}
+
+PointCloud FaultySensor::cloud(int frame) const {
+  const int content = shown(frame);
+  PointCloud cloud = scenario_->cloud(seen(content));
+  ViewCoordinates without_faults;
+  if (needs_view_coordinates()) without_faults = across_the_view(cloud);
+  if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
+  if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.places, content);
+  if (moves_points()) displace(cloud, content);
+  if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
+  if (settings_.dropout_probability > 0) drop_points(cloud, content);
+  return cloud;
+}
+
+Vec3 FaultySensor::sight(const PointCloud& cloud, const Vec3& p_W) const {
+  return (cloud.image ? Vec3(p_W - cloud.image->X_WC.translation()) : settings_.view_direction).normalized();
+}
+
+void FaultySensor::shear(PointCloud& cloud, double captured_s) const {
+  const std::vector<double> fraction = readout(cloud);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    const Vec3 p_W = cloud.point(i), ray = sight(cloud, p_W);
+    const double then_s = captured_s - (1 - fraction[i]) * settings_.rolling_shutter_s;
+    move(cloud, i, as_it_was(p_W, captured_s, then_s, cloud.image ? &ray : nullptr));
+  }
+}
+
+// Unit vector away from the surface: the normalised gradient of the distance. At edges and borders the slopes
+// to both sides differ: the smaller one counts, or none if they have opposite signs.
+Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
+  constexpr double kStep_m = 1e-6;
+  const double here = scenario_->signed_distance(p_W, time_s);
+  Vec3 gradient = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kStep_m * Vec3::Unit(axis);
+    const double after = scenario_->signed_distance(p_W + step, time_s) - here;
+    const double before = here - scenario_->signed_distance(p_W - step, time_s);
+    if (after * before > 0) gradient[axis] = std::abs(after) < std::abs(before) ? after : before;
+  }
+  return gradient.normalized();  // 0 stays 0
+}
+
+// Returns the position at then_s of the surface point that is at p_W at now_s: it is displaced along the
+// normal by the change of the distance. A pixel (ray is not null) sees the position where its ray met the
+// surface; NaN if the angle between ray and surface is too small to compute that.
+Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
+  constexpr double kMinSlope = 0.1;
+  const double change = scenario_->signed_distance(p_W, then_s) - scenario_->signed_distance(p_W, now_s);
+  if (change == 0 || std::isnan(change)) return p_W;
+  const Vec3 normal = normal_at(p_W, now_s);
+  if (!ray) return p_W - change * normal;
+  const double slope = normal.dot(*ray);
+  if (std::abs(slope) < kMinSlope) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  return p_W - change / slope * *ray;
+}
+
+// Adds noise along the rays. A point of an image is lost if it would lie behind the camera.
+void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const {
+  const RayNoise& s = settings_.ray_noise;
+  const std::vector<double> noise = standard_noise(s, places, key_, frame, kernels_);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
+    const double distance = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm()
+                                        : settings_.sensor_distance_m + p_W.dot(direction);
+    const double displacement = s.sigma_m * distance * distance * noise[i];
+    if (cloud.image && distance + displacement <= 0)
+      lose(cloud, i);
+    else
+      move(cloud, i, p_W + displacement * direction);
+  }
+}
+
+// Displaces flying points and outliers, and quantises. A point of an image is lost if it would lie behind the
+// camera.
+void FaultySensor::displace(PointCloud& cloud, int frame) const {
+  const SensorFaults& s = settings_;
+  const NoiseStream stream = of_points(key_, frame);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    const auto draw = uniforms(stream, static_cast<std::uint32_t>(i));
+    const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
+    const double place = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm() : p_W.dot(direction);
+    double to = place;
+    if (draw[is_outlier] < s.outlier_probability)
+      to += (2 * draw[how_far] - 1) * s.max_outlier_distance_m;
+    else if (draw[flies] < s.flying_probability)
+      to += (2 * draw[how_far] - 1) * s.max_flying_distance_m;
+    if (s.quantisation_m > 0) to = std::round(to / s.quantisation_m) * s.quantisation_m;
+    if (cloud.image && to <= 0)
+      lose(cloud, i);
+    else if (to != place)
+      move(cloud, i, p_W + (to - place) * direction);
+  }
+}
+
+// Returns the position of each point as the sensor sees it, in x and z: across the view in metres, or, in an
+// image, at depth 1. Also returns the radius of a hole around each point, in the same unit.
+FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cloud) const {
+  const Vec3 view_direction = settings_.view_direction.normalized(), across = view_direction.unitOrthogonal(),
+             other = view_direction.cross(across);
+  const RigidTransform X_CW = cloud.image ? cloud.image->X_WC.inverse() : RigidTransform::Identity();
+  ViewCoordinates seen;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = X_CW * cloud.point(i);
+    if (cloud.image)
+      seen.places.append({p.x() / p.z(), 0, p.y() / p.z()});
+    else
+      seen.places.append({across.dot(p), 0, other.dot(p)});
+    seen.hole_radius.push_back(settings_.hole_radius_m / (cloud.image ? p.z() : 1));
+    if (cloud.is_measured(i) && (!cloud.image || p.z() > 0))
+      seen.measured.push_back(static_cast<std::uint32_t>(i));
+  }
+  return seen;
+}
+
+// Cuts holes around points that are drawn one after the other, until hole_fraction of the points is lost. A
+// point that is already lost can be drawn too.
+void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const {
+  if (seen.measured.empty()) return;
+  const double count = static_cast<double>(seen.measured.size());
+  const UniformGridSearch search(seen.places, seen.hole_radius[seen.measured.front()]);
+  GatheredPoints inside;
+  inside.reserve(cloud.size(), false, false);
+  std::vector<bool> gone(cloud.size());
+  double lost = 0;
+  for (std::uint32_t hole = 1; lost < settings_.hole_fraction * count; ++hole) {
+    const double drawn = uniforms(of_frame(key_, frame), hole)[0] * count;
+    const std::uint32_t middle = seen.measured[static_cast<std::size_t>(drawn)];
+    inside.clear();
+    search.gather({seen.places.point(middle), seen.hole_radius[middle]}, kernels_, inside);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      const std::uint32_t i = inside.index()[k];
+      if (gone[i]) continue;
+      gone[i] = true, ++lost;
+      lose(cloud, i);
+    }
+  }
+}
+
+void FaultySensor::drop_points(PointCloud& cloud, int frame) const {
+  const NoiseStream stream = of_points(key_, frame);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (uniforms(stream, static_cast<std::uint32_t>(i))[drops] < settings_.dropout_probability)
+      lose(cloud, i);
+}
+
+}  // namespace remote_touch

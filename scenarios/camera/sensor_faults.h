@@ -1,0 +1,98 @@
+// Faults that a depth sensor adds to the frames of any scenario: noise along its rays, rounded depths, flying
+// points and outliers, lost points, frames that come twice or late, rows that are read one after the other.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/camera/ray_noise.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// Faults are applied in this order. A point can get several faults, but an outlier is not also a flying
+// point. Depth is measured along view_direction for all points; in a cloud with an image layout it is
+// measured along each point's own ray, as the distance from the camera.
+struct SensorFaults {
+  Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
+  double repeat_probability = 0;  // probability that a frame shows the one before it
+  double rolling_shutter_s = 0;   // time in which the rows of a frame are read
+  RayNoise ray_noise;
+  double sensor_distance_m = 1;  // distance from the origin, against the viewing direction; not for images
+  double flying_probability = 0, max_flying_distance_m = 0.02;
+  double outlier_probability = 0, max_outlier_distance_m = 0.05;
+  double quantisation_m = 0;
+  double hole_fraction = 0, hole_radius_m = 0.005;
+  double dropout_probability = 0;
+  double late_probability = 0, late_delay_s = 0.05;
+};
+
+Parameters parameters(SensorFaults& s);
+std::string validate(const SensorFaults& s);
+// True if one of these faults depends on view_direction in a cloud without an image layout.
+bool use_view_direction(const SensorFaults& s);
+
+// Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
+// fault at 0 they are the scenario's bit for bit. A lost point becomes NaN in all three coordinates, so that
+// points keep their numbers. The ground truth, and everything else, stays that of the scenario.
+class FaultySensor final : public Scenario {
+ public:
+  // Throws std::invalid_argument for settings that validate() refuses.
+  FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings, const NoiseKey& key,
+               const Kernels& kernels);
+
+  double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
+  // If frames of the same surface differ by their faults, the sensor goes on after the scenario's last frame.
+  int frame_count() const override;
+  double captured_s(int frame) const override;
+  bool ends() const override { return scenario_->ends(); }
+  const Scenario& without_faults() const override { return *scenario_; }
+  std::optional<double> arrives_s(int frame) const override;
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return scenario_->fixtures_off(seen(frame));
+  }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return scenario_->signed_distance(p_W, time_s);
+  }
+  Vec3 true_normal(const Vec3& p_W, double time_s) const override {
+    return scenario_->true_normal(p_W, time_s);
+  }
+  std::optional<Vec3> plane_normal(double time_s) const override { return scenario_->plane_normal(time_s); }
+  double truth_time_s(double time_s) const override { return scenario_->truth_time_s(time_s); }
+  double surface_height(double x, double z, double time_s) const override {
+    return scenario_->surface_height(x, z, time_s);
+  }
+
+ private:
+  struct ViewCoordinates {  // a cloud projected along the viewing direction
+    PointCloud places;
+    std::vector<double> hole_radius;
+    std::vector<std::uint32_t> measured;
+  };
+  int shown(int frame) const;  // the frame whose content this one has
+  int seen(int frame) const;   // the scenario's frame for it
+  bool needs_view_coordinates() const;
+  bool moves_points() const;
+  bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
+  Vec3 sight(const PointCloud& cloud, const Vec3& p_W) const;
+  void shear(PointCloud& cloud, double captured_s) const;
+  Vec3 normal_at(const Vec3& p_W, double time_s) const;
+  Vec3 as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
+  void add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const;
+  void displace(PointCloud& cloud, int frame) const;
+  ViewCoordinates across_the_view(const PointCloud& cloud) const;
+  void cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const;
+  void drop_points(PointCloud& cloud, int frame) const;
+
+  const std::unique_ptr<const Scenario> scenario_;
+  const SensorFaults settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+};
+
+}  // namespace remote_touch

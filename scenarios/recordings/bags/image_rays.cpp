@@ -1,0 +1,215 @@
+#include "scenarios/recordings/bags/image_rays.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+namespace {
+
+// A ray (x, y, 1) of the pinhole, and where the lens puts it; D = (k1, k2, p1, p2, k3).
+struct PlumbBob {
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+
+  explicit PlumbBob(const std::vector<double>& d)
+      : k1(d[0]), k2(d[1]), p1(d[2]), p2(d[3]), k3(d.size() > 4 ? d[4] : 0) {}
+
+  Eigen::Vector2d bent(const Eigen::Vector2d& ray) const {
+    const double x = ray.x(), y = ray.y(), r2 = x * x + y * y;
+    const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  }
+
+  Eigen::Matrix2d slope(const Eigen::Vector2d& ray) const {
+    const double x = ray.x(), y = ray.y(), r2 = x * x + y * y;
+    const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    const double grows = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));  // d radial / d r2, times 2
+    Eigen::Matrix2d J;
+    J(0, 0) = radial + x * x * grows + 2 * p1 * y + 6 * p2 * x;
+    J(0, 1) = J(1, 0) = x * y * grows + 2 * p1 * x + 2 * p2 * y;
+    J(1, 1) = radial + y * y * grows + 6 * p1 * y + 2 * p2 * x;
+    return J;
+  }
+
+  // Far from the centre the polynomial may fold the image over: there is no lens like that.
+  bool is_one_to_one_at(const Eigen::Vector2d& ray) const {
+    const Eigen::Matrix2d J = slope(ray);
+    return J.determinant() > 0 && J.trace() > 0;
+  }
+
+  // Computes the ray that the lens bends to `to`, by Newton's method from a guess that is within about a
+  // pixel. Returns false if there is none.
+  bool unbend(const Eigen::Vector2d& to, Eigen::Vector2d& ray) const {
+    constexpr double kExact = 1e-13;
+    for (int i = 0; i < 20; ++i) {
+      if (!is_one_to_one_at(ray)) return false;
+      const Eigen::Vector2d change = slope(ray).inverse() * (to - bent(ray));
+      ray += change;
+      if (!(change.norm() > kExact)) return ray.allFinite();
+    }
+    return false;
+  }
+};
+
+// True if a lens of this model is a pinhole when all its coefficients are 0 or missing. A fisheye is not.
+// RealSense writes the names with capitals.
+bool bends_by_coefficients_only(const std::string& model) {
+  static const std::array<std::string_view, 9> kModels = {"",
+                                                          "none",
+                                                          "None",
+                                                          "pinhole",
+                                                          "plumb_bob",
+                                                          "rational_polynomial",
+                                                          "Brown Conrady",
+                                                          "Inverse Brown Conrady",
+                                                          "Modified Brown Conrady"};
+  return std::find(kModels.begin(), kModels.end(), model) != kModels.end();
+}
+
+// 0 means 1.
+std::uint32_t binning(std::uint32_t stored) {
+  return std::max<std::uint32_t>(1, stored);
+}
+
+// Along one axis: the pixels of the sensor that the image shows. A region without a size is the whole sensor,
+// if it has no offset.
+struct Extent {
+  std::uint32_t offset = 0, size = 0;
+};
+Extent extent(std::uint32_t sensor, Extent region, const std::string& axis, const std::string& subject) {
+  if (region.offset == 0 && region.size == 0) return {0, sensor};
+  const std::uint64_t end = std::uint64_t{region.offset} + region.size;
+  if (region.size == 0 || end > sensor)
+    throw InputError(subject, "roi has pixels " + std::to_string(region.offset) + " to " +
+                                  std::to_string(end) + " along " + axis + ": expected some of the " +
+                                  std::to_string(sensor) + " that the camera has, or roi all 0");
+  return region;
+}
+Extent extent_x(const CameraInfoMessage& info, const std::string& subject) {
+  return extent(info.width, {info.region.x_offset, info.region.width}, "x", subject);
+}
+Extent extent_y(const CameraInfoMessage& info, const std::string& subject) {
+  return extent(info.height, {info.region.y_offset, info.region.height}, "y", subject);
+}
+
+// Focal length and centre along one axis.
+struct Axis {
+  double f = 0, c = 0;
+};
+Axis binned(const Axis& sensor, std::uint32_t offset, std::uint32_t pixels) {
+  const double b = pixels;
+  return {sensor.f / b, (sensor.c - offset - 0.5 * (b - 1)) / b};
+}
+
+// The matrix is (fx 0 cx; 0 fy cy; 0 0 1), for P with a fourth column of 0. Some drivers leave out the 1.
+void require_pinhole(const double* matrix, std::size_t columns, const char* name,
+                     const std::string& subject) {
+  for (std::size_t i = 0; i < 3 * columns; ++i) {
+    const std::size_t row = i / columns, column = i % columns;
+    if (column == row ? row < 2 : column == 2) continue;  // fx, fy, cx, cy
+    const double expected = row == 2 && column == 2 ? 1 : 0;
+    if (matrix[i] == expected || (expected == 1 && matrix[i] == 0)) continue;
+    throw InputError(subject,
+                     std::string(name) + "[" + std::to_string(i) + "] = " + std::to_string(matrix[i]) +
+                         ": expected " + (expected == 1 ? "1" : "0") +
+                         (column == 3 ? ", the camera of the image itself and not the second of a pair"
+                          : row < 2   ? ", a camera without skew"
+                                      : ""));
+  }
+}
+
+}  // namespace
+
+ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) {
+  const std::uint32_t bx = binning(info.binning_x), by = binning(info.binning_y);
+  const ImageSize size = {extent_x(info, subject).size / bx, extent_y(info, subject).size / by};
+  if (info.width > 0 && info.height > 0 && (size.width == 0 || size.height == 0))
+    throw InputError(subject, "binning = " + std::to_string(bx) + " x " + std::to_string(by) +
+                                  ": expected no more than the pixels that the camera has");
+  return size;
+}
+
+ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
+  const ImageSize size = image_size(info, subject);
+  const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
+  if (pixels == 0 || pixels > kMaxImagePixels)
+    throw InputError(subject, "has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                                  " pixels: expected 1 to " + std::to_string(kMaxImagePixels));
+  const auto& K = info.K;
+  const auto& P = info.P;
+  const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
+  const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
+  const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite
+  const Axis x = binned({fx, cx}, info.region.x_offset, binning(info.binning_x));
+  const Axis y = binned({fy, cy}, info.region.y_offset, binning(info.binning_y));
+  if (!sound(x.f) || !sound(y.f) || !(std::abs(x.c) < 1e6) || !(std::abs(y.c) < 1e6))
+    throw InputError(subject, std::string(rectified ? "P" : "K") + " has fx = " + std::to_string(fx) +
+                                  ", fy = " + std::to_string(fy) + ", cx = " + std::to_string(cx) +
+                                  ", cy = " + std::to_string(cy) + ": expected a calibrated camera");
+  if (rectified)
+    require_pinhole(P.data(), 4, "P", subject);
+  else
+    require_pinhole(K.data(), 3, "K", subject);
+  if (rectified && info.region.do_rectify)
+    throw InputError(subject,
+                     "roi.do_rectify = true: expected false, for the region of the rectified image is "
+                     "not told");
+  camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
+  const auto& d = info.distortion;
+  if (rectified) return;
+  const bool straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0; });
+  if (straight && bends_by_coefficients_only(info.distortion_model)) return;
+  const bool finite = std::all_of(d.begin(), d.end(), [](double k) { return std::isfinite(k); });
+  if (info.distortion_model != "plumb_bob" || (d.size() != 4 && d.size() != 5) || !finite)
+    throw InputError(subject, "distortion_model = \"" + info.distortion_model.substr(0, 32) + "\" with " +
+                                  std::to_string(d.size()) +
+                                  " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
+  make_table(info);
+}
+
+void ImageRays::make_table(const CameraInfoMessage& info) {
+  const PlumbBob lens(info.distortion);
+  const std::size_t pixels = static_cast<std::size_t>(camera_.width) * camera_.height;
+  source_.assign(pixels, -1), ray_x_.assign(pixels, 0), ray_y_.assign(pixels, 0);
+  const auto pixel = [&](const Eigen::Vector2d& ray) {
+    return Eigen::Vector2d(camera_.fx * ray.x() + camera_.cx, camera_.fy * ray.y() + camera_.cy);
+  };
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::size_t u = i % static_cast<std::size_t>(camera_.width);
+    const std::size_t v = i / static_cast<std::size_t>(camera_.width);
+    const Eigen::Vector2d at(static_cast<double>(u), static_cast<double>(v));
+    Eigen::Vector2d ray((at.x() - camera_.cx) / camera_.fx, (at.y() - camera_.cy) / camera_.fy);
+    if (!lens.is_one_to_one_at(ray)) continue;
+    const Eigen::Vector2d seen = pixel(lens.bent(ray)).array().round();
+    if (!(seen.x() >= 0 && seen.y() >= 0 && seen.x() < camera_.width && seen.y() < camera_.height)) continue;
+    const Eigen::Vector2d to((seen.x() - camera_.cx) / camera_.fx, (seen.y() - camera_.cy) / camera_.fy);
+    constexpr double kMaxSlack_px = 2;  // farther, the lens shrinks the image too much for one point a pixel
+    if (!lens.unbend(to, ray) || !((pixel(ray) - at).cwiseAbs().maxCoeff() < kMaxSlack_px)) continue;
+    slack_ = std::max(slack_, (pixel(ray) - at).cwiseAbs().maxCoeff() + 1e-6);
+    source_[i] = static_cast<int>(seen.y()) * camera_.width + static_cast<int>(seen.x());
+    ray_x_[i] = ray.x(), ray_y_[i] = ray.y();
+  }
+}
+
+PointCloud ImageRays::cloud(const DepthImage& depth) const {
+  assert(depth.width == camera_.width && depth.height == camera_.height);
+  if (!has_distortion()) return cloud_from_depth(depth, camera_, RigidTransform::Identity());
+  PointCloud cloud;
+  const std::size_t pixels = source_.size();
+  cloud.x.resize(pixels), cloud.y.resize(pixels), cloud.z.resize(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double z_m = source_[i] < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                      : depth.z_m[static_cast<std::size_t>(source_[i])];
+    cloud.x[i] = ray_x_[i] * z_m, cloud.y[i] = ray_y_[i] * z_m, cloud.z[i] = z_m;
+  }
+  cloud.image = ImageLayout{camera_, RigidTransform::Identity(), slack_};
+  return cloud;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+// Depth and colour images in PNG files, as RGB-D recordings store them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/camera.h"
+
+namespace remote_touch {
+
+// A 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
+// measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
+// finite. Throws InputError if the file is missing, cut short, damaged or of another pixel format.
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m);
+
+// Pixel (u, v) is element v * width + u.
+struct GreyImage {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> values;
+};
+
+// The values of a 16-bit PNG of one channel that is in memory. name: what an InputError is about.
+GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
+
+// Returns pixel (u, v) as element v * width + u, 0xRRGGBB, and sets width and height. A fully transparent
+// pixel is kNoColour: an image that was warped to another camera has such pixels where it saw nothing. Other
+// values of alpha are ignored. Allowed are RGB and grey of up to 8 bits a channel, with or without alpha, and
+// palettes. Samples are used as stored: no gamma or colour profile is applied. Throws InputError as above.
+std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height);
+
+}  // namespace remote_touch

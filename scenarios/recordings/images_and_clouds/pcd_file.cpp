@@ -1,0 +1,274 @@
+#include "scenarios/recordings/images_and_clouds/pcd_file.h"
+
+#include <lzf.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/colour.h"
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/images_and_clouds/pcd_header.h"
+#include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
+#include "scenarios/text_files/text_file.h"
+
+namespace remote_touch {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "PCD data are little-endian");
+
+constexpr std::uint32_t kRgb = 0xFFFFFF;  // mask for the colour in a word 0xAARRGGBB
+// Maximum number of raw bytes for one byte of an LZF block: the longest back reference makes 264 out of 3.
+constexpr std::size_t kLzfMaxExpansion = 88;
+
+// The whole file: header and data are views into it.
+std::string read_bytes(const std::filesystem::path& file) {
+  std::error_code no_size;
+  const std::uintmax_t size = std::filesystem::file_size(file, no_size);  // fails also for a folder
+  if (no_size) {
+    throw InputError(file.string(), "cannot be read (" + no_size.message() + "): expected a PCD file");
+  }
+  std::string bytes(size, '\0');  // the size on disk, not one that the header claims
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) {
+    throw InputError(file.string(), "cannot be read to its end");
+  }
+  return bytes;
+}
+
+// Throws InputError if the bytes behind the header cannot hold the points that it claims. Called before
+// anything is allocated.
+void check_claimed_size(const std::string& file, const PcdHeader& header, std::size_t data_bytes) {
+  std::size_t max = data_bytes / header.point_bytes;
+  if (header.encoding == "ascii") {
+    max = (data_bytes + 1) / (2 * header.point_values);  // a digit and a separator
+  } else if (header.encoding == "binary_compressed") {
+    max = data_bytes * kLzfMaxExpansion / header.point_bytes;
+  }
+  if (header.points <= max) return;
+  throw InputError(file, "POINTS = " + std::to_string(header.points) + ": the " + std::to_string(data_bytes) +
+                             " bytes of " + std::string(header.encoding) + " data hold at most " +
+                             std::to_string(max));
+}
+
+// Reads a number; also nan and inf, which from_chars reads in every spelling of printf. Throws InputError
+// about where for any other word.
+double real_number(const std::string& where, std::string_view word) {
+  double value = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
+  if (error != std::errc() || stop != end)
+    throw InputError(where, shown(word) + ": expected a number or nan");
+  return value;
+}
+
+// The colour word as an integer, or as TYPE F the float that has its bits. Some write an integer as TYPE F,
+// too: with all its digits it is a colour.
+std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std::string_view word) {
+  const double value = real_number(where, word);
+  if (std::isnan(value)) return kNoColour;
+  const bool is_integer = value == std::floor(value) && std::abs(value) < 4294967296.0;
+  if (field.type == 'F') {
+    const std::uint32_t colour = colour_of_float(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    if (colour != kNoColour || !is_integer || word.find_first_of(".eE") != word.npos) return colour;
+  }
+  if (!is_integer) throw InputError(where, shown(word) + ": expected a 32-bit colour");
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) & kRgb;
+}
+
+// Point i from the words of its line, in the order of FIELDS. A coordinate is rounded to its SIZE, so that a
+// cloud has the same bits in every encoding.
+void read_ascii_point(const std::string& where, const PcdHeader& header,
+                      const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
+  if (words.size() != header.point_values) {
+    throw InputError(where, std::to_string(words.size()) + " values: expected " +
+                                std::to_string(header.point_values) + ", as FIELDS and COUNT say");
+  }
+  const auto read = [&](const PcdField& field) {
+    const double value = real_number(where, words[field.first_value]);
+    return field.size == 4 ? static_cast<float>(value) : value;
+  };
+  cloud.x[i] = read(header.x), cloud.y[i] = read(header.y), cloud.z[i] = read(header.z);
+  if (header.colour) cloud.colour[i] = ascii_colour(where, *header.colour, words[header.colour->first_value]);
+}
+
+// One point a line; empty lines are skipped, and nothing else may follow the last point.
+void read_ascii(const std::string& file, const PcdHeader& header, PcdText rest, PointCloud& cloud) {
+  const auto where = [&] { return file + ":" + std::to_string(rest.line); };
+  for (std::size_t i = 0; i < header.points;) {
+    if (rest.text.empty()) {
+      throw InputError(file, "the data end after " + std::to_string(i) +
+                                 " points: POINTS = " + std::to_string(header.points));
+    }
+    const std::vector<std::string_view> words = rest.take_line();
+    if (!words.empty()) read_ascii_point(where(), header, words, i++, cloud);
+  }
+  while (!rest.text.empty()) {
+    if (rest.take_line().empty()) continue;
+    throw InputError(where(), "a line behind the last point: POINTS = " + std::to_string(header.points));
+  }
+}
+
+// binary stores point after point; the raw block of binary_compressed stores field after field.
+void read_binary(const PcdHeader& header, const char* bytes, bool field_after_field, PointCloud& cloud) {
+  const auto value_at = [&](const PcdField& field, std::size_t i) {
+    return field_after_field ? bytes + header.points * field.first_byte + i * field.size * field.count
+                             : bytes + i * header.point_bytes + field.first_byte;
+  };
+  const auto read = [&](const PcdField& field, std::vector<double>& column) {
+    for (std::size_t i = 0; i < header.points; ++i) {
+      float single = 0;
+      if (field.size == 8) {
+        std::memcpy(&column[i], value_at(field, i), 8);
+      } else {
+        std::memcpy(&single, value_at(field, i), 4), column[i] = single;
+      }
+    }
+  };
+  read(header.x, cloud.x), read(header.y, cloud.y), read(header.z, cloud.z);
+  for (std::size_t i = 0; i < cloud.colour.size(); ++i) {
+    std::uint32_t& colour = cloud.colour[i];
+    std::memcpy(&colour, value_at(*header.colour, i), 4);
+    colour = header.colour->type == 'F' ? colour_of_float(colour) : colour & kRgb;
+  }
+}
+
+// The block expanded to exactly raw_size bytes.
+std::vector<char> expand(const std::string& file, std::string_view block, std::uint32_t raw_size) {
+  std::vector<char> raw(raw_size);
+  // liblzf checks every access but that to the first byte.
+  const unsigned expanded =
+      block.empty() ? 0
+                    : lzf_decompress(block.data(), static_cast<unsigned>(block.size()), raw.data(), raw_size);
+  if (expanded != raw_size)
+    throw InputError(file, "damaged LZF block of " + std::to_string(block.size()) + " bytes: expected " +
+                               std::to_string(raw_size) + " bytes from it");
+  return raw;
+}
+
+// binary_compressed: two uint32, the compressed and the raw size in bytes, then the LZF block.
+std::vector<char> read_compressed_block(const std::string& file, const PcdHeader& header,
+                                        std::string_view data) {
+  std::array<std::uint32_t, 2> sizes{};
+  if (data.size() < sizeof sizes) {
+    throw InputError(file, "the data end before the sizes of the compressed block");
+  }
+  std::memcpy(sizes.data(), data.data(), sizeof sizes);
+  data.remove_prefix(sizeof sizes);
+  if (sizes[0] > data.size()) {
+    throw InputError(file, "compressed size = " + std::to_string(sizes[0]) + ": the file has " +
+                               std::to_string(data.size()) + " bytes left");
+  }
+  const std::size_t needed = header.points * header.point_bytes;
+  if (sizes[1] != needed) {
+    throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": expected " + std::to_string(needed) +
+                               ", as the header says");
+  }
+  return expand(file, data.substr(0, sizes[0]), sizes[1]);
+}
+
+// NaN in all three coordinates fails every distance test. Sensors mark a hole by nan or by the origin.
+void mark_missing_points(PointCloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    if (p.allFinite() && !p.isZero(0)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+// Reverses each row.
+template <class Value>
+void mirror_rows(std::vector<Value>& values, int width) {
+  for (auto row = values.begin(); row != values.end(); row += width) std::reverse(row, row + width);
+}
+
+// Transforms the cloud to a camera at X_FC, if a pinhole explains it from there. Otherwise returns false, and
+// the cloud is as it was.
+bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
+  PcdCloud seen = file;
+  PointCloud& cloud = seen.cloud;
+  const RigidTransform X_CF = X_FC.inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = X_CF * cloud.point(i);
+    cloud.x[i] = p.x(), cloud.y[i] = p.y(), cloud.z[i] = p.z();
+  }
+  const auto each_column = [&](const auto& change) {
+    change(cloud.x), change(cloud.y), change(cloud.z), change(cloud.colour);
+  };
+  // Tries the image as it is, mirrored left to right, upside down, and both.
+  for (const bool upside_down : {false, true}) {
+    if (upside_down) each_column([](auto& values) { std::reverse(values.begin(), values.end()); });
+    for (const bool mirrored : {false, true}) {
+      if (mirrored) each_column([&](auto& values) { mirror_rows(values, seen.width); });
+      cloud.image = fit_pinhole(cloud, seen.width, seen.height);
+      if (!cloud.image) continue;
+      seen.X_FC = X_FC;
+      file = std::move(seen);
+      return true;
+    }
+  }
+  return false;
+}
+
+// True if the camera is at the origin and looks along the z axis of the file or against it, with its rows
+// along x. Programs disagree about these signs, so that such a rotation says nothing about an image that is
+// seen from the origin along z.
+bool keeps_axes(const RigidTransform& X_FV) {
+  constexpr double kRounding = 1e-4;  // tolerance for quaternions that are written with few digits
+  return X_FV.translation().isZero(0) && X_FV.linear().cwiseAbs().isIdentity(kRounding);
+}
+
+void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
+  const bool is_organised = file.height > 1;
+  if (is_organised) file.cloud.grid_columns = file.width;
+  if (is_organised && X_FV && keeps_axes(*X_FV)) {  // first as it is: the points keep their bits
+    file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
+    if (file.cloud.image) return;
+  }
+  if (X_FV && is_organised) {
+    const RigidTransform about_face(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()));
+    if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
+  }
+  const PointCloud& cloud = file.cloud;
+  const bool has_points =
+      std::any_of(cloud.z.begin(), cloud.z.end(), [](double z_m) { return !std::isnan(z_m); });
+  file.has_unused_viewpoint = X_FV.has_value() && has_points;
+  if (is_organised) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
+}
+
+}  // namespace
+
+PcdCloud read_pcd(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const std::string bytes = read_bytes(file);
+  PcdText rest{without_byte_order_mark(bytes)};
+  const PcdHeader header = read_pcd_header(name, rest);
+  check_claimed_size(name, header, rest.text.size());
+
+  PcdCloud result{{}, static_cast<int>(header.width), static_cast<int>(header.height)};
+  PointCloud& cloud = result.cloud;
+  cloud.x.resize(header.points), cloud.y.resize(header.points), cloud.z.resize(header.points);
+  if (header.colour) cloud.colour.resize(header.points);
+  if (header.encoding == "ascii") {
+    read_ascii(name, header, rest, cloud);
+  } else if (header.encoding == "binary") {
+    read_binary(header, rest.text.data(), false, cloud);
+  } else {
+    read_binary(header, read_compressed_block(name, header, rest.text).data(), true, cloud);
+  }
+  mark_missing_points(cloud);
+  find_image(header.X_FV, result);
+  return result;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,135 @@
+// Motion with which a tool is carried: the least-squares solution, tested against known motions.
+#include "core/beyond/tracked_surface/carried_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace remote_touch::carried_motion_test {
+namespace {
+
+constexpr double kLever_m = 0.01;
+const Vec3 kAbout_W(0.3, -0.1, 0.2);
+
+// A body that turns by w about the origin and moves by t, to first order.
+struct Motion {
+  Vec3 t, w;
+  double along(const Vec3& n_W, const Vec3& p_W) const { return n_W.dot(t + w.cross(p_W)); }
+  Vector6 about(const Vec3& p_W) const {
+    Vector6 motion;
+    motion << t + w.cross(p_W), w;
+    return motion;
+  }
+};
+
+// Corners of a square of 40 mm with this normal and another direction in it, around a middle.
+void add_face(CarriedMotion& to, const Vec3& middle_W, const Vec3& n_W, const Vec3& u_W, const Motion& motion,
+              double error_m = 0) {
+  const Vec3 v_W = n_W.cross(u_W);
+  for (const double a : {-0.02, 0.02})
+    for (const double b : {-0.02, 0.02}) {
+      const Vec3 p_W = middle_W + a * u_W + b * v_W;
+      to.add({p_W, n_W, motion.along(n_W, p_W), error_m, 1});
+    }
+}
+
+TEST(CarriedMotion, IsUnknownIfThereAreNoPlaces) {
+  EXPECT_TRUE(CarriedMotion(kLever_m).empty());
+  const CarriedMotion::Result result = CarriedMotion(kLever_m).about(kAbout_W);
+  EXPECT_FALSE(result.known);
+  EXPECT_TRUE(result.motion.isZero(0));
+}
+
+// A displacement along the normal and the rotations about two axes of the face; about its middle.
+TEST(CarriedMotion, AFaceGivesWhatItShows) {
+  const Vec3 middle_W(0.1, 0.02, -0.05);
+  CarriedMotion places(kLever_m);
+  const Motion motion{{0, 0.004, 0}, {0.05, 0, -0.03}};
+  add_face(places, middle_W, Vec3::UnitY(), Vec3::UnitX(), motion);
+  const CarriedMotion::Result result = places.about(middle_W);
+  ASSERT_TRUE(result.known);
+  EXPECT_NEAR(result.motion[1], motion.about(middle_W)[1], 1e-12);
+  EXPECT_NEAR((result.motion.tail<3>() - motion.w).norm(), 0, 1e-12);
+  EXPECT_NEAR(std::hypot(result.motion[0], result.motion[2]), 0, 1e-12);
+  // Another centre of the same body.
+  const Vec3 above_W = middle_W + Vec3(0.01, 0.03, 0);
+  const Vec3 there = places.about(above_W).motion.head<3>();
+  const Vec3 expected = result.motion.head<3>() + motion.w.cross(above_W - middle_W);
+  EXPECT_NEAR((there - expected).norm(), 0, 1e-12);
+}
+
+TEST(CarriedMotion, MotionWithinAFaceIsNotSeen) {
+  CarriedMotion places(kLever_m);
+  add_face(places, kAbout_W, Vec3::UnitY(), Vec3::UnitX(), {{0.01, 0, -0.02}, {0, 0, 0}});
+  EXPECT_NEAR(places.about(kAbout_W).motion.norm(), 0, 1e-15);
+}
+
+TEST(CarriedMotion, APlaceAloneGivesADisplacementAlongItsNormal) {
+  const Vec3 n_W = Vec3(1, 2, -2) / 3;
+  CarriedMotion places(kLever_m);
+  places.add({kAbout_W + Vec3(0.02, 0, 0), n_W, 0.003, 0, 1});
+  Vector6 expected = Vector6::Zero();
+  expected.head<3>() = 0.003 * n_W;
+  EXPECT_NEAR((places.about(kAbout_W).motion - expected).norm(), 0, 1e-12);
+}
+
+// An edge: places in a row along x turn about z, and not about x.
+TEST(CarriedMotion, ARowOfPlacesTurnsAboutOneAxis) {
+  CarriedMotion places(kLever_m);
+  const Motion motion{{0, 0.001, 0}, {0.1, 0, 0.04}};
+  for (const double x : {-0.03, -0.01, 0.01, 0.03})
+    places.add({{x, 0, 0}, Vec3::UnitY(), motion.along(Vec3::UnitY(), {x, 0, 0}), 0, 1});
+  const Vector6 found = places.about(Vec3::Zero()).motion;
+  EXPECT_NEAR(found[5], 0.04, 1e-12);
+  EXPECT_NEAR(found[3], 0, 1e-12);
+  EXPECT_NEAR(found[1], 0.001, 1e-12);
+}
+
+// Places nearer than a third of the lever tell no rotation: noise would turn the tool by any angle.
+TEST(CarriedMotion, PlacesCloseTogetherDoNotTurn) {
+  CarriedMotion places(kLever_m);
+  for (const double x : {-0.001, 0.001}) places.add({{x, 0, 0}, Vec3::UnitY(), x, 0, 1});
+  EXPECT_NEAR(places.about(Vec3::Zero()).motion.norm(), 0, 1e-15);
+}
+
+TEST(CarriedMotion, AFloorAndAWallGiveBothDisplacements) {
+  CarriedMotion places(kLever_m);
+  const Motion motion{{0.002, 0.005, 0.009}, {0, 0, 0}};
+  add_face(places, {0, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), motion);
+  add_face(places, {-0.03, 0.03, 0}, Vec3::UnitX(), Vec3::UnitZ(), motion);
+  const Vector6 found = places.about({0, 0.01, 0}).motion;
+  EXPECT_NEAR((found.head<3>() - Vec3(0.002, 0.005, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR(found.tail<3>().norm(), 0, 1e-12);
+}
+
+// Least squares of a full set of directions, against the motion that made the places, to the first order.
+TEST(CarriedMotion, AnyMotionOfABoxIsFound) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-1, 1);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto any = [&](double size) {
+      return Vec3(size * off(random), size * off(random), size * off(random));
+    };
+    const Motion motion{any(0.01), any(0.2)};
+    CarriedMotion places(kLever_m);
+    for (int axis = 0; axis < 3; ++axis)
+      add_face(places, -0.03 * Vec3::Unit(axis) + any(0.005), Vec3::Unit(axis), Vec3::Unit((axis + 1) % 3),
+               motion);
+    const Vec3 about_W = any(0.05);
+    EXPECT_NEAR((places.about(about_W).motion - motion.about(about_W)).norm(), 0, 1e-10);
+  }
+}
+
+// x^2 / (x^2 + 4 e^2) of the motion.
+TEST(CarriedMotion, IsLessSureTheMoreNoiseMayExplainIt) {
+  for (const double error_m : {0.0, 0.001, 0.01}) {
+    CarriedMotion places(kLever_m);
+    add_face(places, kAbout_W, Vec3::UnitY(), Vec3::UnitX(), {{0, 0.004, 0}, {0, 0, 0}}, error_m);
+    const CarriedMotion::Result result = places.about(kAbout_W);
+    EXPECT_NEAR(result.motion[1], 0.004, 1e-12);
+    EXPECT_NEAR(result.sure[1], 0.004 * 16e-6 / (16e-6 + 4 * error_m * error_m), 1e-12) << error_m;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::carried_motion_test

@@ -1,0 +1,300 @@
+// A tool on tracked sheets: what noise does to it, and how it follows surfaces that move and turn.
+#include "core/beyond/tracked_surface/tracked_tool_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::tracked_tool_renderer_test {
+namespace {
+
+const Vec3 kHalf_m(0.02, 0.005, 0.02);
+constexpr double kUnit_m = 0.005, kSpacing_m = 0.0015, kFrames_hz = 30;
+constexpr int kTicks = 33;  // ticks from frame to frame
+
+// Points of square panels, with noise and without normals.
+class Panels {
+ public:
+  explicit Panels(double sigma_m, unsigned seed = 1)
+      : noise_m_(0, sigma_m > 0 ? sigma_m : 1), sigma_m_(sigma_m), random_(seed) {}
+  // A grid of n x n points around a middle, with the normal of the rotated y axis.
+  Panels& add(const Vec3& middle_W, const Eigen::Quaterniond& turn, int n = 80) {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Vec3 p_S((i - 0.5 * (n - 1)) * kSpacing_m, 0, (j - 0.5 * (n - 1)) * kSpacing_m);
+        const Vec3 p_W = middle_W + turn * p_S + noise();
+        cloud_.append(p_W, turn * Vec3::UnitY());
+      }
+    return *this;
+  }
+  PointCloud take() { return std::exchange(cloud_, {}); }
+
+ private:
+  Vec3 noise() {
+    if (sigma_m_ == 0) return Vec3::Zero();
+    const double x = noise_m_(random_), y = noise_m_(random_), z = noise_m_(random_);
+    return {x, y, z};
+  }
+  std::normal_distribution<double> noise_m_;
+  double sigma_m_;
+  std::mt19937 random_;
+  PointCloud cloud_;
+};
+
+Frame frame_at(int index, PointCloud cloud) {
+  Frame frame = scenes::frame(std::move(cloud), index);
+  frame.captured_s = frame.arrives_s = index / kFrames_hz;
+  return frame;
+}
+
+TrackedToolRenderer renderer(TrackedToolParameters p = {}) {
+  p.tool.max_force_N = 1000, p.tool.max_torque_Nm = 100;
+  return TrackedToolRenderer(p, scenes::box_tool(kHalf_m), scenes::kernels());
+}
+
+// Renders the ticks until the next frame; the last output.
+template <class Renderer>
+RenderOutput ticks(Renderer& r, int frame, const DeviceState& device) {
+  RenderOutput out;
+  for (int i = 0; i < kTicks; ++i) out = r.step(device, frame / kFrames_hz + 0.001 * i);
+  return out;
+}
+
+DeviceState device(const Vec3& p_W, const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
+  return {p_W, q};
+}
+
+// Device pose on an approach along up_W: 4 cm before the end pose in frame 0, and at it from frame 4 on. An
+// end pose a few millimetres below a surface thus presses from frame 4 on.
+DeviceState approaching(int frame, const Vec3& up_W, const DeviceState& end) {
+  return device(end.position_W + std::max(0, 4 - frame) * 0.01 * up_W, end.orientation_W);
+}
+
+// A plane of noise sigma under the plate: the error of height and tilt is that of a plane of least squares
+// through the points of its windows. A window has n = (10 r_c / spacing)^2 = 1111 points at most: the height
+// then has the standard error sigma / sqrt(n), and the slope sigma / sqrt(n) / (10 r_c / sqrt(12)). A plate
+// lies on the highest of what is below it, and edges of windows are nearer: no more than a few of these.
+TEST(TrackedTool, ErrorsOnANoisyPlaneAreThoseOfAFit) {
+  for (const double sigma : {0.2, 1.0, 3.0}) {
+    TrackedToolRenderer r = renderer();
+    Panels panels(sigma * kUnit_m, 5);
+    const double window_m = 10 * kUnit_m, n = std::pow(window_m / kSpacing_m, 2);
+    const double height_m = sigma * kUnit_m / std::sqrt(n), slope = height_m / (window_m / std::sqrt(12));
+    double heights = 0, tilts = 0, count = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      r.on_frame(frame_at(frame, panels.add({0, 0, 0}, Eigen::Quaterniond::Identity(), 100).take()));
+      const RenderOutput out = ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0, -0.003, 0})));
+      if (frame < 10) continue;
+      const Vec3 up_W = out.tool->orientation_W * Vec3::UnitY();
+      heights += std::pow(out.proxy_W.y() - kHalf_m.y(), 2);
+      tilts += std::pow(std::hypot(up_W.x(), up_W.z()), 2) / 2;
+      ++count;
+    }
+    EXPECT_LT(std::sqrt(heights / count), 4 * height_m) << sigma;
+    EXPECT_LT(std::sqrt(tilts / count), 4 * slope) << sigma;
+  }
+}
+
+// The rim is as high on all sides, so that the middle of what is lowest is over the hole, where no sheet is
+// seen. Over a wide hole the plate lies on points as they were measured, within their noise.
+TEST(TrackedTool, LiesOnTheRimOfAHole) {
+  for (const double radius_m : {0.01, 0.014, 0.018}) {
+    TrackedToolRenderer r = renderer();
+    const double sigma_m = 0.3 * kUnit_m;
+    Panels panels(sigma_m, 6);
+    for (int frame = 0; frame < 20; ++frame) {
+      const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity(), 100).take();
+      PointCloud rim;
+      for (std::size_t i = 0; i < floor.size(); ++i)
+        if (std::hypot(floor.x[i], floor.z[i]) > radius_m) rim.append(floor.point(i), Vec3::UnitY());
+      r.on_frame(frame_at(frame, rim));
+      const RenderOutput out =
+          ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0.0005 * frame, -0.003, 0})));
+      ASSERT_TRUE(out.proxy_W.allFinite()) << frame;
+      if (frame < 10) continue;
+      EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 3 * sigma_m) << radius_m << " " << frame;
+    }
+  }
+}
+
+// Every bit is that of the tool of chapter 6 if the scene has no noise and rests.
+TEST(TrackedTool, EqualsThePlainToolAtRestWithoutNoise) {
+  TrackedToolRenderer r = renderer();
+  ToolParameters p;
+  p.max_force_N = 1000, p.max_torque_Nm = 100;
+  ToolRenderer plain(p, scenes::box_tool(kHalf_m), scenes::kernels());
+  Panels panels(0);
+  const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity()).take();
+  for (int frame = 0; frame < 20; ++frame) {
+    r.on_frame(frame_at(frame, floor)), plain.on_frame(frame_at(frame, floor));
+    const Vec3 at_W(0.0007 * frame, -0.001 * frame, 0.0003 * frame);
+    const DeviceState hand = approaching(frame, Vec3::UnitY(), device(at_W, rotation({0.01 * frame, 0, 0})));
+    const RenderOutput out = ticks(r, frame, hand), expected = ticks(plain, frame, hand);
+    EXPECT_EQ(out.proxy_W, expected.proxy_W) << frame;
+    EXPECT_EQ(out.tool->orientation_W.coeffs(), expected.tool->orientation_W.coeffs()) << frame;
+    EXPECT_EQ(out.force_N, expected.force_N) << frame;
+    EXPECT_EQ(out.tool->torque_Nm, expected.tool->torque_Nm) << frame;
+  }
+}
+
+// The plate lies on a plane that turns about z by 2 degrees a frame and rises: it turns with it.
+TEST(TrackedTool, ATiltingPlaneTakesThePlateAlong) {
+  for (const double sigma : {0.0, 0.5}) {
+    TrackedToolRenderer r = renderer();
+    Panels panels(sigma * kUnit_m, 3);
+    for (int frame = 0; frame < 22; ++frame) {
+      const int moved = std::max(0, frame - 8);
+      const Eigen::Quaterniond turn = rotation({0, 0, 0.035 * moved});
+      const Vec3 middle_W(0, 0.004 * moved, 0);
+      r.on_frame(frame_at(frame, panels.add(middle_W, turn, 100).take()));
+      const Vec3 n_W = turn * Vec3::UnitY();
+      const RenderOutput out =
+          ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0, middle_W.y() - 0.003, 0})));
+      if (frame < 8) continue;
+      const Vec3 up_W = out.tool->orientation_W * Vec3::UnitY();
+      EXPECT_NEAR((up_W - n_W).norm(), 0, 0.005 + 0.02 * sigma) << sigma << " in frame " << frame;
+      EXPECT_NEAR((out.proxy_W - middle_W).dot(n_W), kHalf_m.y(), 2e-4 + 6e-4 * sigma)
+          << sigma << " in frame " << frame;
+    }
+  }
+}
+
+// The force has no step at a frame on a plane that rises by 5 mm a frame with the hand 8 mm below it. Nor has
+// the torque on a plane that turns, too. There the plate slides down the slope, so the force along it
+// changes.
+TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
+  for (const double turn_rad : {0.0, 0.02}) {
+    TrackedToolRenderer r = renderer();
+    Panels panels(0);
+    RenderOutput last;
+    for (int tick = 0, frame = -1; tick < 700; ++tick) {
+      const double time_s = 0.001 * tick;
+      const bool is_new = static_cast<int>(time_s * kFrames_hz) > frame;
+      const auto rise_m = [](double moved) { return 0.005 * std::max(0.0, moved - 8); };
+      if (is_new) {
+        ++frame;
+        panels.add({0, rise_m(frame), 0}, rotation({0, 0, turn_rad * std::max(0, frame - 8)}));
+        r.on_frame(frame_at(frame, panels.take()));
+      }
+      const double hand_m = std::max(0.03 - 0.2 * time_s, -0.003) + rise_m(time_s * kFrames_hz);
+      const RenderOutput out = r.step(device({0, hand_m, 0}), time_s);
+      if (is_new && frame > 11) {  // steps of 3 N and 0.011 N m without (4.15)
+        if (turn_rad == 0) {
+          EXPECT_LT((out.force_N - last.force_N).norm(), 0.25) << frame;
+        }
+        EXPECT_LT((out.tool->torque_Nm - last.tool->torque_Nm).norm(), 0.0015) << frame;
+      }
+      last = out;
+    }
+  }
+}
+
+// A floor and a wall, both noisy; both move. The tool stays at its distance from both, but for single frames
+// in which a point of the corner that is on neither sheet holds it, by up to 3.5 sigma.
+TEST(TrackedTool, AFloorAndAWallAreTwoSheets) {
+  const double sigma_m = 0.2 * kUnit_m;
+  TrackedToolRenderer r = renderer();
+  Panels panels(sigma_m, 9);
+  std::vector<double> errors_m;
+  for (int frame = 0; frame < 34; ++frame) {
+    const double moved_m = 0.002 * std::max(0, frame - 14);
+    panels.add({0.03, moved_m, 0}, Eigen::Quaterniond::Identity(), 100);
+    panels.add({-0.05 + moved_m, 0.06 + moved_m, 0}, rotation({0, 0, -0.5 * M_PI}), 80);
+    r.on_frame(frame_at(frame, panels.take()));
+    const DeviceState end = device({-0.035 + moved_m, moved_m - 0.003, 0});
+    const RenderOutput out = ticks(r, frame, approaching(frame, Vec3(1, 1, 0), end));
+    if (frame < 14) continue;
+    errors_m.push_back(std::abs(out.proxy_W.y() - moved_m - kHalf_m.y()));
+    errors_m.push_back(std::abs(out.proxy_W.x() - moved_m + 0.05 - kHalf_m.x()));
+  }
+  std::sort(errors_m.begin(), errors_m.end());
+  EXPECT_LT(errors_m[errors_m.size() / 2], 0.5 * sigma_m);
+  EXPECT_LT(errors_m.back(), 3.5 * sigma_m);
+  int tracked = 0;
+  for (std::size_t i = 0; i < r.patches().size(); ++i) tracked += r.patches().tracks(i) ? 1 : 0;
+  EXPECT_EQ(tracked, 2);
+}
+
+// A plane of 1 m/s crosses a free plate of 1 cm by 3 cm a frame, in noise: it takes the plate along.
+TEST(TrackedTool, ASheetThatSweepsOverAFreeToolTakesItAlong) {
+  for (const double sigma : {0.0, 0.4}) {
+    TrackedToolRenderer r = renderer();
+    Panels panels(sigma * kUnit_m, 2);
+    RenderOutput out;
+    double height_m = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+      height_m = -0.12 + frame / kFrames_hz;
+      r.on_frame(frame_at(frame, panels.add({0, height_m, 0}, Eigen::Quaterniond::Identity(), 100).take()));
+      out = ticks(r, frame, device({0, 0, 0}));
+    }
+    EXPECT_NEAR(out.proxy_W.y() - height_m, kHalf_m.y(), 5e-4 + 1e-3 * sigma) << sigma;
+  }
+}
+
+// The tool bridges one frame without points. After that it is released.
+TEST(TrackedTool, AMissingSurfaceHoldsForOneFrame) {
+  TrackedToolRenderer r = renderer();
+  Panels panels(0);
+  const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity()).take();
+  const auto held_m = [&](int frame) {
+    return ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0, -0.003, 0}))).proxy_W.y();
+  };
+  for (int frame = 0; frame < 10; ++frame) {
+    r.on_frame(frame_at(frame, frame == 7 ? PointCloud{} : floor));
+    const double height_m = held_m(frame);
+    if (frame > 4) {
+      EXPECT_NEAR(height_m, kHalf_m.y(), 1e-4) << frame;
+    }
+  }
+  r.on_frame(frame_at(10, {}));
+  EXPECT_NEAR(held_m(10), kHalf_m.y(), 1e-4);
+  r.on_frame(frame_at(11, {}));
+  EXPECT_EQ(held_m(11), -0.003);
+}
+
+// A minute without frames, then one without the surface, and no other: the surface is held for three frames,
+// not for another minute.
+TEST(TrackedTool, APauseDoesNotProlongTheTimeForWhichAMissingSurfaceIsHeld) {
+  TrackedToolRenderer r = renderer();
+  Panels panels(0);
+  const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity()).take();
+  for (int frame = 0; frame < 6; ++frame) {
+    r.on_frame(frame_at(frame, floor));
+    ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0, -0.003, 0})));
+  }
+  r.on_frame(frame_at(1800, {}));
+  EXPECT_NEAR(ticks(r, 1802, device({0, -0.003, 0})).proxy_W.y(), kHalf_m.y(), 1e-4);
+  EXPECT_EQ(ticks(r, 1804, device({0, -0.003, 0})).proxy_W.y(), -0.003);
+}
+
+TEST(TrackedTool, FramesAndTicksAllocateNothing) {
+  TrackedToolRenderer r = renderer();
+  Panels panels(0.4 * kUnit_m, 4);
+  std::vector<Frame> frames;
+  for (int i = 0; i < 12; ++i) {
+    panels.add({0.03, 0.001 * i, 0}, Eigen::Quaterniond::Identity(), 60);
+    panels.add({-0.03, 0.05, 0}, rotation({0, 0, -0.5 * M_PI}), 50);
+    frames.push_back(frame_at(i, panels.take()));
+    r.prepare(frames.back());
+  }
+  r.reserve(frames[0].points->size());
+  r.on_frame(frames[0]);
+  ticks(r, 0, approaching(0, Vec3::UnitY(), device({0, -0.003, 0})));
+  const std::size_t before = allocation_count();
+  for (int i = 1; i < 12; ++i) {
+    r.on_frame(frames[static_cast<std::size_t>(i)]);
+    ticks(r, i, approaching(i, Vec3::UnitY(), device({0.002 * i - 0.03, -0.003, 0})));
+  }
+  EXPECT_EQ(allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace remote_touch::tracked_tool_renderer_test

@@ -1,0 +1,283 @@
+#include "core/dissertation/depth/depth_pipeline.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/core/dissertation/depth/depth_cases.h"
+
+namespace remote_touch::depth_pipeline_test {
+namespace {
+
+using namespace depth_cases;
+
+TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
+  const scenes::DepthScene scene = with_holes(noisy_waves(333, 250), 0.05);
+  for (const Settings& settings :
+       {Settings{}, Settings{true, 5, 0.02, 11, 0.01}, Settings{false, 9, 0.02, 9, 0.014},
+        Settings{true, 3, 0.02, 9, 0.014, 2}, Settings{true, 7, 0.02, 13, 0.02, 3}, kFastDepthPipeline,
+        Settings{true, 5, 0.02, 13, 0.02, 3, NormalFit::inverse_depth},
+        Settings{false, 3, 0.02, 15, 0.02, 1, NormalFit::inverse_depth, true}}) {
+    const PointCloud expected = processed(scene, settings);
+    for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
+      if (isa > best_isa()) continue;
+      for (const int threads : {1, 2, 5}) {
+        omp_set_num_threads(threads);
+        DepthPipeline pipeline(settings, kernels_for(isa));
+        EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, kIdentity), expected))
+            << kernels_for(isa).isa << ", threads: " << threads;
+      }
+    }
+  }
+  omp_set_num_threads(omp_get_num_procs());
+}
+
+TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
+  scenes::DepthScene scene = with_holes(noisy_waves(200, 150), 0.05);
+  // Rows behind the image in memory, which continue its surface, must have no part in it.
+  const std::size_t pixels = scene.depth.z_m.size();
+  scene.depth.z_m.reserve(2 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) scene.depth.z_m.push_back(scene.depth.z_m[pixels - 200 + i % 200]);
+  scene.depth.z_m.resize(pixels);
+  const RigidTransform X_WC = some_pose();
+  for (const Settings& settings : {Settings{}, Settings{true, 5, 0.02, 13, 0.02, 3}, kFastDepthPipeline,
+                                   Settings{true, 15, 0.02, 15, 0.02, 1, NormalFit::inverse_depth, true}}) {
+    DepthPipeline pipeline(settings, best());
+    const PointCloud whole = pipeline.process(scene.depth, scene.camera, X_WC);
+    PointCloud part;
+    for (const PixelRectangle& at :
+         {PixelRectangle{70, 50, 50, 50}, PixelRectangle{0, 0, 9, 150}, PixelRectangle{3, 2, 1, 1},
+          PixelRectangle{150, 140, 50, 10}, PixelRectangle{0, 0, 200, 150}, PixelRectangle{10, 10, 0, 5}}) {
+      pipeline.process(scene.depth, scene.camera, X_WC, at, part);
+      ASSERT_EQ(part.size(), static_cast<std::size_t>(at.width * at.height));
+      PointCloud expected;
+      for (int v = at.top; v < at.top + at.height; ++v)
+        for (int u = at.left; u < at.left + at.width; ++u) {
+          const std::size_t i = static_cast<std::size_t>(v * 200 + u);
+          expected.append(whole.point(i), whole.normal(i));
+        }
+      EXPECT_TRUE(same_bits(part, expected)) << at.left << " " << at.top;
+      ASSERT_TRUE(part.image);
+      const CameraIntrinsics& own = part.image->camera;
+      EXPECT_EQ(own.width * own.height, at.width * at.height);
+      EXPECT_EQ(unproject(own, 0, 0, 1).x(), unproject(scene.camera, at.left, at.top, 1).x());
+    }
+  }
+}
+
+TEST(DepthPipeline, HolesAreNoPointsAndDoNotMatter) {
+  scenes::DepthScene scene = noisy_waves(160, 120);
+  scenes::add_holes(scene.depth, 0.3, 5, {kNaN});
+  DepthPipeline pipeline({}, best());
+  const PointCloud expected = pipeline.process(scene.depth, scene.camera, kIdentity);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const bool there = !std::isnan(scene.depth.z_m[i]);
+    ASSERT_EQ(pipeline.valid()[i], there ? 1 : 0) << i;
+    ASSERT_EQ(std::isnan(expected.x[i]) || std::isnan(expected.y[i]) || std::isnan(expected.z[i]), !there)
+        << i;
+    ASSERT_EQ(has_normal(expected, i), there) << i;  // so many neighbours always make a plane
+  }
+  for (const double value : kNoDepth) {
+    scenes::DepthScene other = noisy_waves(160, 120);
+    scenes::add_holes(other.depth, 0.3, 5, {value});
+    EXPECT_TRUE(same_bits(pipeline.process(other.depth, other.camera, kIdentity), expected)) << value;
+  }
+}
+
+TEST(DepthPipeline, FramesWithoutPointsAndTinyOnes) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 5}, {3, 3}, {40, 30}, {0, 0}}) {
+    scenes::DepthScene scene = scenes::plane(scenes::kinect(width, height), {0.1, 0.2, 1}, 0.8);
+    const PointCloud cloud = processed(scene);
+    ASSERT_EQ(cloud.size(), static_cast<std::size_t>(width * height));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      EXPECT_FALSE(std::isnan(cloud.x[i]));
+      EXPECT_EQ(has_normal(cloud, i), width > 2)
+          << width << " x " << height;  // else the points are on a line
+    }
+    for (double& z : scene.depth.z_m) z = kNaN;
+    DepthPipeline pipeline({}, best());
+    const PointCloud none = pipeline.process(scene.depth, scene.camera, kIdentity);
+    for (std::size_t i = 0; i < none.size(); ++i) {
+      EXPECT_TRUE(std::isnan(none.x[i]) && std::isnan(none.nx[i]));
+      EXPECT_EQ(pipeline.valid()[i], 0);
+    }
+  }
+}
+
+// Rows, columns and diagonals of single points, as at the rim of what a camera sees.
+TEST(DepthPipeline, PointsOnALineHaveNoNormal) {
+  const scenes::DepthScene full = scenes::plane(scenes::kinect(80, 60), {0.3, 0.2, 1}, 0.8);
+  for (const auto& [du, dv] : {std::pair{1, 0}, {0, 1}, {1, 1}, {2, 1}}) {
+    scenes::DepthScene scene = full;
+    for (int v = 0; v < 60; ++v)
+      for (int u = 0; u < 80; ++u)
+        if ((u - 40) * dv != (v - 30) * du) scene.depth.z_m[static_cast<std::size_t>(v * 80 + u)] = kNaN;
+    for (Settings settings : {Settings{}, kFastDepthPipeline}) {
+      settings.filter = false;  // a filter would bend the line
+      const PointCloud cloud = processed(scene, settings);
+      std::size_t points = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        points += !std::isnan(cloud.x[i]);
+        EXPECT_FALSE(has_normal(cloud, i)) << i;
+      }
+      EXPECT_GT(points, 25u);
+    }
+  }
+}
+
+TEST(DepthPipeline, NormalsOfAPlaneAndASphere) {
+  const scenes::DepthScene plane = scenes::plane(scenes::kinect(160, 120), {0.4, -0.7, 1}, 0.7);
+  Settings settings, fast = kFastDepthPipeline;
+  settings.filter = fast.filter = false;
+  const PointCloud flat = processed(plane, settings), fast_flat = processed(plane, fast);
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    ASSERT_LE(angle_deg(flat.normal(i), plane.normals[i]), 0.01) << i;
+    ASSERT_LE(angle_deg(fast_flat.normal(i), plane.normals[i]), 0.01) << i;
+  }
+
+  // Within 45 degrees of the axis, away from the rim; the window's points are even on all sides of the centre
+  // but for perspective and curvature.
+  const scenes::DepthScene ball = scenes::sphere(scenes::kinect(160, 120), {0, 0, 0.7}, 0.06);
+  const PointCloud round = processed(ball, settings);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < round.size(); ++i) {
+    if (std::isnan(round.x[i]) || ball.normals[i].z() > -0.7) continue;
+    ASSERT_LE(angle_deg(round.normal(i), ball.normals[i]), 1.0) << i;
+    ++seen;
+  }
+  EXPECT_GT(seen, 3000u);
+}
+
+TEST(DepthPipeline, NormalsAreUnitVectorsTowardsTheSensor) {
+  const RigidTransform X_WC = some_pose();
+  for (const Settings& settings : {Settings{}, kFastDepthPipeline}) {
+    const PointCloud cloud = processed(with_holes(noisy_waves(160, 120, 0.01)), settings, X_WC);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!has_normal(cloud, i)) continue;
+      ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
+      ASSERT_GT(cloud.normal(i).dot(X_WC.translation() - cloud.point(i)), 0) << i;
+    }
+  }
+}
+
+TEST(DepthPipeline, APoseMovesPointsAndNormals) {
+  const scenes::DepthScene scene = noisy_waves(80, 60);
+  const RigidTransform X_WC = some_pose();
+  const PointCloud at_origin = processed(scene), moved = processed(scene, {}, X_WC);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    ASSERT_LE((moved.point(i) - X_WC * at_origin.point(i)).norm(), 1e-15 * 8);
+    ASSERT_LE((moved.normal(i) - X_WC.linear() * at_origin.normal(i)).norm(), 1e-15 * 8);
+  }
+  EXPECT_TRUE(moved.image->X_WC.isApprox(X_WC));
+}
+
+TEST(DepthPipeline, KeepsMeasuredPointsIfTheFilterIsOff) {
+  const scenes::DepthScene scene = with_holes(noisy_waves(80, 60));
+  Settings settings;
+  settings.filter = false;
+  const PointCloud cloud = processed(scene, settings);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    ASSERT_TRUE(std::isnan(cloud.x[i]) || cloud.z[i] == scene.depth.z_m[i]) << i;
+}
+
+TEST(DepthPipeline, ACloudKeepsItsOtherColumns) {
+  scenes::DepthScene scene = noisy_waves(120, 90);
+  scenes::add_holes(scene.depth, 0.1, 5, {kNaN});
+  const RigidTransform X_WC = some_pose();
+  PointCloud cloud = cloud_from_depth(scene.depth, scene.camera, X_WC);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.colour.push_back(static_cast<std::uint32_t>(i));
+    cloud.fixture_radius_m.push_back(1e-6 * static_cast<double>(i));
+  }
+  for (const bool filter : {true, false}) {
+    Settings settings;
+    settings.filter = filter;
+    const PointCloud expected = processed(scene, settings, X_WC);
+    PointCloud got = cloud;
+    DepthPipeline(settings, best()).process(got);
+    EXPECT_EQ(got.colour, cloud.colour);
+    EXPECT_EQ(got.fixture_radius_m, cloud.fixture_radius_m);
+    EXPECT_TRUE(filter ||
+                (same_bits(got.x, cloud.x) && same_bits(got.y, cloud.y) && same_bits(got.z, cloud.z)));
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      ASSERT_EQ(std::isnan(got.x[i]), std::isnan(expected.x[i])) << i;
+      if (std::isnan(got.x[i])) continue;
+      ASSERT_LE((got.point(i) - expected.point(i)).norm(), 1e-7) << i;  // depths differ by a rounding
+      ASSERT_LE(angle_deg(got.normal(i), expected.normal(i)), 1e-3) << i;
+    }
+  }
+}
+
+// The dissertation's 0.025 m against 0.01 m, on a step of 25 mm at 0.8 m with 1.5 mm of noise.
+TEST(DepthPipeline, ANarrowFilterKeepsAStepAndTakesAwayAsMuchNoise) {
+  const auto with = [](double sigma_f_m) {
+    Settings settings;
+    settings.sigma_f_m = sigma_f_m;
+    return scenes::smear_of_step(0.8, 0.025, 0.0015,
+                                 [&](const DepthImage& depth, const CameraIntrinsics& camera) {
+                                   return DepthPipeline(settings, best()).process(depth, camera, kIdentity).z;
+                                 });
+  };
+  const scenes::StepSmear wide = with(0.025), narrow = with(0.010);
+  printf("sigma_f 0.025 m: largest error %.2f mm, noise x %.3f; 0.010 m: %.2f mm, x %.3f\n",
+         1e3 * wide.max_error_m, wide.noise_gain, 1e3 * narrow.max_error_m, narrow.noise_gain);
+  EXPECT_NEAR(wide.max_error_m, 0.008, 0.0005);
+  EXPECT_NEAR(narrow.max_error_m, 0.0008, 0.0002);
+  EXPECT_NEAR(narrow.noise_gain / wide.noise_gain, 1, 0.15);
+  EXPECT_LT(wide.noise_gain, 0.13);  // 1/9 of 81 equal weights
+}
+
+TEST(DepthPipeline, AllocatesNothingAfterTheFirstFrame) {
+  const scenes::DepthScene scene = noisy_waves(160, 120);
+  omp_set_num_threads(1);  // the threads' own memory is not ours
+  DepthPipeline pipeline({}, best());
+  PointCloud cloud, organised = cloud_from_depth(scene.depth, scene.camera, kIdentity);
+  pipeline.process(scene.depth, scene.camera, kIdentity, cloud);
+  pipeline.process(organised);
+  const std::size_t before = allocation_count();
+  pipeline.process(scene.depth, scene.camera, kIdentity, cloud);
+  pipeline.process(organised);
+  EXPECT_EQ(allocation_count(), before);
+  pipeline.process(scene.depth, scene.camera, kIdentity);
+  EXPECT_GT(allocation_count(), before);  // the counter counts
+  omp_set_num_threads(omp_get_num_procs());
+}
+
+TEST(DepthPipeline, RefusesWhatDoesNotFit) {
+  Settings even;
+  even.filter_window = 8;
+  EXPECT_EQ(validate(even), "filter_window = 8: expected odd numbers, 3 to 15");
+  EXPECT_THROW(DepthPipeline(even, best()), std::invalid_argument);
+  even = {};
+  even.normal_window = 10;
+  EXPECT_EQ(validate(even), "normal_window = 10: expected odd numbers, 3 to 15");
+  Settings odd_step;
+  odd_step.normal_step = 3;
+  EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4, half of normal_window - 1");
+  EXPECT_THROW(DepthPipeline(odd_step, best()), std::invalid_argument);
+  Settings sharp;
+  sharp.sharp_edges = true;
+  EXPECT_EQ(validate(sharp), "sharp_edges = true: expected normal_fit = inverse-depth");
+  EXPECT_THROW(DepthPipeline(sharp, best()), std::invalid_argument);
+  EXPECT_EQ(validate(kFastDepthPipeline), "");
+  EXPECT_EQ(validate(Settings{}), "");
+  Settings settings;
+  for (const Parameter& parameter : parameters(settings))
+    EXPECT_TRUE(parameter.help.find("(7.") != std::string::npos ||
+                parameter.help.find("6.2.1") != std::string::npos);
+
+  const scenes::DepthScene scene = scenes::plane(scenes::kinect(20, 10), {0, 0, 1}, 0.8);
+  DepthPipeline pipeline({}, best());
+  PointCloud cloud;
+  EXPECT_THROW(pipeline.process(scene.depth, scenes::kinect(10, 20), kIdentity), std::invalid_argument);
+  EXPECT_THROW(pipeline.process(cloud), std::invalid_argument);
+  for (const PixelRectangle& at : {PixelRectangle{-1, 0, 5, 5}, {0, 6, 5, 5}, {16, 0, 5, 5}, {0, 0, -1, 5}})
+    EXPECT_THROW(pipeline.process(scene.depth, scene.camera, kIdentity, at, cloud), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace remote_touch::depth_pipeline_test

@@ -1,0 +1,272 @@
+// Guidance on top of the renderers: what is added to their wrench, when, and what a task switches.
+#include "core/dissertation/guidance/guided_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/core/dissertation/guidance/guided_scene.h"
+
+namespace remote_touch::guided_renderer_test {
+namespace {
+
+using namespace guided_scene;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class EveryRenderer : public testing::TestWithParam<Inner> {};
+INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, Inner::tool), inner_name);
+
+// --- the wrench ---
+
+// Beside a renderer of the same kind that knows no guidance, in a press into the grid.
+TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
+  GuidedRenderer r = guided(GetParam(), {guide("valve")});
+  const auto alone = inner(GetParam());
+  const ToolPose goal{{0.02, 0.05, 0}, Eigen::Quaterniond::Identity()};
+  r.on_frame(frame({target(goal.p_W)})), alone->on_frame(frame({}));
+  bool touched = false;
+  for (int i = 0; i < 200; ++i) {
+    const DeviceState d = device({0, 0.03 - 2.5e-4 * i, 0}, {0.002 * i, 0, 0.1});
+    const RenderOutput out = r.step(d, 0.001 * i), plain_out = alone->step(d, 0.001 * i);
+    const Wrench wrench = guidance_wrench(plain(), -1, goal, {d.position_W, d.orientation_W.normalized()});
+    EXPECT_EQ(out.guidance->force_N, wrench.force_N);
+    EXPECT_EQ(out.force_N, Vec3(plain_out.force_N + wrench.force_N));
+    EXPECT_EQ(out.proxy_W, plain_out.proxy_W);
+    EXPECT_EQ(out.status, plain_out.status);
+    EXPECT_TRUE(out.guidance->active);
+    EXPECT_EQ(out.guidance->goal_W, goal.p_W);
+    EXPECT_EQ(out.tool.has_value(), GetParam() == Inner::tool);
+    if (out.tool) {
+      EXPECT_EQ(out.guidance->torque_Nm, wrench.torque_Nm);
+      EXPECT_EQ(out.tool->torque_Nm, Vec3(plain_out.tool->torque_Nm + wrench.torque_Nm));
+    } else {
+      EXPECT_EQ(out.guidance->torque_Nm, Vec3::Zero()) << "there is nothing that it turns";
+    }
+    touched |= plain_out.force_N.norm() > 1;
+  }
+  EXPECT_TRUE(touched);
+}
+
+TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
+  FixtureValues soft = guide("valve");
+  soft.stiffness_N_per_m = 10;
+  GuidedRenderer r = guided(GetParam(), {soft});
+  r.on_frame(frame({target(kAbove + Vec3(0.1, 0, 0))}));
+  EXPECT_LT((r.step(device(kAbove), 0).force_N - Vec3(1, 0, 0)).norm(), 1e-12);
+}
+
+TEST_P(EveryRenderer, NoGuidanceBeforeAFrameOrWithoutATarget) {
+  GuidedRenderer r = guided(GetParam(), {guide("valve")});
+  expect_no_guidance(r.step(device(kAbove), 0));
+  r.on_frame(frame({}));
+  expect_no_guidance(r.step(device(kAbove), 0.001));
+  GuidanceTarget few = target(kLeft);
+  few.points = 19;
+  r.on_frame(frame({few}, 1));
+  expect_no_guidance(r.step(device(kAbove), 0.002));
+  r.on_frame(frame({target(kLeft)}, 2));
+  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->active);
+  r.on_frame(frame({GuidanceTarget{}}, 3));
+  expect_no_guidance(r.step(device(kAbove), 0.004));
+}
+
+TEST_P(EveryRenderer, ADeviceThatIsNotFiniteIsNotPulled) {
+  GuidedRenderer r = guided(GetParam(), {guide("valve")});
+  r.on_frame(frame({target(kLeft)}));
+  r.step(device(kAbove), 0);
+  expect_no_guidance(r.step(device({kNaN, 0, 0}), 0.001));
+  expect_no_guidance(r.step(device({0, 2e6, 0}), 0.002));
+  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->active);
+}
+
+TEST_P(EveryRenderer, AStaleFrameLeavesTheTarget) {
+  GuidedRenderer r = guided(GetParam(), {guide("valve")});
+  r.on_frame(frame({target(kLeft)}, 5));
+  for (const int index : {4, 5}) {
+    r.on_frame(frame({target(kRight)}, index));
+    const RenderOutput out = r.step(device(kAbove), 0.2);
+    EXPECT_EQ(out.status, RenderStatus::stale_frame_dropped);
+    EXPECT_EQ(out.guidance->goal_W, kLeft);
+  }
+  r.on_frame(frame({target(kRight)}, 6));
+  EXPECT_EQ(r.step(device(kAbove), 0.3).guidance->goal_W, kRight);
+}
+
+// --- which fixtures begin how ---
+
+TEST(GuidedRenderer, AFixtureBeginsAsTheOppositeOfItsFirstAction) {
+  const auto switches = std::make_shared<FixtureSwitches>();
+  switches->set(3, false);  // left over from an earlier run
+  SequenceStep first = step(FixtureAction::wait, "");
+  first.not_before_s = 1;
+  using enum FixtureAction;
+  const GuidedRenderer r =
+      guided(Inner::proxy, {region("later"), guide("valve"), region("until"), region("always"), region("")},
+             {first, step(lock, "later"), step(unlock, "until"), step(unlock, "later"), step(lock, "until")},
+             plain(), switches);
+  EXPECT_FALSE(switches->is_on(0));
+  EXPECT_TRUE(switches->is_on(2) && switches->is_on(3) && switches->is_on(4));
+}
+
+TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
+  SequenceStep first = step(FixtureAction::wait, "");
+  first.not_before_s = 1;
+  using enum FixtureAction;
+  const std::pair<std::vector<SequenceStep>, bool> cases[] = {
+      {{}, true},
+      {{first}, true},
+      {{first, step(activate, "valve")}, false},
+      {{first, step(release, "valve"), step(activate, "valve")}, true},
+      {{first, step(activate, "valve"), step(release, "valve")}, false},
+      // Waiting for a fixture is not an action on it.
+      {{until_reached(step(wait, "valve"))}, true},
+      {{until_reached(step(wait, "valve")), step(activate, "valve")}, false}};
+  for (const auto& [steps, active] : cases) {
+    GuidedRenderer r = guided(Inner::proxy, {guide("valve")}, steps);
+    r.on_frame(frame({target(kLeft)}));
+    EXPECT_EQ(r.step(device(kAbove), 0).guidance->active, active) << steps.size();
+  }
+}
+
+// --- tasks ---
+
+TEST(GuidedRenderer, OnlyTheActivatedFixturePulls) {
+  using enum FixtureAction;
+  const StepStart button = StepStart::button;
+  GuidedRenderer r = guided(
+      Inner::proxy, {guide("left"), region("table"), guide("right"), guide("")},
+      {step(activate, "left", button), step(activate, "right", button), step(release, "right", button)});
+  r.on_frame(frame({target(kLeft), target(kRight), target(kAbove + Vec3(0, 0.01, 0))}));
+  const auto pulled_to = [&](std::uint32_t buttons, double time_s) {
+    const RenderOutput out = r.step(device(kAbove, Vec3::Zero(), buttons), time_s);
+    EXPECT_EQ(out.force_N, out.guidance->force_N);
+    return std::pair{out.guidance->goal_W, out.force_N};
+  };
+  EXPECT_LT((pulled_to(0, 0).second - Vec3(0, 2, 0)).norm(), 1e-12) << "the one that no step names";
+  EXPECT_EQ(pulled_to(1, 0.001).first, kLeft);
+  EXPECT_LT((pulled_to(0, 0.002).second - Vec3(-4, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(pulled_to(1, 0.003).first, kRight);
+  EXPECT_LT((pulled_to(0, 0.004).second - Vec3(4, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(pulled_to(1, 0.005).second, Vec3::Zero());
+}
+
+TEST(GuidedRenderer, AStepBringsItsOwnOffset) {
+  using enum FixtureAction;
+  SequenceStep near = until_reached(step(activate, "valve")), at = step(activate, "valve");
+  near.offset_m = {0, 0, 0.02};
+  GuidedRenderer r = guided(Inner::proxy, {guide("valve")}, {near, at});
+  r.on_frame(frame({target(kLeft)}));
+  EXPECT_EQ(r.step(device(kAbove), 0).guidance->goal_W, Vec3(kLeft + Vec3(0, 0, 0.02)));
+  EXPECT_EQ(r.step(device(kLeft + Vec3(0, 0, 0.02)), 0.001).guidance->goal_W, kLeft);
+}
+
+// 2 cm is the fixture's radius; a tool has to be turned to it as well, within 5 degrees.
+TEST_P(EveryRenderer, AGoalIsReachedWithinTheFixturesRadiusAndAngle) {
+  struct Case {
+    Vec3 place, turn;
+    bool proxy, tool;
+  };
+  const double degree = 3.14159265358979323846 / 180;
+  const Case cases[] = {{kLeft, {0, 0, 0}, true, true},
+                        {kLeft + Vec3(0.0199, 0, 0), {0, 0, 0}, true, true},
+                        {kLeft + Vec3(0.0201, 0, 0), {0, 0, 0}, false, false},
+                        {kLeft, {0, 4.9 * degree, 0}, true, true},
+                        {kLeft, {0, 5.1 * degree, 0}, true, false},
+                        {kLeft, {0, -170 * degree, 0}, true, false}};
+  for (const Case& c : cases) {
+    GuidedRenderer r =
+        guided(GetParam(), {guide("valve")}, {until_reached(step(FixtureAction::activate, "valve"))});
+    r.on_frame(frame({target(kLeft)}));
+    EXPECT_EQ(r.step(device(kAbove), 0).guidance->sequence_step, 0);
+    const RenderOutput out = r.step(device(c.place, c.turn), 0.001);
+    const bool reached = GetParam() == Inner::tool ? c.tool : c.proxy;
+    EXPECT_EQ(out.guidance->sequence_step, reached ? 1 : 0)
+        << c.place.transpose() << ", " << c.turn.transpose();
+    EXPECT_EQ(out.guidance->sequence_running, !reached);
+  }
+}
+
+// Behind a surface the device can be at the goal where the tool, which the robot follows, is not.
+TEST_P(EveryRenderer, ItIsTheToolThatReachesAGoal) {
+  GuidedRenderer r =
+      guided(GetParam(), {guide("valve")}, {until_reached(step(FixtureAction::activate, "valve"))});
+  const Vec3 behind(0, -0.03, 0);
+  r.on_frame(frame({target(behind)}));
+  RenderOutput out;
+  for (int i = 0; i <= 300; ++i) out = r.step(device({0, std::max(-0.03, 0.03 - 3e-4 * i), 0}), 0.001 * i);
+  ASSERT_GT(out.proxy_W.y(), -0.005);
+  EXPECT_EQ(out.guidance->sequence_step, 0);
+}
+
+TEST(GuidedRenderer, AGoalThatIsNotSeenIsNotReached) {
+  GuidedRenderer r =
+      guided(Inner::proxy, {guide("valve")}, {until_reached(step(FixtureAction::wait, "valve"))});
+  EXPECT_EQ(r.step(device({0, 0, 0}), 0).guidance->sequence_step, 0);
+  r.on_frame(frame({GuidanceTarget{}}));
+  EXPECT_EQ(r.step(device({0, 0.1, 0}), 0.001).guidance->sequence_step, 0);
+}
+
+TEST(GuidedRenderer, ReportsTheCurrentStepOfTheTask) {
+  using enum FixtureAction;
+  SequenceStep timed = until_reached(step(activate, "valve"));
+  timed.deadline_s = 0.01;
+  GuidedRenderer r =
+      guided(Inner::proxy, {guide("valve")}, {timed, step(release, "valve", StepStart::button)});
+  r.on_frame(frame({target(kLeft)}));
+  GuidanceOutput told = *r.step(device(kAbove), 0.5).guidance;
+  EXPECT_TRUE(told.sequence_running && told.sequence_step == 0 && told.sequence_missed == 0);
+  told = *r.step(device(kAbove), 0.51).guidance;
+  EXPECT_TRUE(!told.sequence_running && told.sequence_step == 1 && told.sequence_missed == 1);
+  EXPECT_TRUE(told.active) << "a step that is missed undoes nothing";
+  told = *r.step(device(kAbove, Vec3::Zero(), 1), 0.52).guidance;
+  EXPECT_TRUE(!told.active && told.sequence_step == 2);
+}
+
+// Only a step that waits until its goal is reached has a distance to it.
+TEST_P(EveryRenderer, AStepThatEndsAtOnceReportsNoDistance) {
+  const SequenceStep activate = step(FixtureAction::activate, "valve");
+  for (const bool waits : {false, true}) {
+    GuidedRenderer r = guided(GetParam(), {guide("valve")}, {waits ? until_reached(activate) : activate});
+    r.on_frame(frame({target(kAbove)}));
+    const RenderOutput out = r.step(device(kAbove), 0);
+    ASSERT_EQ(out.guidance->sequence_step, 1);
+    EXPECT_EQ(std::isnan(out.guidance->sequence_distance_m), !waits);
+    EXPECT_EQ(std::isnan(out.guidance->sequence_angle_rad), !waits);
+  }
+}
+
+TEST_P(EveryRenderer, AStepAllocatesNothing) {
+  using enum FixtureAction;
+  const StepStart button = StepStart::button;
+  const std::string left = "a label that is too long to be kept within a string itself";
+  GuidanceSettings s = plain();
+  s.orientation = GuidedOrientation::plane;
+  SequenceStep timed = until_reached(step(activate, left, button));
+  timed.deadline_s = 0.05;
+  GuidedRenderer r =
+      guided(GetParam(), {guide(left), region("table"), guide("right")},
+             {timed, step(lock, "table", button), until_reached(step(activate, "right", button)),
+              step(unlock, "table"), step(release, "right", button)},
+             s);
+  r.on_frame(frame({target(kLeft), {100, kRight, Vec3::UnitX()}}));
+  RenderOutput out;
+  for (int i = 0; i < 400; ++i) {
+    const DeviceState d = device({0, 0.08 - 3e-4 * i, 0}, {0, 0.01 * i, 0}, i % 40 == 20 ? 1 : 0);
+    const std::size_t before = allocation_count();
+    out = r.step(i == 200 ? device({kNaN, 0, 0}) : d, 0.001 * i);
+    ASSERT_EQ(allocation_count(), before) << i;
+  }
+  EXPECT_GE(out.guidance->sequence_step, 2);
+}
+
+}  // namespace
+}  // namespace remote_touch::guided_renderer_test

@@ -1,0 +1,297 @@
+#include "core/dissertation/proxy/proxy_step.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch::proxy_step_test {
+namespace {
+
+using Real = long double;
+constexpr double kDegree = 3.14159265358979323846 / 180;
+const ProxyParameters kDefault;
+const Vec3 kUp = Vec3::UnitY();
+
+Neighbourhood around(const PointCloud& cloud) {
+  Neighbourhood near(kDefault.r3_m, scenes::kernels());
+  near.set_points(make_search(cloud));
+  return near;
+}
+
+double distance(const PointCloud& cloud, std::size_t i, const Vec3& p) {
+  const Real x = Real{cloud.x[i]} - p.x(), y = Real{cloud.y[i]} - p.y(), z = Real{cloud.z[i]} - p.z();
+  return static_cast<double>(std::sqrt(x * x + y * y + z * z));
+}
+double nearest(const PointCloud& cloud, const Vec3& p) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cloud.size(); ++i) smallest = std::min(smallest, distance(cloud, i, p));
+  return smallest;
+}
+
+ContactQuery with_normal_sum(const Vec3& sum) {
+  return {0, {sum.x(), sum.y(), sum.z()}, 0, 0, 0};
+}
+
+TEST(Classify, ContactRegionIncludesBothEnds) {
+  const double r1 = kDefault.r1_m, r2 = kDefault.r2_m, infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(classify(0, kDefault), ContactState::entrenched);
+  EXPECT_EQ(classify(std::nextafter(r1, 0.0), kDefault), ContactState::entrenched);
+  EXPECT_EQ(classify(r1, kDefault), ContactState::contact);
+  EXPECT_EQ(classify(r2, kDefault), ContactState::contact);
+  EXPECT_EQ(classify(std::nextafter(r2, 1.0), kDefault), ContactState::free);
+  EXPECT_EQ(classify(infinity, kDefault), ContactState::free);
+}
+
+TEST(UnitNormal, KeepsThePreviousOneWhenTheSumIsNothing) {
+  const Vec3 previous(0, 0.6, 0.8);
+  EXPECT_EQ(unit_normal(with_normal_sum({0, 0, 0}), previous), previous);
+  EXPECT_EQ(unit_normal(with_normal_sum({1e-13, 0, -1e-13}), previous), previous);  // rounding, no direction
+  EXPECT_LT((unit_normal(with_normal_sum({0, 1e-6, 0}), previous) - kUp).norm(), 1e-15);
+  EXPECT_LT((unit_normal(with_normal_sum({30, 0, -40}), previous) - Vec3(0.6, 0, -0.8)).norm(), 1e-15);
+}
+
+// A cloud a metre away whose coordinates are what a float sensor hands over.
+TEST(FreeStep, LandsInTheContactShellAMetreAway) {
+  PointCloud cloud = scenes::flat_grid(60);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.x[i] = static_cast<float>(cloud.x[i] + 1);
+    cloud.y[i] = static_cast<float>(cloud.y[i] + 0.3);
+    cloud.z[i] = static_cast<float>(cloud.z[i] - 0.7);
+  }
+  Neighbourhood near = around(cloud);
+  const PointCloud from = scenes::random_cloud(150, 0.03, 1), to = scenes::random_cloud(150, 0.02, 2);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Vec3 p = Vec3(1, 0.3401, -0.7) + from.point(i), hip = Vec3(1, 0.27, -0.7) + to.point(i);
+    const Vec3 s = free_step(near, p, hip - p, kDefault);
+    ASSERT_LT(s.norm(), (hip - p).norm());
+    EXPECT_EQ(classify(nearest(cloud, p + s), kDefault), ContactState::contact);
+    // The rounding of positions of a metre, with much room; the shell is 1e-5 m to either side.
+    EXPECT_NEAR(nearest(cloud, p + s), kDefault.contact_radius_m(), 1e-12);
+    EXPECT_LT(s.cross(hip - p).norm(), 1e-16) << "the step leads towards the HIP";
+    for (const double fraction : {0.2, 0.5, 0.8, 0.95, 0.999})
+      EXPECT_GE(nearest(cloud, p + fraction * s), kDefault.contact_radius_m()) << "nothing is met before";
+  }
+}
+
+TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
+  PointCloud lone;
+  lone.append({0.5, 0, 0});
+  Neighbourhood near = around(lone);
+  EXPECT_NEAR(free_step(near, Vec3::Zero(), {1, 0, 0}, kDefault).x(), 0.495, 1e-15);
+  EXPECT_NEAR(free_step(near, {0, 0.003, 0}, {1, 0, 0}, kDefault).x(), 0.496, 1e-15);
+  EXPECT_NEAR(free_step(near, Vec3::Zero(), {100, 0, 0}, kDefault).x(), 0.495, 1e-13);
+  EXPECT_EQ(free_step(near, {0, 0.0051, 0}, {1, 0, 0}, kDefault), Vec3(1, 0, 0));
+}
+
+TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
+  const PointCloud cloud = scenes::random_cloud(500, 0.03, 3);
+  const PointCloud from = scenes::random_cloud(400, 0.03, 4), path_length = scenes::random_cloud(400, 1, 5);
+  const auto search = std::make_shared<BruteForceSearch>(cloud);
+  Neighbourhood kept = around(cloud);
+  int met = 0, missed = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Vec3 p = from.point(i), u = path_length.point(i).normalized();
+    if (nearest(cloud, p) <= kDefault.r2_m) continue;
+    Neighbourhood hopping = around(cloud);  // has no list yet
+    GatheredPoints all;
+    all.reserve(cloud.size(), false, false);
+    search->gather({p, 10}, scenes::kernels(), all);
+    all.finish();
+    const double first = scenes::kernels().proxy.first_hit(all.view(), p.data(), u.data(), 0.005);
+    kept.around(p);
+    for (const double limit : {0.0001, 0.004, 0.009, 0.03, 0.1, 5.0}) {
+      const double want = std::min(limit, first);
+      EXPECT_EQ(kept.first_hit(p, u, 0.005, limit), want) << limit;
+      EXPECT_EQ(hopping.first_hit(p, u, 0.005, limit), want) << limit;
+      ++(want < limit ? met : missed);
+    }
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_GT(missed, 100);
+}
+
+TEST(FreeStep, UnhinderedItIsTheWayToTheHipBitForBit) {
+  PointCloud aside;
+  aside.append({0, -1, 0});
+  Neighbourhood near = around(aside);
+  const PointCloud directions = scenes::random_cloud(100, 0.3, 6);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, directions.point(i), kDefault), directions.point(i));
+  EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, Vec3::Zero(), kDefault), Vec3(0, 0, 0));
+}
+
+TEST(FreeStep, PrintedRootPullsTheProxyBackToPointsBehind) {
+  PointCloud behind;
+  behind.append({-0.008, 0, 0});
+  Neighbourhood near = around(behind);
+  ProxyParameters printed;
+  printed.free_root = FreeRoot::smallest_magnitude;
+  const Vec3 u(0.02, 0, 0);
+  EXPECT_EQ(free_step(near, Vec3::Zero(), u, kDefault), u);
+  // Roots -0.013 and -0.003 of the point at -0.008.
+  EXPECT_LT((free_step(near, Vec3::Zero(), u, printed) - Vec3(-0.003, 0, 0)).norm(), 1e-17);
+  // Ahead both readings agree; beside the ray there is no root.
+  EXPECT_NEAR(free_step(near, {-0.016, 0, 0}, u, printed).x(), 0.003, 1e-17);
+  EXPECT_EQ(free_step(near, {0, 0.006, 0}, u, printed), u);
+}
+
+TEST(EntrenchedStep, GetsAllPointsOut) {
+  const PointCloud offsets = scenes::random_cloud(4000, 0.0028, 7),
+                   directions = scenes::random_cloud(100, 1, 8);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Vec3 p = Vec3(0.3, -0.2, 0.9) + directions.point(i),
+               normal = directions.point((i + 1) % 100).normalized();
+    PointCloud inside;
+    for (std::size_t j = 40 * i; j < 40 * i + 40; ++j) inside.append(p + offsets.point(j));
+    GatheredPoints points;
+    points.reserve(inside.size(), false, false);
+    BruteForceSearch(inside).gather({p, 0.1}, scenes::kernels(), points);
+    points.finish();
+    // All of them are within r1: the half diagonal of the cube they fill is 4.85 mm.
+    const Vec3 s = entrenched_step(points.view(), scenes::kernels(), p, normal, Vec3::Zero(), kDefault);
+    EXPECT_GT(s.dot(normal), 0);
+    EXPECT_LT(s.cross(normal).norm(), 1e-16);
+    // The last one out is at r_c: a root that was too long would leave it farther away.
+    EXPECT_NEAR(nearest(inside, p + s), kDefault.contact_radius_m(), 1e-14);
+  }
+}
+
+TEST(EntrenchedStep, GoesBackFromTheHipIfThereIsNoNormal) {
+  PointCloud cloud;
+  cloud.append({0, 0, 0});
+  cloud.append({0.003, 0.004, 0});  // distance r_c: touched, but not within r1, so the point sets no step
+  GatheredPoints points;
+  points.reserve(2, false, false);
+  BruteForceSearch(cloud).gather({Vec3::Zero(), 1}, scenes::kernels(), points);
+  points.finish();
+  const auto step = [&](const Vec3& normal, const Vec3& u, const ProxyParameters& p = kDefault) {
+    return entrenched_step(points.view(), scenes::kernels(), Vec3::Zero(), normal, u, p);
+  };
+  EXPECT_LT((step(Vec3::Zero(), {0, -0.03, 0}) - Vec3(0, 0.005, 0)).norm(), 1e-17);
+  EXPECT_LT((step(Vec3::UnitZ(), {0, -0.03, 0}) - Vec3(0, 0, 0.005)).norm(), 1e-17);
+  EXPECT_EQ(step(Vec3::Zero(), Vec3::Zero()), Vec3(0, 0, 0));
+  ProxyParameters fixed;
+  fixed.step_rule = StepRule::fixed;
+  EXPECT_LT((step(kUp, {0, -0.03, 0}, fixed) - Vec3(0, 1e-4, 0)).norm(), 1e-19);
+}
+
+TEST(ContactStep, IsInTheTangentPlaneWhenTheHipIsBelowIt) {
+  const PointCloud normals = scenes::random_cloud(200, 1, 9),
+                   directions = scenes::random_cloud(200, 0.02, 10);
+  int below = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vec3 n = normals.point(i).normalized(), u = directions.point(i);
+    const Vec3 s = contact_step(n, u, kDefault), tangential = u - u.dot(n) * n;
+    const bool inside = u.dot(n) < 0;
+    const Vec3 goal = inside ? tangential : u;
+    const double length = goal.norm();
+    EXPECT_NEAR(s.norm(), length < kDefault.r1_m ? 0.3 * length : 0.1 * kDefault.r1_m, 1e-17);
+    EXPECT_LT((s / s.norm() - goal / length).norm(), 1e-14);
+    below += inside;
+  }
+  EXPECT_GT(below, 50);
+  EXPECT_LT(below, 150);
+}
+
+TEST(ContactStep, ShareBelowR1AndSmallStepsFromThere) {
+  const double r1 = kDefault.r1_m, just_below = std::nextafter(r1, 0.0);
+  // (4.11) and (4.12), the HIP 1 mm below the tangent plane and then above it.
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {0.001, -0.001, 0}, kDefault).x(), 0.0003);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {just_below, -0.001, 0}, kDefault).x(), 0.3 * just_below);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {r1, -0.001, 0}, kDefault).x(), 0.1 * r1);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {0.5, -0.001, 0}, kDefault).x(), 0.1 * r1);
+  EXPECT_EQ(contact_step(kUp, {0.5, -0.001, 0}, kDefault).y(), 0);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {0, 0.002, 0}, kDefault).y(), 0.0006);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {0, 0.02, 0}, kDefault).y(), 0.1 * r1);
+  EXPECT_EQ(contact_step(kUp, {0, -0.02, 0}, kDefault), Vec3(0, 0, 0));
+  EXPECT_EQ(contact_step(kUp, Vec3::Zero(), kDefault), Vec3(0, 0, 0));
+}
+
+TEST(ExitRule, AHipOutsideFreesTheProxyAlongTheNormal) {
+  ProxyParameters out;
+  out.exit_rule = ExitRule::out_of_contact;
+  const PointCloud normals = scenes::random_cloud(200, 1, 9),
+                   directions = scenes::random_cloud(200, 0.02, 10);
+  int outside = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vec3 n = normals.point(i).normalized(), u = directions.point(i), s = contact_step(n, u, out);
+    if (u.dot(n) < 0) {
+      EXPECT_EQ(s, contact_step(n, u, kDefault)) << "below the surface nothing changes";
+      continue;
+    }
+    EXPECT_NEAR(s.norm(), out.r2_m - out.r1_m, 1e-20);
+    EXPECT_LT((s - (out.r2_m - out.r1_m) * n).norm(), 1e-20);
+    ++outside;
+  }
+  EXPECT_GT(outside, 50);
+  const double width = out.r2_m - out.r1_m;
+  EXPECT_EQ(contact_step(kUp, {0.01, 0, 0}, out), width * kUp) << "a HIP in the tangent plane is outside";
+  EXPECT_EQ(contact_step(kUp, Vec3::Zero(), out), Vec3(0, 0, 0)) << "at the HIP there is nowhere to go";
+  EXPECT_LT(contact_step(kUp, {0.01, -1e-9, 0}, out).y(), 1e-12);
+}
+
+// The proxy starts anywhere in the contact region, over one point and over a plane of points.
+TEST(ExitRule, TwoStepsFreeTheProxy) {
+  ProxyParameters out;
+  out.exit_rule = ExitRule::out_of_contact;
+  for (const int side : {1, 61})
+    for (const double height : {out.r1_m, out.contact_radius_m(), out.r2_m}) {
+      const PointCloud cloud = scenes::flat_grid(side);
+      Neighbourhood near = around(cloud);
+      const ProxyRegions regions{out.r1_m, out.r2_m, out.r3_m, 1.5 * 1024, 600};
+      Vec3 p(0, height, 0);
+      ASSERT_EQ(classify(nearest(cloud, p), out), ContactState::contact);
+      int steps = 0;
+      for (; steps < 9 && classify(nearest(cloud, p), out) == ContactState::contact; ++steps) {
+        const ContactQuery query =
+            scenes::kernels().proxy.contact_query(near.around(p).view(), p.data(), regions);
+        p += contact_step(unit_normal(query, kUp), Vec3(0.003, 0.02, 0) - p, out);
+      }
+      EXPECT_EQ(classify(nearest(cloud, p), out), ContactState::free);
+      EXPECT_LE(steps, 2) << height;
+      EXPECT_NEAR(p.y(), height + steps * (out.r2_m - out.r1_m), 1e-15);
+    }
+}
+
+TEST(FixedRule, TakesSmallStepsWhateverIsAhead) {
+  ProxyParameters fixed;
+  fixed.step_rule = StepRule::fixed;
+  PointCloud ahead;
+  ahead.append({0.00505, 0, 0});
+  Neighbourhood near = around(ahead);
+  // The point would stop the variable rule after 5e-5 m.
+  EXPECT_DOUBLE_EQ(free_step(near, Vec3::Zero(), {0.1, 0, 0}, fixed).x(), 1e-4);
+  EXPECT_DOUBLE_EQ(free_step(near, Vec3::Zero(), {0, 0, 3e-5}, fixed).z(), 3e-5);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {0.1, -0.01, 0}, fixed).x(), 1e-4);
+  EXPECT_DOUBLE_EQ(contact_step(kUp, {2e-5, -0.01, 0}, fixed).x(), 2e-5);
+}
+
+TEST(HasConverged, WithinThetaOfTheNormal) {
+  const Vec3 n = Vec3(2, -1, 2) / 3, t = Vec3(1, 2, 0) / std::sqrt(5.0);
+  for (const double theta : {0.1, 1.0, 30.0, 89.0})
+    for (const double length : {1e-4, 0.03, 2.0}) {
+      ProxyParameters p;
+      p.theta_deg = theta;
+      const auto at = [&](double degrees) {
+        const Vec3 u = length * (std::sin(degrees * kDegree) * t - std::cos(degrees * kDegree) * n);
+        return has_converged(ContactState::contact, n, u, p);
+      };
+      EXPECT_TRUE(at(0));
+      EXPECT_TRUE(at(theta * (1 - 1e-9))) << theta;
+      EXPECT_FALSE(at(theta * (1 + 1e-9))) << theta;
+      EXPECT_FALSE(at(180)) << "the HIP is above the surface";
+    }
+  const Vec3 down(0, -0.01, 0);
+  EXPECT_TRUE(has_converged(ContactState::contact, kUp, down, kDefault));
+  EXPECT_FALSE(has_converged(ContactState::entrenched, kUp, down, kDefault));
+  EXPECT_FALSE(has_converged(ContactState::free, kUp, down, kDefault));
+  EXPECT_TRUE(has_converged(ContactState::free, kUp, Vec3::Zero(), kDefault));
+}
+
+}  // namespace
+}  // namespace remote_touch::proxy_step_test

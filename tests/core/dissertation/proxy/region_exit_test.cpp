@@ -1,0 +1,202 @@
+// The way out of regions that enclose the proxy, and regions that grow, against closed forms and plain loops.
+#include "core/dissertation/proxy/region_exit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/core/dissertation/proxy/union_of_spheres.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::region_exit_test {
+namespace {
+
+const ProxyParameters kDefault;
+
+Neighbourhood neighbourhood(const PointCloud& cloud) {
+  Neighbourhood near(kDefault.r3_m, scenes::kernels());
+  near.set_points(scenes::frame(cloud).points);
+  return near;
+}
+
+// Two balls that overlap, the proxy between them.
+PointCloud two_balls(double half_distance_m, double radius_m) {
+  PointCloud cloud;
+  cloud.append({-half_distance_m, 0, 0}), cloud.append({half_distance_m, 0, 0});
+  cloud.fixture_radius_m = {radius_m, radius_m};
+  return cloud;
+}
+
+// Along the normal, in the plane between the balls: at the height of a right triangle.
+TEST(StraightExit, LeavesTwoBallsInThePlaneBetweenThem) {
+  const double a = 0.01, radius_m = 0.02, reach_m = radius_m + kDefault.contact_radius_m();
+  Neighbourhood near = neighbourhood(two_balls(a, radius_m));
+  for (const double sign : {1.0, -1.0}) {
+    const auto exit =
+        straight_exit(near, scenes::kernels(), Vec3::Zero(), sign * Vec3::UnitY(), {1e-3, 0, 0}, kDefault);
+    ASSERT_TRUE(exit);
+    const Vec3 expected(0, sign * std::sqrt(reach_m * reach_m - a * a), 0);
+    EXPECT_LT((*exit - expected).norm(), 1e-12) << "or to a side, which is as far";
+  }
+}
+
+// Balls in a row across the normal, and one that closes the row above: the shortest line leads to the side.
+TEST(StraightExit, TakesTheShortestOfItsLines) {
+  PointCloud cloud;
+  for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
+  cloud.fixture_radius_m = {0.02, 0.02, 0.02};
+  Neighbourhood near = neighbourhood(cloud);
+  const auto exit =
+      straight_exit(near, scenes::kernels(), {0.001, 0, 0}, Vec3::UnitY(), {1e-3, 0, 0}, kDefault);
+  ASSERT_TRUE(exit);
+  EXPECT_LT((*exit - Vec3(0.02 + kDefault.contact_radius_m(), 0, 0)).norm(), 1e-12);
+}
+
+// The direction of u is one of the lines, however short u is.
+TEST(StraightExit, OnlyTheDirectionOfTheDisplacementMatters) {
+  PointCloud cloud;
+  for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
+  cloud.fixture_radius_m = {0.02, 0.02, 0.02};
+  Neighbourhood near = neighbourhood(cloud);
+  const Vec3 direction = Vec3(1, 0, 1).normalized();
+  for (const int exponent : {0, -10, -30, -100}) {
+    const auto exit = straight_exit(near, scenes::kernels(), 0.001 * direction, Vec3::UnitY(),
+                                    std::ldexp(1, exponent) * direction, kDefault);
+    ASSERT_TRUE(exit);
+    EXPECT_LT((*exit - (0.02 + kDefault.contact_radius_m()) * direction).norm(), 1e-12) << exponent;
+  }
+}
+
+// Never against the normal, though that is nearest.
+TEST(StraightExit, NeverGoesAgainstTheNormal) {
+  Neighbourhood near = neighbourhood(two_balls(0, 0.02));
+  const auto exit =
+      straight_exit(near, scenes::kernels(), {0, -0.019, 0}, Vec3::UnitY(), {0, -1e-3, 0}, kDefault);
+  ASSERT_TRUE(exit);
+  EXPECT_GE(exit->y(), -0.019);
+}
+
+// A frame brings random regions around a proxy that touched nothing: it is out in the same tick.
+TEST(StraightExit, NoFrameTrapsTheProxy) {
+  int trapped = 0, ticks = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    const PointCloud cloud = spheres::random_union(700 + seed, 0.05);
+    spheres::Draw draw(seed);
+    const Vec3 hip_W = draw.in_cube(0.05);
+    for (const int exit_steps : {0, 10}) {
+      ProxyParameters p;
+      p.max_exit_steps = exit_steps;
+      ProxyRenderer renderer = scenes::renderer(p);
+      renderer.on_frame(scenes::frame(PointCloud{}));
+      renderer.step({hip_W}, 0);
+      renderer.on_frame(scenes::frame(cloud, 1));
+      for (int tick = 1; tick <= 20; ++tick) {
+        const RenderOutput out = renderer.step({hip_W}, 0.001 * tick);
+        const bool inside = spheres::nearest_region(cloud, out.proxy_W) < p.r1_m - 1e-16;
+        if (exit_steps == 0)
+          trapped += inside, ++ticks;
+        else
+          ASSERT_FALSE(inside) << "union " << seed << ", tick " << tick;
+      }
+    }
+  }
+  RecordProperty("trapped_ticks_as_printed", trapped);
+  EXPECT_GT(trapped, ticks / 100) << "the unions trap where no line leads out";
+}
+
+TEST(NearestRegion, IsTheOneWithTheSmallestDistance) {
+  spheres::Draw draw(3);
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const PointCloud cloud = spheres::random_union(seed, 0.05);
+    Neighbourhood near = neighbourhood(cloud);
+    const Vec3 p_W = draw.in_cube(0.05);
+    double nearest_m = 1, radius_m = -1;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const double distance_m = (p_W - cloud.point(i)).norm() - cloud.fixture_radius_m[i];
+      if (distance_m < nearest_m) nearest_m = distance_m, radius_m = cloud.fixture_radius_m[i];
+    }
+    if (nearest_m > kDefault.r3_m) continue;
+    EXPECT_EQ(nearest_region_radius_m(near.around(p_W).view(), p_W), radius_m) << seed;
+  }
+}
+
+// All numbers are exact in binary, so that both distances are the same; outside of both regions and inside.
+TEST(NearestRegion, IsTheSmallestOfEquallyNearOnesInAnyOrder) {
+  constexpr double small_m = 0x1p-8, large_m = 0x1p-7;
+  for (const double distance_m : {0x1p-8, -0x1p-9})
+    for (const bool small_first : {true, false}) {
+      PointCloud cloud;
+      for (const double radius_m : {small_first ? small_m : large_m, small_first ? large_m : small_m}) {
+        cloud.append((radius_m + distance_m) * (radius_m == small_m ? Vec3::UnitX() : Vec3::UnitZ()));
+        cloud.fixture_radius_m.push_back(radius_m);
+      }
+      Neighbourhood near = neighbourhood(cloud);
+      EXPECT_EQ(nearest_region_radius_m(near.around(Vec3::Zero()).view(), Vec3::Zero()), small_m)
+          << distance_m << ", " << small_first;
+    }
+}
+
+TEST(NearestRegion, IsNoneIfThereAreNoPoints) {
+  Neighbourhood near = neighbourhood(PointCloud{});
+  EXPECT_EQ(nearest_region_radius_m(near.around(Vec3::Zero()).view(), Vec3::Zero()), std::nullopt);
+}
+
+// --- regions that grow ---
+
+// A proxy of reach r over points of a grid rests between r and r - sag(r) above it, anywhere from r1 to r2.
+double sag_m(double reach_m) {
+  constexpr double kSpacing_m = 0.0015;
+  return reach_m - std::sqrt(reach_m * reach_m - 0.5 * kSpacing_m * kSpacing_m);
+}
+const double kBand_m = kDefault.r2_m - kDefault.r1_m;
+
+PointCloud raised(double height_m, double radius_m) {
+  PointCloud cloud = scenes::flat_grid(60);
+  for (double& y : cloud.y) y += height_m;
+  cloud.fixture_radius_m.assign(cloud.size(), radius_m);
+  return cloud;
+}
+
+struct GrowingFrame {
+  double height_m, radius_m;
+};
+
+// v_hat after each frame at 30 Hz, the HIP 1 cm inside.
+std::vector<double> estimates(bool growth_is_motion, const std::vector<GrowingFrame>& frames) {
+  ProxyParameters p;
+  p.growth_is_motion = growth_is_motion, p.steps_per_tick = 100;
+  ProxyRenderer renderer = scenes::renderer(p);
+  std::vector<double> all;
+  for (std::size_t j = 0; j < frames.size(); ++j) {
+    renderer.on_frame(scenes::frame(raised(frames[j].height_m, frames[j].radius_m), static_cast<int>(j)));
+    RenderOutput out;
+    const double hip_m = j == 0 ? 0.02 : frames[j].height_m - 0.01;
+    for (int tick = 0; tick < 33; ++tick)
+      out = renderer.step({Vec3(0.0002, j == 0 ? hip_m - 0.001 * tick : hip_m, 0.0003)},
+                          static_cast<double>(j) / 30 + 0.001 * tick);
+    all.push_back(out.surface_velocity_m_per_s);
+  }
+  return all;
+}
+
+// A region of 8 mm that appears at once: 0.24 m/s as printed.
+TEST(GrowingRegion, CountsAsMotionOnlyIfGrowthIsMotion) {
+  const std::vector<GrowingFrame> appears{{0, 0}, {0, 0}, {0, 0.008}, {0, 0.008}};
+  const double limit_m_per_s = 30 * (sag_m(kDefault.contact_radius_m()) + kBand_m);  // 4 mm/s
+  EXPECT_NEAR(estimates(true, appears)[2], 0.008 * 30, limit_m_per_s);
+  for (const double v : estimates(false, appears)) EXPECT_NEAR(v, 0, limit_m_per_s);
+}
+
+TEST(GrowingRegion, MotionIsStillSeen) {
+  std::vector<GrowingFrame> rises{{0, 0}, {0, 0}};
+  for (int j = 1; j < 6; ++j) rises.push_back({0.002 * j, 0.003 * j});
+  const double apart = estimates(false, rises).back(), together = estimates(true, rises).back();
+  // The reach grows from 17 mm to 20 mm.
+  const double limit_m_per_s = 30 * (sag_m(0.012 + kDefault.contact_radius_m()) + kBand_m);  // 1.6 mm/s
+  EXPECT_NEAR(apart, 0.002 * 30, limit_m_per_s);
+  EXPECT_NEAR(together, 0.005 * 30, limit_m_per_s);
+}
+
+}  // namespace
+}  // namespace remote_touch::region_exit_test

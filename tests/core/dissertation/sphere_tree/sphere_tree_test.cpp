@@ -1,0 +1,232 @@
+#include "core/dissertation/sphere_tree/sphere_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/dissertation/sphere_tree/region_tree.h"
+#include "core/dissertation/sphere_tree/tree_collision.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::sphere_tree_test {
+namespace {
+
+// random_cloud() as spheres of different sizes.
+std::vector<Sphere> random_spheres(int count, double half_m, int seed) {
+  const PointCloud places = scenes::random_cloud(count, half_m, seed);
+  std::vector<Sphere> spheres;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    spheres.push_back({places.point(i), 0.001 * static_cast<double>(1 + i % 5)});
+  return spheres;
+}
+
+SphereTree tree_of(const std::vector<Sphere>& leaves, std::size_t patch) {
+  SphereTree tree;
+  for (std::size_t first = 0; first < leaves.size(); first += patch)
+    tree.add(std::span(leaves).subspan(first, std::min(patch, leaves.size() - first)));
+  tree.finish();
+  return tree;
+}
+
+TEST(BoundingSphere, IsThatOfTheEquation) {
+  const std::vector<Sphere> three = {{{0, 0, 0}, 1}, {{3, 0, 0}, 1}, {{0, 0, 3}, 2}};
+  const Sphere sphere = bounding_sphere(three);
+  EXPECT_NEAR((sphere.centre - Vec3(1, 0, 1)).norm(), 0, 1e-15);
+  EXPECT_NEAR(sphere.radius_m, std::sqrt(5.0) + 2, 1e-11);
+}
+
+TEST(SphereTree, EveryNodeEnclosesItsChildrenAndEveryLeafHasOne) {
+  const std::vector<Sphere> leaves = random_spheres(1000, 0.1, 3);
+  const SphereTree tree = tree_of(leaves, 7);
+  ASSERT_EQ(tree.leaves().size(), leaves.size());
+  ASSERT_EQ(tree.level_count(), 3u);  // levels of 143, 18 and 3 nodes
+  for (std::size_t level = 0; level < tree.level_count(); ++level) {
+    std::size_t next = 0;
+    for (const SphereNode& node : tree.level(level)) {
+      EXPECT_EQ(node.first, next);
+      next += node.count;
+      for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
+        const Sphere& below = level == 0 ? tree.leaves()[child] : tree.level(level - 1)[child].sphere;
+        EXPECT_LE((below.centre - node.sphere.centre).norm() + below.radius_m, node.sphere.radius_m);
+      }
+    }
+    EXPECT_EQ(next, level == 0 ? leaves.size() : tree.level(level - 1).size());
+  }
+  EXPECT_LE(tree.top().size(), SphereTree::kBranching);
+}
+
+TEST(SphereTree, IsEmptyIfThereAreNoSpheres) {
+  SphereTree tree;
+  tree.add({});
+  tree.finish();
+  EXPECT_TRUE(tree.empty());
+  EXPECT_EQ(tree.level_count(), 0u);
+}
+
+// --- the regions of a frame ---
+
+TEST(RegionTree, HasALeafForEveryMeasuredPointWithARegion) {
+  PointCloud cloud = scenes::random_cloud(3000, 0.1, 5);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.04);
+  cloud.fixture_radius_m[7] = 0;
+  cloud.fixture_radius_m[8] = 0.01;
+  cloud.y[9] = std::nan("");
+  RegionTree tree;
+  for (int again = 0; again < 2; ++again) {
+    tree.assign(cloud);
+    ASSERT_EQ(tree.points().size(), cloud.size() - 2);
+    ASSERT_EQ(tree.spheres().leaves().size(), cloud.size() - 2);
+    EXPECT_EQ(tree.spheres().level(0).size(), (cloud.size() - 2 + 255) / 256);
+    std::vector<int> seen(cloud.size(), 0);
+    for (std::size_t leaf = 0; leaf < tree.points().size(); ++leaf) {
+      const std::uint32_t point = tree.points()[leaf];
+      ++seen[point];
+      EXPECT_EQ(tree.spheres().leaves()[leaf].centre, cloud.point(point));
+      EXPECT_EQ(tree.spheres().leaves()[leaf].radius_m, cloud.fixture_radius_m[point]);
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i == 7 || i == 9 ? 0 : 1);
+  }
+}
+
+PointCloud image_of(int width, int height) {
+  PointCloud cloud;
+  cloud.image.emplace();
+  cloud.image->camera = {width, height, 100, 100, 0.5 * width, 0.5 * height};
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) cloud.append(Vec3(0.001 * u, 0.001 * v, 1));
+  return cloud;
+}
+
+// Patches of 16 x 16 pixels: one for each that has a region, none for the others.
+TEST(RegionTree, HasAPatchForEverySquareOfTheImageWithARegion) {
+  PointCloud cloud = image_of(100, 70);
+  cloud.fixture_radius_m.assign(cloud.size(), 0);
+  for (const auto& [u, v] : {std::pair{0, 0}, {15, 15}, {16, 15}, {99, 69}})
+    cloud.fixture_radius_m[static_cast<std::size_t>(v * 100 + u)] = 0.02;
+  RegionTree tree;
+  tree.assign(cloud);
+  EXPECT_EQ(tree.points(), (std::vector<std::uint32_t>{0, 1515, 1516, 6999}));
+  ASSERT_EQ(tree.spheres().level(0).size(), 3u);
+  EXPECT_EQ(tree.spheres().level(0)[0].count, 2u);
+}
+
+TEST(RegionTree, KeepsTheStiffnessOfItsPoints) {
+  PointCloud cloud = scenes::random_cloud(500, 0.1, 5);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
+  RegionTree tree;
+  tree.assign(cloud);
+  EXPECT_TRUE(std::isnan(tree.stiffness_N_per_m(0)));
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.stiffness_N_per_m.push_back(10.0 * static_cast<double>(i));
+  tree.assign(cloud);
+  for (std::uint32_t leaf = 0; leaf < tree.points().size(); ++leaf)
+    EXPECT_EQ(tree.stiffness_N_per_m(leaf), 10.0 * tree.points()[leaf]);
+}
+
+// A stream of frames of one size: what the first one needed is there for the next.
+TEST(RegionTree, KeepsItsMemoryFromFrameToFrame) {
+  PointCloud cloud = image_of(200, 200);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
+  RegionTree tree;
+  tree.assign(cloud);
+  std::fill_n(cloud.fixture_radius_m.begin(), 5000, 0.0);
+  const std::size_t before = allocation_count();
+  tree.assign(cloud);
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(tree.points().size(), cloud.size() - 5000);
+}
+
+TEST(RegionTree, IsEmptyIfThereAreNoRegions) {
+  PointCloud cloud = scenes::random_cloud(100, 0.1, 5);
+  RegionTree tree;
+  tree.assign(cloud);
+  EXPECT_TRUE(tree.spheres().empty());
+  cloud.fixture_radius_m.assign(cloud.size(), 0);
+  tree.assign(cloud);
+  EXPECT_TRUE(tree.spheres().empty());
+  tree.assign({});
+  EXPECT_TRUE(tree.spheres().empty());
+}
+
+// --- tree against tree ---
+
+std::vector<LeafPair> every_pair(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
+                                 double margin_m) {
+  const Eigen::Matrix3d R_WT = pose.q_WT.toRotationMatrix();
+  std::vector<LeafPair> pairs;
+  for (std::uint32_t i = 0; i < tool.leaves().size(); ++i)
+    for (std::uint32_t j = 0; j < regions.leaves().size(); ++j) {
+      const Sphere &a = tool.leaves()[i], &b = regions.leaves()[j];
+      const double gap_m = (pose.p_W + R_WT * a.centre - b.centre).norm() - a.radius_m - b.radius_m;
+      if (gap_m <= margin_m) pairs.push_back({i, j, gap_m});
+    }
+  return pairs;
+}
+
+TEST(TreeCollision, FindsWhatBruteForceFinds) {
+  const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
+                   regions = tree_of(random_spheres(4000, 0.05, 2), 100);
+  TreeCollision collision(tool, scenes::kernels());
+  collision.on_frame(regions);
+  std::vector<LeafPair> buffer(tool.leaves().size() * regions.leaves().size());
+  std::size_t max = 0, none = 0;
+  for (int i = 0; i < 40; ++i) {
+    const ToolPose pose{{0.008 * i - 0.1, 0.004 * i, 0.01}, rotation({0.1 * i, 0.3, -0.05 * i})};
+    for (const double margin_m : {-0.001, 0.0, 0.004}) {
+      std::vector<LeafPair> expected = every_pair(tool, pose, regions, margin_m);
+      const std::span<const LeafPair> pairs = std::span(buffer).first(collision.near(pose, margin_m, buffer));
+      ASSERT_EQ(pairs.size(), expected.size());
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        EXPECT_EQ(pairs[k].tool, expected[k].tool);
+        EXPECT_EQ(pairs[k].region, expected[k].region);
+        EXPECT_EQ(pairs[k].gap_m, expected[k].gap_m);
+      }
+      max = std::max(max, pairs.size()), none += pairs.empty() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(max, 500u);
+  EXPECT_GT(none, 10u);
+}
+
+// Room for 100 of thousands: the deepest.
+TEST(TreeCollision, KeepsTheDeepestPairsWhereRoomEnds) {
+  const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
+                   regions = tree_of(random_spheres(4000, 0.05, 2), 100);
+  TreeCollision collision(tool, scenes::kernels());
+  collision.on_frame(regions);
+  std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), buffer(100);
+  ASSERT_EQ(collision.near({}, 0.002, buffer), expected.size());
+  ASSERT_GT(expected.size(), 1000u);
+  std::stable_sort(expected.begin(), expected.end(),
+                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
+  std::stable_sort(buffer.begin(), buffer.end(),
+                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    EXPECT_EQ(buffer[i].tool, expected[i].tool);
+    EXPECT_EQ(buffer[i].region, expected[i].region);
+  }
+  EXPECT_EQ(collision.near({}, 0.002, {}), expected.size());
+}
+
+TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
+  const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
+  std::vector<LeafPair> buffer(100);
+  const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
+    TreeCollision collision(of, scenes::kernels());
+    collision.on_frame(regions);
+    return collision.near(pose, 1, buffer);
+  };
+  EXPECT_GT(count(tool, tool, {}), 100u);
+  EXPECT_EQ(count(tool, nothing, {}), 0u);
+  EXPECT_EQ(count(nothing, tool, {}), 0u);
+  ToolPose pose;
+  pose.p_W.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(count(tool, tool, pose), 0u);
+}
+
+}  // namespace
+}  // namespace remote_touch::sphere_tree_test

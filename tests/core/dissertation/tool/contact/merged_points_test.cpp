@@ -1,0 +1,148 @@
+#include "core/dissertation/tool/contact/merged_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/geometry/rotation.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::merged_points_test {
+namespace {
+
+constexpr double kCube_m = 2e-3, kSpacing_m = 3e-4;
+
+// 60 mm square, its points at (x, height(x, z), z); none where height is NaN. noise_m: up and down in turn.
+std::vector<CloudPoint> surface(const std::function<double(double, double)>& height_m, double noise_m = 0) {
+  std::vector<CloudPoint> points;
+  for (int j = 0; j < 200; ++j)
+    for (int i = 0; i < 200; ++i) {
+      const double x = (i - 100) * kSpacing_m, z = (j - 100) * kSpacing_m, y = height_m(x, z);
+      const double slope = (height_m(x + 1e-6, z) - height_m(x - 1e-6, z)) / 2e-6;
+      const double sign = (i * 7 + j * 3) % 2 == 0 ? 1 : -1;
+      const Vec3 n_W = std::isnan(slope) ? Vec3::UnitY() : Vec3(-slope, 1, 0).normalized();
+      if (!std::isnan(y)) points.push_back({{x, y + sign * noise_m, z}, n_W, kSpacing_m});
+    }
+  return points;
+}
+
+// Turned in its plane and moved, so that the cubes cut it anyhow.
+std::vector<CloudPoint> turned(std::vector<CloudPoint> points, double angle_rad) {
+  const Eigen::Quaterniond q = rotation({0, angle_rad, 0});
+  for (CloudPoint& point : points) point.p_W = q * point.p_W + Vec3(3e-4, 1e-4, 7e-4);
+  return points;
+}
+
+double distance_to_nearest_m(const std::vector<CloudPoint>& points, const Vec3& p_W) {
+  double squared = 1;
+  for (const CloudPoint& point : points) squared = std::min(squared, (point.p_W - p_W).squaredNorm());
+  return std::sqrt(squared);
+}
+
+// No place of a disk is far from the cloud: a square of 1.5 spacings has a diagonal of 2.1.
+void expect_no_more_than_the_cloud(const std::vector<CloudPoint>& points) {
+  const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
+  int disks = 0;
+  for (const MergedPoint& disk : merged) {
+    if (disk.extent_m == 0 || disk.p_W.norm() > 0.006) continue;
+    ++disks;
+    const Vec3 u = disk.n_W.unitOrthogonal(), v = disk.n_W.cross(u);
+    for (int k = 0; k < 24; ++k) {
+      const double turn = k * std::numbers::pi / 12;
+      for (const double part : {0.3, 0.65, 1.0}) {
+        const Vec3 place = disk.p_W + part * disk.extent_m * (std::cos(turn) * u + std::sin(turn) * v);
+        ASSERT_LE(distance_to_nearest_m(points, place), 2.2 * kSpacing_m) << disk.p_W.transpose();
+      }
+    }
+  }
+  EXPECT_GT(disks, 5);
+}
+
+TEST(MergedPoints, EveryPointIsInADiskOrStandsForItself) {
+  // Gently curved, with a step that none may stand across.
+  const std::vector<CloudPoint> points =
+      surface([](double x, double z) { return 0.5 * x * x + (z > 0.01 ? 2e-4 : 0); });
+  const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
+  ASSERT_FALSE(merged.empty());
+  EXPECT_LT(2 * merged.size(), points.size());
+  double step_m = 0;
+  for (const MergedPoint& disk : merged)
+    if (disk.extent_m > 0)
+      step_m = std::max(step_m, std::abs(disk.p_W.z() - 0.01) < 2e-4 ? disk.extent_m : 0);
+  EXPECT_EQ(step_m, 0);
+  for (const CloudPoint& point : points) {
+    const bool is_there = std::any_of(merged.begin(), merged.end(), [&](const MergedPoint& disk) {
+      const Vec3 offset = point.p_W - disk.p_W;
+      return offset.norm() <= disk.extent_m + 1e-12 && std::abs(offset.dot(disk.n_W)) <= kFlat_m;
+    });
+    ASSERT_TRUE(is_there) << point.p_W.transpose();
+  }
+}
+
+TEST(MergedPoints, AFullPlaneBecomesATwentieth) {
+  const std::vector<CloudPoint> points = surface([](double, double) { return 0; });
+  std::size_t inside = 0, merged_inside = 0;  // away from the rim
+  const auto is_inside = [](const Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() < 0.024; };
+  for (const CloudPoint& point : points) inside += is_inside(point.p_W) ? 1 : 0;
+  for (const MergedPoint& disk : merged_points(points, kCube_m)) merged_inside += is_inside(disk.p_W) ? 1 : 0;
+  EXPECT_LT(20 * merged_inside, inside);
+}
+
+TEST(MergedPoints, DisksEndWhereTheSurfaceEnds) {
+  for (const double angle_rad : {0.0, 0.3, 0.7})
+    for (const double edge_m : {0.0, 3e-4, 8e-4, 1.4e-3})
+      expect_no_more_than_the_cloud(
+          turned(surface([&](double x, double) { return x > edge_m ? std::nan("") : 0; }), angle_rad));
+}
+
+TEST(MergedPoints, DisksDoNotCloseHoles) {
+  for (const double angle_rad : {0.0, 0.3, 0.7})
+    for (const double radius_m : {8e-4, 1.5e-3})
+      expect_no_more_than_the_cloud(
+          turned(surface([&](double x, double z) { return std::hypot(x, z) < radius_m ? std::nan("") : 0; }),
+                 angle_rad));
+}
+
+TEST(MergedPoints, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
+  const auto level = [](double, double) { return 5e-4; };  // the middle of a layer of cubes
+  EXPECT_FALSE(merged_points(surface(level), kCube_m).empty());
+  EXPECT_TRUE(merged_points(surface(level, 2 * kFlat_m), kCube_m).empty());
+  std::vector<CloudPoint> coarse = surface([](double, double) { return 0; });
+  for (CloudPoint& point : coarse) point.p_W *= 4, point.spacing_m *= 4;
+  EXPECT_TRUE(merged_points(coarse, kCube_m).empty());
+  EXPECT_TRUE(merged_points({}, kCube_m).empty());
+}
+
+TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
+  std::vector<CloudPoint> points = surface([](double, double) { return 5e-4; });
+  for (CloudPoint& point : points) point.spacing_m = 0;
+  EXPECT_TRUE(merged_points(points, kCube_m).empty());
+}
+
+// The largest possible number of squares along a side, with a point on each end of the disk's axes: the last
+// square ends there.
+TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
+  constexpr int kHalf = 64;
+  constexpr double kStep_m = 1.0 / (1 << 16);
+  std::vector<CloudPoint> points;
+  for (int j = -kHalf; j <= kHalf; ++j)
+    for (int i = -kHalf; i <= kHalf; ++i)
+      if (i * i + j * j <= kHalf * kHalf)
+        points.push_back({{i * kStep_m, 0, j * kStep_m}, Vec3::UnitY(), kStep_m});
+  for (CloudPoint& point : points) point.p_W += Vec3::Constant(1.0 / 256);  // within one cube
+  const std::vector<MergedPoint> merged = merged_points(points, 1.0 / 128);
+  ASSERT_EQ(merged.size(), 1u);
+  EXPECT_EQ(merged[0].extent_m, kHalf * kStep_m);
+}
+
+TEST(MergedPoints, PointsWithoutNormalsStandForThemselves) {
+  std::vector<CloudPoint> points = surface([](double, double) { return 0; });
+  for (CloudPoint& point : points) point.n_W = Vec3::Constant(std::nan(""));
+  EXPECT_TRUE(merged_points(points, kCube_m).empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::merged_points_test

@@ -1,0 +1,194 @@
+#include "core/dissertation/tool/contact/near_disks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/dissertation/tool/contact/contact_list.h"
+#include "core/dissertation/tool/contact/contact_thinning.h"
+#include "core/kernels/isa.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/formatted.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::near_disks_test {
+namespace {
+
+const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
+const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
+constexpr double kReach_m = 0.005, kFraction = 0.75, kCell_m = 0.004;
+
+// Normals in all directions; every seventh point has none.
+PointCloud cloud_with_normals() {
+  PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
+  const PointCloud directions = scenes::random_cloud(20000, 1, 22);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : directions.point(i).normalized();
+    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
+  }
+  return cloud;
+}
+
+struct Look {
+  TouchFinder finder;
+  NearDisks disks{kFraction, kCell_m};
+
+  Look(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
+    finder.on_frame(formatted<TiledCloud>(cloud));
+    disks.on_frame(finder.cloud());
+    disks.query(finder, kernels, kPose, kReach_m);
+  }
+};
+
+bool same(const Vec3& a, const Vec3& b) {
+  return a == b || (!a.allFinite() && !b.allFinite());
+}
+
+// The disks of a cloud that are wanted, one after the other.
+std::vector<SurfaceDisk> plain_disks(const TiledCloud& cloud, const ToolPose& pose, double reach_m,
+                                     double max_lower_m) {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  std::vector<SurfaceDisk> disks;
+  for (std::uint32_t i = 0; i < cloud.padded_size(); ++i) {
+    const Vec3 p_T = R_TW * (cloud.point(i) - pose.p_W);
+    if (p_T.norm() > 1) continue;  // padding
+    const SurfaceDisk disk{p_T, R_TW * cloud.normal(i), kFraction * cloud.spacing_m(i),
+                           sample_field(*kTool, p_T)};
+    if (disk.at.distance_m <= reach_m && lower_bound_m(disk) <= max_lower_m) disks.push_back(disk);
+  }
+  return disks;
+}
+
+// True if the bound is the field's own distance: the disk is near enough to be searched, and the field is too
+// flat in the disk's plane for a slide to begin.
+bool bound_is_distance(const SurfaceDisk& disk) {
+  const Vec3 along = disk.at.gradient_T - disk.at.gradient_T.dot(disk.n_T) * disk.n_T;
+  return lower_bound_m(disk) <= NearDisks::kSearch_m && is_flat(along.norm(), disk.radius_m, disk.extent_m);
+}
+
+::testing::AssertionResult are_same(const NearDisks& found, const std::vector<SurfaceDisk>& expected) {
+  if (found.size() != expected.size())
+    return ::testing::AssertionFailure() << found.size() << " disks instead of " << expected.size();
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const SurfaceDisk disk = found.disk(k), &plain = expected[k];
+    const double lower_m = lower_bound_m(plain);
+    const bool is_same = disk.p_T == plain.p_T && same(disk.n_T, plain.n_T) &&
+                         disk.radius_m == plain.radius_m && disk.at.distance_m == plain.at.distance_m &&
+                         disk.at.gradient_T == plain.at.gradient_T && found.lower_m(k) == lower_m &&
+                         found.bound_m(k) == (bound_is_distance(plain) ? plain.at.distance_m : lower_m) &&
+                         found.cell(k) == cell_and_octant(plain.p_T, -plain.at.gradient_T, 1 / kCell_m);
+    if (!is_same) return ::testing::AssertionFailure() << "disk " << k << " is another one";
+  }
+  return ::testing::AssertionSuccess();
+}
+
+TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
+  const PointCloud cloud = cloud_with_normals();
+  for (const Kernels* kernels : supported_kernels()) {
+    Look query(cloud, *kernels);
+    const TiledCloud& tiled = query.finder.cloud();
+    for (const double max_lower_m : {std::numeric_limits<double>::infinity(), 0.002, 0.0002}) {
+      query.disks.query(query.finder, *kernels, kPose, kReach_m, max_lower_m);
+      EXPECT_TRUE(are_same(query.disks, plain_disks(tiled, kPose, kReach_m, max_lower_m))) << kernels->isa;
+      EXPECT_GT(query.disks.size(), 100u);
+    }
+  }
+}
+
+// A point less than a cell outside the grid can be in the list.
+TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
+  const VoxelGrid& grid = kTool->grid;
+  const PointCloud cloud = scenes::points_outside(grid);
+  TouchFinder finder(kTool, scenes::kernels());
+  finder.on_frame(formatted<TiledCloud>(cloud));
+  NearDisks disks(kFraction, kCell_m);
+  disks.on_frame(finder.cloud());
+  disks.query(finder, scenes::kernels(), {}, kFieldMargin_m + 3 * grid.size_m);
+  EXPECT_EQ(disks.size(), cloud.size());
+  for (std::size_t k = 0; k < disks.size(); ++k) {
+    EXPECT_EQ(disks.distance_m(k), sample_field(*kTool, disks.p_T(k)).distance_m);
+    EXPECT_EQ(disks.lower_m(k), lower_bound_m(disks.disk(k)));
+    EXPECT_EQ(disks.disk(k).at.gradient_T, sample_field(*kTool, disks.p_T(k)).gradient_T);
+    EXPECT_LT(disks.disk(k).at.gradient_T.x(), -0.5) << "out of the tool";
+  }
+}
+
+// Number of disks within a distance.
+std::size_t within(const NearDisks& disks, double distance_m) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < disks.size(); ++k) count += disks.distance_m(k) <= distance_m ? 1 : 0;
+  return count;
+}
+
+// A result for one pose is not reused in the next frame, at another pose or for another reach.
+TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
+  const PointCloud cloud = cloud_with_normals();
+  const Kernels& kernels = scenes::kernels();
+  Look query(cloud, kernels);
+  const std::size_t all = within(query.disks, kReach_m), some = within(query.disks, 0.001);
+  EXPECT_LT(some, all);
+  query.disks.query(query.finder, kernels, kPose, 0.001);
+  EXPECT_EQ(within(query.disks, 0.001), some);
+  query.disks.query(query.finder, kernels, {{1, 1, 1}, kPose.q_WT}, 0.001);
+  EXPECT_EQ(query.disks.size(), 0u);
+  query.disks.query(query.finder, kernels, kPose, 0.001);
+  EXPECT_EQ(within(query.disks, 0.001), some);
+  query.disks.query(query.finder, kernels, kPose, kReach_m);
+  EXPECT_EQ(within(query.disks, kReach_m), all);
+  PointCloud fewer = cloud;
+  fewer.x.resize(5000), fewer.y.resize(5000), fewer.z.resize(5000);
+  fewer.nx.resize(5000), fewer.ny.resize(5000), fewer.nz.resize(5000);
+  query.finder.on_frame(formatted<TiledCloud>(fewer));
+  query.disks.on_frame(query.finder.cloud());
+  query.disks.query(query.finder, kernels, kPose, kReach_m);
+  EXPECT_LT(within(query.disks, kReach_m), all);
+  EXPECT_GT(within(query.disks, kReach_m), 0u);
+}
+
+// A walk of steps that are mostly so short that the points are kept, and groups of them passed over: at every
+// pose the disks are those of a loop over all points, in frame after frame.
+TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
+  constexpr double kShort_m = 2e-5;
+  for (const Kernels* kernels : supported_kernels()) {
+    Look query(cloud_with_normals(), *kernels);
+    ToolPose pose = kPose;
+    int kept = 0;
+    for (int step = 0; step < 60; ++step) {
+      const double a = 0.7 * step, size = step % 20 == 19 ? 100 : 1;
+      Vector6 motion;
+      motion << std::sin(a), std::cos(1.3 * a), std::sin(2.1 * a), 30 * std::cos(a), 30 * std::sin(1.7 * a),
+          30;
+      pose = moved(pose, size * kShort_m * motion);
+      if (step % 25 == 24) {
+        query.finder.on_frame(formatted<TiledCloud>(scenes::random_cloud(20000, 0.03, 100 + step)));
+        query.disks.on_frame(query.finder.cloud());
+      }
+      const double reach_m = step % 7 == 6 ? 0.5 * kReach_m : kReach_m,
+                   max_lower_m = step % 2 == 0 ? 0.002 : 1;
+      query.disks.query(query.finder, *kernels, pose, reach_m, max_lower_m);
+      ASSERT_TRUE(are_same(query.disks, plain_disks(query.finder.cloud(), pose, reach_m, max_lower_m)))
+          << step << " " << kernels->isa;
+      kept += query.disks.kept_points() != query.finder.within(pose, reach_m + NearDisks::kSpare_m).size();
+    }
+    EXPECT_GT(kept, 10) << "the points were searched anew at every step";
+  }
+}
+
+// A list that has looked at the pose already, and one that has not.
+TEST(NearDisks, ADetectionDoesNotChangeWhatIsTouched) {
+  const PointCloud cloud = cloud_with_normals();
+  ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());
+  looked.on_frame(formatted<TiledCloud>(cloud)), fresh.on_frame(formatted<TiledCloud>(cloud));
+  looked.near(kPose, 0);
+  const Touched a = looked.touched(kPose), b = fresh.touched(kPose);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.clusters, b.clusters);
+  EXPECT_EQ(a.nearest_distance_m, b.nearest_distance_m);
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_GT(a.points, 0);
+}
+
+}  // namespace
+}  // namespace remote_touch::near_disks_test

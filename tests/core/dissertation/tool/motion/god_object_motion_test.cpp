@@ -1,0 +1,176 @@
+// The god-object against the pose of least energy, and against every point of the cloud.
+#include "core/dissertation/tool/motion/god_object_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool/shape/outer_field.h"
+#include "core/geometry/rotation.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::god_object_motion_test {
+namespace {
+
+const Vec3 kHalf_m(0.02, 0.005, 0.01);
+constexpr double kGap_m = ContinuousContacts::kGap_m;
+
+ToolRenderer renderer(const ToolGodObjectParameters& p = {}) {
+  static const std::shared_ptr<const VoxelTool> tool = [] {
+    VoxelTool box = *scenes::box_tool(kHalf_m);
+    box.distance_m = outer_field(box.mesh, box.grid, box.distance_m);
+    return std::make_shared<const VoxelTool>(std::move(box));
+  }();
+  return {tool_parameters(p), tool, scenes::kernels(), std::make_unique<GodObjectMotion>(p, *tool)};
+}
+
+PointCloud sheet(double height_m = 0, double spacing_m = 0.002, int count = 41) {
+  PointCloud cloud;
+  for (int j = 0; j < count; ++j)
+    for (int i = 0; i < count; ++i)
+      cloud.append({(i - count / 2) * spacing_m, height_m, (j - count / 2) * spacing_m}, Vec3::UnitY());
+  return cloud;
+}
+
+DeviceState at(const Vec3& p_W, double about_z_rad = 0) {
+  return {p_W, rotation({0, 0, about_z_rad})};
+}
+
+RenderOutput settled(ToolRenderer& r, const DeviceState& device, int ticks = 20) {
+  RenderOutput out;
+  for (int i = 0; i < ticks; ++i) out = r.step(device, 0);
+  return out;
+}
+
+TEST(GodObjectMotion, ToolIsTheDeviceInFreeSpace) {
+  ToolRenderer r = renderer();
+  r.on_frame(scenes::frame(sheet()));
+  for (int i = 0; i < 100; ++i) {
+    const DeviceState d{{0.001 * i, 0.05, 0}, rotation({0.01 * i, 0.3, -0.2})};
+    const RenderOutput out = r.step(d, 0.001 * i);
+    EXPECT_EQ(out.proxy_W, d.position_W);
+    EXPECT_EQ(out.force_N, Vec3::Zero());
+    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
+  }
+}
+
+// A box over the plane y = 0, turned by theta about z, has its centre at a sin|theta| + b cos(theta) or
+// higher. At rest it is where the two springs of the coupling have the least energy: by trying all angles.
+TEST(GodObjectMotion, RestsWhereTheSpringsHaveTheLeastEnergy) {
+  constexpr double k = 600, r_g = 0.03;
+  const auto height_m = [](double theta) {
+    return kHalf_m.x() * std::abs(std::sin(theta)) + kHalf_m.y() * std::cos(theta) + kGap_m;
+  };
+  for (const double wanted : {0.0, 0.1, 0.3, -0.5, 0.8})
+    for (const double depth_m : {0.002, 0.01}) {
+      const double device_m = height_m(wanted) - depth_m;
+      double best = 1e9, theta = 0;
+      for (double t = -1.2; t < 1.2; t += 1e-5) {
+        const double lag_m = height_m(t) - device_m;
+        const double energy = 0.5 * k * (lag_m * lag_m + r_g * r_g * (t - wanted) * (t - wanted));
+        if (energy < best) best = energy, theta = t;
+      }
+      ToolRenderer r = renderer();
+      r.on_frame(scenes::frame(sheet()));
+      settled(r, at({0, 0.05, 0}, wanted));
+      const RenderOutput out = settled(r, at({0, device_m, 0}, wanted));
+      const double lag_m = height_m(theta) - device_m;
+      EXPECT_NEAR(out.force_N.y(), k * lag_m, 0.05) << wanted << ", " << depth_m;
+      EXPECT_NEAR(out.tool->torque_Nm.z(), k * r_g * r_g * (theta - wanted), 1.5e-3)
+          << wanted << ", " << depth_m;
+      EXPECT_NEAR(std::hypot(out.force_N.x(), out.force_N.z()), 0, 0.02);
+      EXPECT_TRUE(out.converged);
+    }
+}
+
+// Over any path of the hand, in any tick: the exact distance of every point to the box.
+TEST(GodObjectMotion, NoPointGetsIntoTheTool) {
+  const PointCloud cloud = sheet(0, 0.004, 31);
+  std::mt19937 random(5);
+  const auto uniform = [&] { return random() / 2147483648.0 - 1.0; };
+  ToolRenderer r = renderer();
+  r.on_frame(scenes::frame(cloud));
+  r.step(at({0, 0.03, 0}), 0);
+  double deepest_m = 1, held = 0;
+  DeviceState from = at({0, 0.03, 0});
+  for (int turn = 0; turn < 30; ++turn) {
+    const DeviceState to{{0.02 * uniform(), 0.015 * uniform(), 0.02 * uniform()},
+                         rotation(0.8 * Vec3(uniform(), uniform(), uniform()))};
+    for (int i = 1; i <= 20; ++i) {
+      const double s = i / 20.0;
+      const RenderOutput out = r.step(
+          {(1 - s) * from.position_W + s * to.position_W, from.orientation_W.slerp(s, to.orientation_W)}, 0);
+      held += out.force_N.norm() > 0.5;
+      for (std::size_t p = 0; p < cloud.size(); ++p)
+        deepest_m = std::min(deepest_m, scenes::box_distance(kHalf_m, out.tool->orientation_W.conjugate() *
+                                                                          (cloud.point(p) - out.proxy_W)));
+    }
+    from = to;
+  }
+  EXPECT_GT(deepest_m, -1e-5);
+  EXPECT_GT(held, 100);
+}
+
+// The device moves in one tick from above to far below. No gap between the points is as wide as the tool.
+TEST(GodObjectMotion, StopsAtTheFirstContactOfALongMotion) {
+  ToolGodObjectParameters p;
+  p.steps_per_tick = 200;
+  ToolRenderer r = renderer(p);
+  r.on_frame(scenes::frame(sheet()));
+  r.step(at({0, 0.02, 0}), 0);
+  const RenderOutput out = settled(r, at({0, -0.04, 0}), 1);
+  EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y() + kGap_m, 1e-5);
+}
+
+// The coupling of the source gives no force for the part of the motion that the contacts allow. After one
+// step in the tick, the tool is still 20 mm behind along the plane.
+TEST(GodObjectMotion, OnlyWhatContactsTakeAwayIsFelt) {
+  ToolGodObjectParameters p;
+  ToolRenderer whole = renderer(p);
+  p.steps_per_tick = 1;
+  ToolRenderer slow = renderer(p);
+  for (ToolRenderer* r : {&whole, &slow}) {
+    r->on_frame(scenes::frame(sheet()));
+    settled(*r, at({0, 0.02, 0}));
+    settled(*r, at({0, 0.003, 0}), 100);
+    const RenderOutput out = settled(*r, at({0.02, 0.003, 0}), 1);
+    EXPECT_NEAR(out.proxy_W.x(), r == &slow ? 0.001 : 0.02, 1e-4);
+    EXPECT_NEAR(out.force_N.x(), 0, 0.01);
+    EXPECT_NEAR(out.force_N.y(), 600 * (0.002 + kGap_m), 0.01);
+  }
+}
+
+// A surface that moves into a tool which waits at the device is not felt; going deeper is.
+TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
+  ToolRenderer r = renderer();
+  r.on_frame(scenes::frame(sheet(0, 0.0019), 0));
+  settled(r, at({0, 0.006, 0}));
+  r.on_frame(scenes::frame(sheet(0.003, 0.0019), 1));
+  RenderOutput out = settled(r, at({0, 0.006, 0}));
+  EXPECT_EQ(out.force_N, Vec3::Zero());
+  EXPECT_EQ(out.proxy_W.y(), 0.006);
+  out = settled(r, at({0, 0.004, 0}));
+  EXPECT_NEAR(out.proxy_W.y(), 0.006, 1e-4);
+  EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 600 * 1e-4);
+  out = settled(r, at({0, 0.02, 0}));
+  EXPECT_EQ(out.proxy_W.y(), 0.02);
+}
+
+// Walls with less room than the gap: J a >= 0 still has an answer.
+TEST(GodObjectMotion, WaitsBetweenWallsThatAreTooNear) {
+  PointCloud walls = sheet(-0.00502);
+  for (int j = -20; j <= 20; ++j)
+    for (int i = -20; i <= 20; ++i) walls.append({0.002 * i, 0.00502, 0.002 * j}, -Vec3::UnitY());
+  ToolRenderer r = renderer();
+  settled(r, at({0, 0, 0}));
+  r.on_frame(scenes::frame(walls));
+  const RenderOutput out = settled(r, at({0, -0.002, 0}));
+  EXPECT_NEAR(out.proxy_W.y(), 0, 3e-5);
+  EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 600 * 3e-5);
+}
+
+}  // namespace
+}  // namespace remote_touch::god_object_motion_test

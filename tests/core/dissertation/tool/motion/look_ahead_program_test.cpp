@@ -1,0 +1,176 @@
+// A look asks for the nearest contacts first, and finds the motion that all of them allow.
+#include "core/dissertation/tool/motion/look_ahead_program.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "core/dissertation/tool/contact/contact_list.h"
+#include "core/dissertation/tool/shape/generated_tools.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/formatted.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::look_ahead_program_test {
+namespace {
+
+const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
+const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
+constexpr double kSame_m = 1e-10;
+
+// Planes around a tool, given by the test; it remembers what it was asked for.
+class Planes final : public NearContactSource {
+ public:
+  explicit Planes(std::vector<ToolContact> all) : all_(std::move(all)) {}
+  using NearContactSource::near;
+  NearContacts near(const ToolPose&, double, double within_m) override {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    asked_m.push_back(within_m);
+    NearContacts found{{}, -kInfinite, within_m < kLookAhead_m ? within_m : kInfinite};
+    listed_.clear();
+    for (const ToolContact& contact : all_) {
+      if (-contact.depth_m > std::min(within_m, kLookAhead_m)) continue;
+      listed_.push_back(contact);
+      found.deepest_m = std::max(found.deepest_m, contact.depth_m);
+    }
+    found.contacts = listed_;
+    return found;
+  }
+
+  std::vector<double> asked_m;
+
+ private:
+  static constexpr double kLookAhead_m = 2e-3;
+  std::vector<ToolContact> all_, listed_;
+};
+
+// Contact planes from one side or, with from_all_sides, from all around: up to a look-ahead away, and pressed
+// in by depth_m.
+std::vector<ToolContact> planes_around(std::mt19937& random, int count, double depth_m, bool from_all_sides) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<ToolContact> all;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 outside =
+        Vec3(unit(random), unit(random) - (from_all_sides ? 0 : 1.5), unit(random)).normalized();
+    all.push_back({0.007 * outside, -outside, depth_m - std::pow(unit(random), 2) * 2e-3, 1});
+  }
+  return all;
+}
+
+Vector6 random_motion(std::mt19937& random, double size_m) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Vector6 a_gu;
+  for (int k = 0; k < 6; ++k) a_gu[k] = size_m * unit(random) * (k < 3 ? 1 : 50);
+  return a_gu;
+}
+
+// The definition: one program of all contacts.
+ConstrainedMotion allowed_by_all(const VoxelTool& tool, NearContactSource& source, const Vector6& a_gu) {
+  MotionProgram program({}, tool);
+  const NearContacts near = source.near(kPose, 0);
+  const Vector6 desired_T = rotated(kPose.q_WT.conjugate(), a_gu);
+  const bool collides = near.deepest_m > LookAheadProgram::kCollision_m;
+  ConstrainedMotion motion = program.solve(collides ? Vector6(Vector6::Zero()) : desired_T, near.contacts);
+  if (collides && motion.elastic) motion = program.solve(desired_T, near.contacts);
+  return motion;
+}
+
+TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
+  std::mt19937 random(7);
+  int in_part = 0, elastic = 0, held = 0;
+  for (const double depth_m : {-5e-5, 5e-5, 5e-4})
+    for (int scene = 0; scene < 200; ++scene) {
+      Planes planes(planes_around(random, 1 + scene % 40, depth_m, scene % 4 == 0));
+      LookAheadProgram program({}, *kTool, kTool->reach_m);
+      for (const double size_m : {1e-5, 1e-4, 1e-3, 1e-2}) {
+        const Vector6 a_gu = random_motion(random, size_m);
+        const ConstrainedMotion expected = allowed_by_all(*kTool, planes, a_gu);
+        planes.asked_m.clear();
+        const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
+        if (look.near.contacts.empty()) continue;
+        const double error_m = max_point_displacement_m(look.motion.a_g - expected.a_g, kTool->reach_m);
+        EXPECT_LE(error_m, kSame_m) << scene << " " << size_m;
+        EXPECT_EQ(look.motion.elastic, expected.elastic);
+        EXPECT_LE((look.motion.push_T - expected.push_T).norm(), kSame_m);
+        EXPECT_EQ(rotated(kPose.q_WT, look.motion.a_g), look.a_g);
+        in_part += std::isfinite(look.near.within_m) ? 1 : 0;
+        elastic += expected.elastic ? 1 : 0, held += expected.active_count > 0 ? 1 : 0;
+      }
+    }
+  EXPECT_GT(in_part, 300);
+  EXPECT_GT(elastic, 10);
+  EXPECT_GT(held, 300);
+}
+
+TEST(LookAheadProgram, AsksOnlyForWhatIsNearAsLongAsTheToolMovesLittle) {
+  const Vec3 up = Vec3::UnitY();
+  Planes planes({{-0.003 * up, up, 0, 1}, {Vec3(0.005, -0.003, 0), up, -1e-3, 1}});
+  LookAheadProgram program({}, *kTool, kTool->reach_m);
+  Vector6 a_gu = Vector6::Zero();
+  a_gu.head<3>() = kPose.q_WT * Vec3(5e-5, -0.01, 0);  // along the plane, and pressed against it
+  const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
+  EXPECT_EQ(look.near.contacts.size(), 1u);
+  EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
+}
+
+TEST(LookAheadProgram, AsksForAllBeforeItSaysThatNothingIsNear) {
+  Planes planes({{Vec3(0, -0.003, 0), Vec3::UnitY(), -1.9e-3, 1}});
+  LookAheadProgram program({}, *kTool, kTool->reach_m);
+  Vector6 a_gu = Vector6::Zero();
+  a_gu[0] = 1e-5;
+  EXPECT_EQ(program.look(kPose, a_gu, planes, 0).near.contacts.size(), 1u);
+
+  Planes none({});
+  a_gu[0] = 1;
+  const LookAheadProgram::Look free = program.look(kPose, a_gu, none, 0);
+  EXPECT_TRUE(free.near.contacts.empty());
+  EXPECT_NEAR(free.a_g.head<3>().norm(), ToolParameters().look_ahead_m, 1e-15);
+  EXPECT_FALSE(std::isfinite(none.asked_m.back()));
+}
+
+// Points outside a tool, with normals roughly towards it.
+PointCloud around(const VoxelTool& tool, std::size_t count, double radius_m) {
+  const PointCloud all = scenes::random_cloud(count, radius_m, 21),
+                   directions = scenes::random_cloud(count, 1, 22);
+  PointCloud cloud;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 p_T = kPose.q_WT.conjugate() * (all.point(i) - kPose.p_W);
+    const FieldSample at = sample_field(tool, p_T);
+    if (at.distance_m < 1e-4) continue;
+    const Vec3 n_T = -at.gradient_T + 0.3 * directions.point(i);
+    cloud.append(all.point(i), kPose.q_WT * n_T.normalized());
+  }
+  return cloud;
+}
+
+// Fewer points than a program takes, so that none is left out. In a fork, which is not convex, a disk can be
+// nearer than its lower bound.
+TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
+  ToolReport report;
+  const auto fork =
+      std::make_shared<const VoxelTool>(make_voxel_tool(find_generated_tool("fork")->make(), {}, report));
+  for (const auto& [tool, count, reach_m] : {std::tuple(kTool, 800u, 0.012), std::tuple(fork, 4000u, 0.03)}) {
+    ContactList list(tool, {}, scenes::kernels());
+    list.on_frame(formatted<TiledCloud>(around(*tool, count, reach_m)));
+    LookAheadProgram program({}, *tool, tool->reach_m);
+    std::mt19937 random(8);
+    int in_part = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Vector6 a_gu = random_motion(random, i % 2 == 0 ? 1e-4 : 1e-3);
+      const Vector6 expected = allowed_by_all(*tool, list, a_gu).a_g;
+      EXPECT_LT(list.near(kPose, 0).contacts.size(), 256u);
+      const LookAheadProgram::Look look = program.look(kPose, a_gu, list, 0);
+      EXPECT_LE(max_point_displacement_m(look.motion.a_g - expected, tool->reach_m), kSame_m) << i;
+      in_part += std::isfinite(look.near.within_m) ? 1 : 0;
+    }
+    EXPECT_GT(in_part, 20) << count;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::look_ahead_program_test

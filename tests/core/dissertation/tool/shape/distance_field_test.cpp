@@ -1,0 +1,132 @@
+#include "core/dissertation/tool/shape/distance_field.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "core/dissertation/tool/shape/voxelisation.h"
+#include "tests/support/meshes.h"
+
+namespace remote_touch::distance_field_test {
+namespace {
+
+struct Field {
+  explicit Field(const TriangleMesh& mesh, double voxel_m = 5e-4)
+      : grid(grid_around(mesh, voxel_m)),
+        values(distance_field(TriangleTree(mesh), grid, inside_nodes(mesh, grid).inside)) {}
+  Vec3 place(std::size_t n) const {
+    const std::size_t columns = grid.cells[0] + 1, rows = grid.cells[1] + 1;
+    return grid.origin_T + grid.size_m * Vec3(n % columns, n / columns % rows, n / columns / rows);
+  }
+  VoxelGrid grid;
+  std::vector<float> values;
+};
+
+// Near the surface the float's rounding, elsewhere a voxel, and never too small.
+void expect_distances(const TriangleMesh& mesh, std::size_t step, double voxel_m = 5e-4) {
+  const Field field(mesh, voxel_m);
+  ASSERT_EQ(field.values.size(), field.grid.node_count());
+  int near = 0, far = 0, inside = 0;
+  for (std::size_t n = 0; n < field.values.size(); n += step) {
+    const Vec3 p = field.place(n);
+    const double expected = meshes::distance(mesh, p), got = std::abs(field.values[n]);
+    if (expected <= kExactField_m) {
+      ASSERT_NEAR(got, expected, 1e-9) << p.transpose();
+      ++near;
+    } else {
+      ASSERT_GE(got, expected - 1e-8) << p.transpose();
+      ASSERT_LE(got, expected + field.grid.size_m) << p.transpose();
+      ++far;
+    }
+    if (expected < 1e-8 || n / step % 3 != 0) continue;
+    ASSERT_EQ(field.values[n]<0, meshes::winding(mesh, p)> 0.5) << p.transpose();
+    inside += field.values[n] < 0;
+  }
+  EXPECT_GT(near, 30);
+  EXPECT_GT(far, 50);
+  EXPECT_GT(inside, 5);
+}
+
+// Steps without a common factor with the rows: places all over the grid.
+TEST(DistanceField, BallAgainstAllTriangles) {
+  expect_distances(meshes::any_body("ball"), 809);
+}
+TEST(DistanceField, HuskyAgainstAllTriangles) {
+  expect_distances(meshes::any_body("husky"), 1009, 1e-3);
+}
+TEST(DistanceField, KeyAgainstAllTriangles) {
+  expect_distances(find_generated_tool("key")->make(), 1511, 1e-3);
+}
+TEST(DistanceField, SlantedBoxAgainstAllTriangles) {
+  expect_distances(meshes::moved(box_mesh({0.06, 0.02, 0.004}), meshes::rotated(), {0, 0, 0}), 97);
+}
+TEST(DistanceField, CoarseVoxelsAgainstAllTriangles) {
+  expect_distances(meshes::any_body("fork"), 307, 2e-3);
+}
+
+// Whatever face the search begins with; near, on the other side, and far away.
+TEST(TriangleTree, FindsTheNearestFaceAndAllWithinADistance) {
+  const TriangleMesh body = meshes::any_body("key");
+  const TriangleTree tree(body);
+  std::vector<TriangleTree::Candidate> faces;
+  for (int n = 0; n < 300; ++n) {
+    const double reach = n % 3 == 0 ? 0.3 : 0.08;
+    const Vec3 p = reach * Vec3(n * 37 % 101 - 50, n * 53 % 103 - 51, n * 71 % 107 - 53) / 50;
+    const double expected = meshes::distance(body, p);
+    const TriangleTree::Nearest found = tree.nearest(p, n * 61 % static_cast<int>(body.triangles.size()));
+    EXPECT_NEAR(std::sqrt(found.squared_m2), expected, 1e-12) << p.transpose();
+    EXPECT_EQ(tree.squared_to(found.face, p), found.squared_m2);
+    tree.faces_within(p, 1.1 * expected, faces);
+    std::size_t count = 0;
+    for (const auto& [a, b, c] : body.triangles)
+      count += meshes::to_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c]) <= 1.1 * expected;
+    EXPECT_EQ(faces.size(), count);
+    EXPECT_EQ(faces.front().distance_m, std::sqrt(found.squared_m2));
+  }
+}
+
+TEST(TriangleTree, WindsAsTheSolidAnglesTell) {
+  const TriangleMesh body = meshes::any_body("ball");
+  const TriangleTree tree(body);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 p =
+        Vec3(0.01, -0.02, 0.03) + 4e-4 * Vec3(n * 37 % 101 - 50, n * 53 % 103 - 51, n * 71 % 107 - 53);
+    EXPECT_NEAR(tree.winding_number(p), meshes::winding(body, p), 0.02) << p.transpose();
+  }
+}
+
+// Inside and outside a box the distance is known, to the edges and corners too.
+TEST(DistanceField, BoxInClosedForm) {
+  const Vec3 half(0.02, 0.01, 0.005);
+  const Field field(box_mesh(2 * half));
+  for (std::size_t n = 0; n < field.values.size(); ++n) {
+    const Vec3 q = field.place(n).cwiseAbs() - half;
+    const double expected = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+    const double larger_by = (expected < 0 ? -1 : 1) * (field.values[n] - expected);
+    ASSERT_GE(larger_by, -1e-8) << field.place(n).transpose();
+    ASSERT_LE(larger_by, std::abs(expected) <= kExactField_m ? 1e-8 : 1e-4) << field.place(n).transpose();
+  }
+}
+
+TEST(DistanceField, NeedlesAndTrianglesWithoutAreaDoNoHarm) {
+  TriangleMesh body = box_mesh({0.02, 0.02, 0.02});
+  const Field before(body);
+  // One edge becomes a corner more and two triangles without area, closed as it was.
+  body.vertices.push_back(0.3 * body.vertices[0] + 0.7 * body.vertices[1]);
+  body.triangles.push_back({0, 1, 8}), body.triangles.push_back({0, 8, 1});
+  const Field after(body);
+  for (std::size_t n = 0; n < before.values.size(); ++n)
+    ASSERT_NEAR(after.values[n], before.values[n], std::abs(before.values[n]) < kExactField_m ? 1e-9 : 1e-4);
+}
+
+TEST(DistanceField, DoesNotDependOnTheNumberOfThreads) {
+  const TriangleMesh body = meshes::any_body("ball");
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const Field one(body, 1e-3);
+  omp_set_num_threads(3);
+  EXPECT_EQ(Field(body, 1e-3).values, one.values);
+  omp_set_num_threads(threads);
+}
+
+}  // namespace
+}  // namespace remote_touch::distance_field_test

@@ -1,0 +1,184 @@
+#include "core/dissertation/tool/shape/voxel_tool.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/dissertation/tool/shape/distance_field.h"
+#include "tests/support/meshes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::voxel_tool_test {
+namespace {
+
+VoxelTool make(const TriangleMesh& mesh, const VoxelToolSettings& settings = {}) {
+  ToolReport report;
+  return make_voxel_tool(mesh, settings, report);
+}
+
+ToolReport report_of(const TriangleMesh& mesh, const VoxelToolSettings& settings = {}) {
+  ToolReport report;
+  make_voxel_tool(mesh, settings, report);
+  return report;
+}
+
+TriangleMesh without_last(TriangleMesh mesh) {
+  mesh.triangles.pop_back();
+  return mesh;
+}
+
+TEST(VoxelTool, HasItsCentreOfMassInTheOrigin) {
+  const VoxelTool tool = make(box_mesh({0.03, 0.02, 0.01}, {1, 2, 3}));
+  EXPECT_NEAR(tool.volume_m3, 6e-6, 1e-15);
+  for (const Vec3& v : tool.mesh.vertices)
+    EXPECT_LT((v.cwiseAbs() - Vec3(0.015, 0.01, 0.005)).norm(), 1e-12) << v.transpose();
+  EXPECT_NEAR(tool.reach_m, Vec3(0.015, 0.01, 0.005).norm(), 1e-12);
+  EXPECT_NEAR(tool.inertia_m2(0, 0), (4e-4 + 1e-4) / 12, 1e-12);
+  EXPECT_EQ(tool.voxels.size(), tool.grid.cell_count());
+  EXPECT_EQ(tool.distance_m.size(), tool.grid.node_count());
+}
+
+TEST(VoxelTool, IsScaledByItsLongestSide) {
+  ToolReport report;
+  const VoxelTool tool = make_voxel_tool(box_mesh({3, 2, 1}), {.size_m = 0.06}, report);
+  EXPECT_LT((report.sides_m - Vec3(0.06, 0.04, 0.02)).norm(), 1e-12);
+  EXPECT_NEAR(tool.volume_m3, 48e-6, 1e-14);
+  EXPECT_HAS(text(report), "60.0 x 40.0 x 20.0 mm, closed (1 part, 12 triangles)");
+  EXPECT_EQ(text(report).find("outwards"), std::string::npos) << "its faces were so";
+}
+
+TEST(VoxelTool, TurnsFacesOutwards) {
+  const TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
+  const VoxelTool right = make(box), rotated = make(meshes::inside_out(box));
+  EXPECT_EQ(right.distance_m, rotated.distance_m);
+  EXPECT_EQ(right.voxels, rotated.voxels);
+  EXPECT_TRUE(report_of(meshes::inside_out(box)).inverted);
+  EXPECT_FALSE(report_of(box).inverted);
+}
+
+TEST(VoxelTool, FieldWithinTheGridIsTheDistance) {
+  const VoxelTool tool = make(meshes::any_body("ball"));
+  for (const double radius : {0.004, 0.0093, 0.01, 0.0107, 0.013})
+    for (const Vec3& displacement :
+         {Vec3(1, 0, 0), Vec3(-0.6, 0.8, 0), Vec3(0.48, -0.64, 0.6), Vec3(0, 0, -1)}) {
+      const FieldSample sample = sample_field(tool, radius * displacement);
+      EXPECT_NEAR(sample.distance_m, radius - 0.01, 1e-4);
+      EXPECT_GT(sample.gradient_T.dot(displacement), 0.97);
+      // Exact within kExactField_m of the surface only.
+      EXPECT_NEAR(sample.gradient_T.norm(), 1, radius > 0.01 - kExactField_m ? 0.03 : 0.06);
+    }
+}
+
+// The gradient is that of the interpolated field: held against its differences, in cells and out of the grid.
+TEST(VoxelTool, TheGradientIsThatOfTheField) {
+  const VoxelTool tool = make(box_mesh({0.012, 0.01, 0.008}), {.voxel_m = 1e-3});
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 p = tool.grid.origin_T + 1e-3 * Vec3(1.3 + n % 19 + 0.013 * n, 1.21 + n % 17, 1.4 + n % 13);
+    const FieldSample sample = sample_field(tool, p);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 step = 1e-7 * Vec3::Unit(i);
+      const double slope =
+          (sample_field(tool, p + step).distance_m - sample_field(tool, p - step).distance_m) / 2e-7;
+      EXPECT_NEAR(sample.gradient_T[i], slope, 1e-6) << p.transpose();
+    }
+  }
+}
+
+TEST(VoxelTool, FieldAtNodesIsWhatIsStored) {
+  const VoxelTool tool = make(box_mesh({0.01, 0.01, 0.01}), {.voxel_m = 1e-3});
+  const int columns = tool.grid.cells[0] + 1, rows = tool.grid.cells[1] + 1;
+  for (std::size_t n = 0; n < tool.distance_m.size(); ++n) {
+    const Vec3 at(n % columns, n / columns % rows, n / columns / rows);
+    EXPECT_NEAR(sample_field(tool, tool.grid.origin_T + 1e-3 * at).distance_m, tool.distance_m[n], 1e-9);
+  }
+}
+
+TEST(VoxelTool, FieldOutsideTheGridGrowsWithTheDistance) {
+  const VoxelTool tool = make(box_mesh({0.02, 0.02, 0.02}));
+  for (const Vec3& displacement : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0.6, 0.8), Vec3(0.48, -0.64, 0.6)})
+    for (const double far : {0.03, 0.1, 2.0}) {
+      const Vec3 p = far * displacement, q = p.cwiseAbs() - Vec3::Constant(0.01);
+      const double expected = q.cwiseMax(0.0).norm();
+      const FieldSample sample = sample_field(tool, p);
+      EXPECT_GE(sample.distance_m, expected - 5e-4);
+      EXPECT_LE(sample.distance_m, expected + 0.012);  // the distance is summed at the grid's box
+      EXPECT_GT(sample.gradient_T.dot(displacement), 0.8);
+      EXPECT_NEAR(sample.gradient_T.norm(), 1, 1e-9);
+    }
+}
+
+TEST(VoxelTool, RefusesWhatIsNotClosed) {
+  const TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
+  ToolReport report;
+  EXPECT_EQ(
+      refusal([&] { make_voxel_tool(without_last(box), {}, report, "renderer.tool_mesh = x.obj"); }),
+      "renderer.tool_mesh = x.obj: not closed: 3 boundary edges (1 part, 11 triangles): expected a closed "
+      "mesh, or renderer.tool_repair=true");
+  EXPECT_HAS(refusal([&] {
+               make(meshes::together(box, meshes::inside_out(box_mesh({0.01, 0.01, 0.01}, {1e-2, 9e-3, 0}))));
+             }),
+             "a part of it is inside out");
+}
+
+TEST(VoxelTool, RefusesWhatIsNoBody) {
+  TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
+  EXPECT_HAS(refusal([] { make({}); }), "no triangles");
+  EXPECT_HAS(refusal([&] { make(box, {.size_m = 500}); }),
+             "million voxels of 0.000500 m: expected 150 million");
+  EXPECT_HAS(refusal([&] { make(box, {.size_m = 1e300}); }), "million voxels");
+  EXPECT_HAS(refusal([&] { make(box, {.voxel_m = 0.05}); }), "no voxel of 0.050000 m lies inside");
+  TriangleMesh bad = box;
+  bad.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 vertices that are not finite");
+  bad = box, bad.triangles[0][0] = 99;
+  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangles with a corner that is not a vertex");
+  EXPECT_HAS(refusal([] { make(box_mesh({0.03, 0.02, 0})); }), "encloses no volume");
+  EXPECT_HAS(refusal([] { make(box_mesh({0, 0, 0})); }), "has no size");
+}
+
+TEST(VoxelTool, RepairGivesBackTheBox) {
+  const TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
+  ToolReport report;
+  const VoxelTool tool = make_voxel_tool(without_last(box), {.repair = true}, report);
+  EXPECT_EQ(report.repaired.filled_holes, 1);
+  EXPECT_FALSE(report.by_winding_number);
+  EXPECT_EQ(tool.voxels, make(box).voxels);
+  EXPECT_HAS(text(report), "repaired: filled 1 holes");
+}
+
+// A fin on an edge of a box cannot be closed; the box stays solid and the fin is shell only.
+TEST(VoxelTool, AMeshThatCannotBeClosedIsSolidByWindingNumbers) {
+  TriangleMesh fin = box_mesh({0.03, 0.02, 0.01});
+  const Vec3 edge = fin.vertices[1] - fin.vertices[0];
+  fin.vertices.push_back(fin.vertices[0] + edge / 2 + Vec3(0, -0.005, -0.005));
+  fin.triangles.push_back({0, 1, 8}), fin.triangles.push_back({0, 1, 8});
+  fin.triangles.push_back({2, 1, 8});
+  ToolReport report;
+  const VoxelTool tool = make_voxel_tool(fin, {.repair = true}, report);
+  EXPECT_TRUE(report.by_winding_number) << text(report);
+  EXPECT_NEAR(tool.volume_m3, 6e-6, 0.1 * 6e-6);
+  EXPECT_LT(sample_field(tool, Vec3::Zero()).distance_m, -0.003);
+  EXPECT_GT(report.thin_fraction, 0.01);
+  EXPECT_HAS(text(report), "solid by winding numbers");
+}
+
+TEST(VoxelTool, ReportsHowMuchIsThin) {
+  EXPECT_EQ(report_of(box_mesh({0.03, 0.02, 0.01})).thin_fraction, 0);
+  const TriangleMesh sheet =
+      meshes::together(box_mesh({0.03, 0.02, 0.01}), box_mesh({0.03, 0.02, 0.0004}, {0, 0, 0.03}));
+  const ToolReport report = report_of(sheet);
+  EXPECT_GT(report.thin_fraction, 0.2);
+  EXPECT_HAS(text(report), "% of the surface is on parts thinner");
+}
+
+TEST(VoxelTool, VerticesThatNoTriangleUsesDoNotCount) {
+  TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
+  const VoxelTool before = make(box);
+  box.vertices.insert(box.vertices.begin(), Vec3(7, 7, 7));
+  for (auto& triangle : box.triangles)
+    for (int& corner : triangle) ++corner;
+  EXPECT_EQ(make(box).distance_m, before.distance_m);
+}
+
+}  // namespace
+}  // namespace remote_touch::voxel_tool_test

@@ -1,0 +1,287 @@
+#include "core/numeric/noise.h"
+#include "core/kernels/isa.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch::noise_test {
+namespace {
+
+using Real = long double;
+using Words = std::array<std::uint32_t, 4>;
+using Key = std::array<std::uint32_t, 2>;
+
+// Constants of Philox4x32, Salmon et al. 2011.
+constexpr std::uint32_t kMultiplier[2] = {0xD2511F53, 0xCD9E8D57}, kWeyl[2] = {0x9E3779B9, 0xBB67AE85};
+
+std::uint32_t high(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint32_t>((std::uint64_t{a} * b) >> 32);
+}
+
+Words philox(Words c, Key key) {
+  for (int round = 0; round < 10; ++round) {
+    c = {high(kMultiplier[1], c[2]) ^ c[1] ^ key[0], kMultiplier[1] * c[2],
+         high(kMultiplier[0], c[0]) ^ c[3] ^ key[1], kMultiplier[0] * c[0]};
+    key[0] += kWeyl[0], key[1] += kWeyl[1];
+  }
+  return c;
+}
+
+// The counter that gives these words: each round undone, the multipliers being odd.
+Words philox_inverse(Words w, const Key& key) {
+  std::uint32_t inverse[2];
+  for (int k = 0; k < 2; ++k) {
+    inverse[k] = kMultiplier[k];
+    for (int i = 0; i < 5; ++i) inverse[k] *= 2 - kMultiplier[k] * inverse[k];  // Newton's iteration
+  }
+  for (std::uint32_t round = 10; round-- > 0;) {
+    const std::uint32_t a = inverse[0] * w[3], c = inverse[1] * w[1];
+    w = {a, w[0] ^ high(kMultiplier[1], c) ^ (key[0] + round * kWeyl[0]), c,
+         w[2] ^ high(kMultiplier[0], a) ^ (key[1] + round * kWeyl[1])};
+  }
+  return w;
+}
+
+// Box-Muller on the four words: one pair, and the cosine of a second.
+std::array<Real, 3> box_muller(const Words& w) {
+  const auto radius = [](std::uint32_t k) { return std::sqrt(-2 * std::log((Real{1} + k) * 0x1p-32L)); };
+  const auto angle = [](std::uint32_t k) { return 2 * std::acos(Real{-1}) * (k * 0x1p-32L); };
+  return {radius(w[0]) * std::cos(angle(w[1])), radius(w[0]) * std::sin(angle(w[1])),
+          radius(w[2]) * std::cos(angle(w[3]))};
+}
+
+using Normals = std::array<std::vector<double>, 3>;
+
+Normals draw(const NoiseStream& stream, const std::vector<std::uint32_t>& index,
+             const Kernels& kernels = scenes::kernels()) {
+  Normals n;
+  for (auto& column : n) column.resize(index.size());
+  kernels.noise.normals(stream, index.data(), index.size(), n[0].data(), n[1].data(), n[2].data());
+  return n;
+}
+
+std::vector<std::uint32_t> first_points(std::size_t count) {
+  std::vector<std::uint32_t> index(count);
+  std::iota(index.begin(), index.end(), 0u);
+  return index;
+}
+
+// A normal is at most 6.7 and comes from a few double operations of 1e-15 each at that size.
+constexpr double kRounding = 1e-14;
+
+TEST(Noise, OracleMeetsTheKnownAnswersOfRandom123) {
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(philox({~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}),
+            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(Noise, IsPhiloxAndBoxMullerOfTheKey) {
+  std::vector<std::uint32_t> index = first_points(2000);
+  for (std::size_t i = 0; i < index.size(); ++i) index[i] *= 2147483u;  // all the range, wrapping round
+  const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
+  for (const NoiseUse use : {NoiseUse::point_position, NoiseUse::depth})
+    for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
+      for (const Kernels* kernels : supported_kernels()) {
+        const Normals got = draw(noise_stream(key, use, frame), index, *kernels);
+        const std::uint32_t word = frame | (use == NoiseUse::depth ? 1u << 28 : 0u);
+        for (std::size_t i = 0; i < index.size(); ++i) {
+          const auto want = box_muller(philox({index[i], word, 4000000001, 17}, {0x9abcdef0, 0x12345678}));
+          for (std::size_t k = 0; k < 3; ++k)
+            ASSERT_NEAR(got[k][i], static_cast<double>(want[k]), kRounding) << index[i];
+        }
+      }
+}
+
+// Words at the seams of the logarithm and of the quarter turns, met through the inverse generator.
+TEST(Noise, IsRightAtTheEndsAndSeamsOfItsFunctions) {
+  const Key key{1, 2};
+  std::vector<std::uint32_t> lengths{0, 1, 2, 0x55555554, 0x55555555, 0x7fffffff, 0x80000000, ~0u - 1, ~0u};
+  for (std::uint32_t k = 0xaaaaaaa8; k < 0xaaaaaaad; ++k) lengths.push_back(k);  // u = 2/3
+  std::vector<std::uint32_t> angles;
+  for (std::uint32_t eighth = 0; eighth < 8; ++eighth)
+    for (const std::uint32_t beside : {~0u, 0u, 1u}) angles.push_back((eighth << 29) + beside);
+  for (const Kernels* kernels : supported_kernels())
+    for (const std::uint32_t length : lengths)
+      for (const std::uint32_t angle : angles) {
+        const Words words{length, angle, lengths[angle % lengths.size()], ~angle};
+        const Words counter = philox_inverse(words, key);
+        ASSERT_EQ(philox(counter, key), words);
+        const Normals got =
+            draw({{key[0], key[1]}, {counter[1], counter[2], counter[3]}}, {counter[0]}, *kernels);
+        const auto want = box_muller(words);
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_NEAR(got[k][0], static_cast<double>(want[k]), kRounding) << length << " " << angle;
+      }
+}
+
+TEST(Noise, BoundIsTightAndHolds) {
+  const Words counter = philox_inverse({0, 0, 0, 0x80000000}, {7, 8});
+  const Normals max = draw({{7, 8}, {counter[1], counter[2], counter[3]}}, {counter[0]});
+  EXPECT_NEAR(max[0][0], static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
+  EXPECT_NEAR(max[2][0], -static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
+  EXPECT_LT(max[0][0], kMaxNormal);
+  EXPECT_GT(max[0][0], kMaxNormal - 1e-3);
+}
+
+TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
+  const NoiseStream stream = noise_stream({3, 1, 4}, NoiseUse::point_position, 9);
+  const Normals all = draw(stream, first_points(1000));
+  std::vector<std::uint32_t> shuffled = first_points(1000);
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(1));
+  for (const std::size_t count : {1, 3, 7, 8, 9, 100, 613}) {
+    const std::vector<std::uint32_t> some(shuffled.end() - static_cast<std::ptrdiff_t>(count),
+                                          shuffled.end());
+    for (const Kernels* kernels : supported_kernels()) {
+      const Normals few = draw(stream, some, *kernels);
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(few[k][i], all[k][some[i]]) << kernels->isa;
+    }
+  }
+}
+
+// Every point whose normals match the request is found. Other points are found only if their words leave it
+// open.
+TEST(Noise, CandidatesAreFoundByTheirWords) {
+  constexpr std::uint32_t kFirst = 12345, kCount = 40001;
+  const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
+  std::vector<std::uint32_t> every(kCount);
+  std::iota(every.begin(), every.end(), kFirst);
+  const Normals normals = draw(stream, every);
+  for (const double x : {0.0, 0.5, -2.0, 3.5})
+    for (const double z : {0.0, 1.0, -2.5}) {
+      const std::vector<std::uint64_t> bounds(kCount, word_bounds(std::abs(x), x));
+      std::vector<std::vector<std::uint32_t>> found;
+      for (const Kernels* kernels : supported_kernels()) {
+        found.emplace_back(kCount + kLanes);
+        found.back().resize(kernels->noise.candidates(stream, kFirst, kCount, bounds.data(),
+                                                      word_bounds(std::abs(z), z), found.back().data()));
+        ASSERT_EQ(found.back(), found.front()) << kernels->isa;
+      }
+      const auto is_asked = [](double normal, double min) {
+        return min == 0 || (min > 0 ? normal >= min : normal <= min);
+      };
+      const auto has_sign = [](double normal, double min) { return min == 0 || (normal > 0) == (min > 0); };
+      std::size_t next = 0;
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        const bool is_found = next < found[0].size() && found[0][next] == kFirst + i;
+        next += is_found ? 1 : 0;
+        const double nx = normals[0][i], nz = normals[2][i];
+        const bool must = is_asked(nx, x) && is_asked(nz, z);
+        const bool must_not =
+            std::hypot(nx, normals[1][i]) < std::abs(x) - 1e-5 || !has_sign(nx, x) || !has_sign(nz, z);
+        ASSERT_TRUE(is_found ? !must_not : !must) << i;
+      }
+      const double halves = (x == 0 ? 1 : 0.5) * (z == 0 ? 1 : 0.5);
+      const double expected = halves * kCount * std::exp(-0.5 * (x * x + z * z));
+      EXPECT_NEAR(static_cast<double>(found[0].size()), expected, 5 * std::sqrt(expected) + 1);
+    }
+}
+
+// --- uniforms ---
+
+TEST(Uniforms, AreTheWordsOfPhilox) {
+  const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
+  for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
+    for (const std::uint32_t point : {0u, 1u, 77u, ~0u}) {
+      const auto got = uniforms(noise_stream(key, NoiseUse::transport, frame), point);
+      const Words want = philox({point, frame | 2u << 28, 4000000001, 17}, {0x9abcdef0, 0x12345678});
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(got[k], static_cast<double>((static_cast<Real>(want[k]) + 0.5L) * 0x1p-32L))
+            << frame << " " << point;
+    }
+}
+
+TEST(Uniforms, LieBetweenNothingAndOneAtTheEndsToo) {
+  const Key key{7, 8};
+  for (const std::uint32_t word : {0u, ~0u}) {
+    const Words counter = philox_inverse({word, word, word, word}, key);
+    for (const double u : uniforms({{7, 8}, {counter[1], counter[2], counter[3]}}, counter[0])) {
+      EXPECT_EQ(u, word == 0 ? 0x1p-33 : 1 - 0x1p-33);
+      EXPECT_TRUE(u > 0 && u < 1);
+    }
+  }
+}
+
+TEST(Uniforms, AreEvenlySpread) {
+  constexpr std::uint32_t kCount = 50000;
+  double mean[4] = {}, square[4] = {}, product = 0;
+  for (std::uint32_t frame = 0; frame < kCount; ++frame) {
+    const auto u = uniforms(noise_stream({11}, NoiseUse::transport, frame), 0);
+    for (std::size_t k = 0; k < 4; ++k)
+      mean[k] += (u[k] - 0.5) / kCount, square[k] += (u[k] - 0.5) * (u[k] - 0.5) / kCount;
+    product += (u[0] - 0.5) * (u[1] - 0.5) / kCount;
+  }
+  for (std::size_t k = 0; k < 4; ++k) {  // 5 standard deviations of each estimate
+    EXPECT_NEAR(mean[k], 0, 5 / std::sqrt(12.0 * kCount));
+    EXPECT_NEAR(square[k], 1 / 12.0, 5 / std::sqrt(180.0 * kCount));
+  }
+  EXPECT_NEAR(product, 0, 5 / (12 * std::sqrt(1.0 * kCount))) << "loss and lateness of a frame";
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
+}
+
+TEST(Noise, EveryPartOfTheKeyGivesItsOwnNoise) {
+  const std::size_t count = 20000;
+  const NoiseKey base{5, 6, 7};
+  const auto use = NoiseUse::point_position;
+  const std::vector<NoiseStream> streams{noise_stream(base, use, 8),
+                                         noise_stream(base, use, 9),
+                                         noise_stream(base, NoiseUse::depth, 8),
+                                         noise_stream(base, NoiseUse::transport, 8),
+                                         noise_stream({6, 6, 7}, use, 8),
+                                         noise_stream({5 + (std::uint64_t{1} << 32), 6, 7}, use, 8),
+                                         noise_stream({5, 7, 7}, use, 8),
+                                         noise_stream({5, 6, 8}, use, 8),
+                                         noise_stream({5, 7, 6}, use, 8)};
+  std::vector<std::vector<double>> columns;
+  for (const NoiseStream& stream : streams)
+    for (auto& column : draw(stream, first_points(count))) columns.push_back(column);
+  for (std::size_t a = 0; a < columns.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      EXPECT_NE(columns[a][0], columns[b][0]);
+      // Independent columns: the correlation is within 5 standard deviations 1/sqrt(n).
+      EXPECT_LT(std::abs(correlation(columns[a], columns[b])), 5 / std::sqrt(count)) << a << " " << b;
+    }
+}
+
+TEST(Noise, IsStandardNormal) {
+  const std::size_t count = 200000;
+  const double n = static_cast<double>(count);
+  Normals normals = draw(noise_stream({11, 0, 0}, NoiseUse::depth, 2), first_points(count));
+  for (std::vector<double>& column : normals) {
+    double moment[5] = {};
+    for (const double v : column)
+      for (int k = 1; k <= 4; ++k) moment[k] += std::pow(v, k) / n;
+    // 5 standard deviations of each estimate; E v^4 = 3 with variance E v^8 - 9 = 96.
+    EXPECT_NEAR(moment[1], 0, 5 / std::sqrt(n));
+    EXPECT_NEAR(moment[2], 1, 5 * std::sqrt(2 / n));
+    EXPECT_NEAR(moment[3], 0, 5 * std::sqrt(15 / n));
+    EXPECT_NEAR(moment[4], 3, 5 * std::sqrt(96 / n));
+    const std::vector<double> next(column.begin() + 1, column.end());
+    EXPECT_LT(std::abs(correlation(next, column)), 5 / std::sqrt(n)) << "between neighbours";
+
+    std::sort(column.begin(), column.end());
+    EXPECT_LT(std::max(-column.front(), column.back()), kMaxNormal);
+    double distance = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double cumulative = 0.5 * std::erfc(-column[i] / std::sqrt(2.0)), rank = static_cast<double>(i);
+      distance = std::max({distance, cumulative - rank / n, (rank + 1) / n - cumulative});
+    }
+    EXPECT_LT(distance * std::sqrt(n), 1.95);  // Kolmogorov-Smirnov at 0.1 %
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::noise_test

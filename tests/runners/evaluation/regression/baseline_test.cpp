@@ -1,0 +1,354 @@
+// The outcome of a check for each stored baseline.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/sha256.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/evaluation/regression/baseline_check.h"
+#include "runners/evaluation/regression/manifest.h"
+#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_run.h"
+#include "tests/support/result_files.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::baseline_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using State = BaselineCheck::State;
+
+// --- checks ---
+
+const char* const kExperiment = R"({"title": "a short press", "scenario": {"name": "flat-grid"},
+  "renderer": {"name": "proxy"},
+  "trajectory": {"name": "waypoints", "waypoints": [[-0.01, 0.01, 0, 0], [0.01, -0.003, 0, 0.1]]},
+  "duration_s": 0.25})";
+const char* const kSweep = R"({"title": "a small map", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "values": [0, 0.003]},
+           {"parameter": "scenario.acceleration_m_per_s2", "values": [0, 6]}],
+  "measures": ["popped_through", "max_penetration"]})";
+
+class CheckBaseline : public testing::Test {
+ protected:
+  CheckBaseline() { folder_.write("short.json", kExperiment), folder_.write("map.json", kSweep); }
+
+  static std::string changed_config(const std::string& config,
+                                    const std::function<void(ordered_json&)>& change) {
+    ordered_json json = ordered_json::parse(config);
+    change(json);
+    return json.dump();
+  }
+  using ChangeConfig = std::function<void(ordered_json&)>;
+
+  // Stores short.h5 as a program would that had made it, and enters it.
+  Baseline stored_run(
+      const std::function<void(Trace&)>& change = [](Trace&) {}, const ChangeConfig& change_config = {}) {
+    const Experiment experiment = Experiment::load((folder_ / "short.json").string());
+    SimulationOptions options;
+    options.hash_frames = true;
+    Trace trace = simulate(experiment, options);
+    change(trace);
+    std::string config = experiment.to_json();
+    if (change_config) config = changed_config(config, change_config);
+    write_trace(folder_ / "short.h5", trace, {{"config", config}, {"git_commit", "abc"}, {"isa", "z80"}}, {});
+    return entered({"short", "run", "short.json"});
+  }
+  Baseline stored_sweep(
+      const std::function<void(SweepResult&)>& change = [](SweepResult&) {},
+      const ChangeConfig& change_config = {}) {
+    const Sweep sweep = Sweep::load((folder_ / "map.json").string());
+    SweepResult result = run_sweep(sweep, {});
+    change(result);
+    std::string config = sweep.to_json();
+    if (change_config) config = changed_config(config, change_config);
+    write_sweep(folder_ / "map.h5", result, {{"config", config}, {"git_commit", "abc"}});
+    return entered({"map", "sweep", "map.json"});
+  }
+  Baseline entered(Baseline baseline) const {
+    baseline.sha256 = sha256_of_file(file_of(folder_.path(), baseline));
+    return baseline;
+  }
+
+  BaselineCheck check(const Baseline& baseline) const {
+    BaselineCheck result = check_baseline(folder_.path(), baseline, scenes::kernels(), nullptr);
+    EXPECT_EQ(result.name, baseline.name);
+    EXPECT_FALSE(contains(result.text, "\n")) << result.text;
+    EXPECT_FALSE(result.text.empty());
+    return result;
+  }
+  void expect_uncomparable(const Baseline& baseline, const std::string& subject,
+                           const std::string& why) const {
+    const BaselineCheck result = check(baseline);
+    EXPECT_EQ(result.state, State::not_comparable) << result.text;
+    EXPECT_HAS(result.text, subject);
+    EXPECT_HAS(result.text, why);
+    EXPECT_FALSE(result.comparison);
+  }
+  std::string place(const std::string& name) const { return (folder_ / name).string(); }
+
+  const TestFolder folder_{"baseline_test"};
+};
+
+TEST_F(CheckBaseline, TheSameWhoeverMadeIt) {
+  const BaselineCheck result = check(stored_run());
+  EXPECT_EQ(result.state, State::same);
+  EXPECT_EQ(result.text, "18 columns, every number is the same");
+  ASSERT_TRUE(result.comparison);
+  EXPECT_EQ(result.comparison->baseline, "short (stored)");
+  EXPECT_EQ(result.comparison->candidate, "this program");
+  EXPECT_EQ(result.comparison->outcome, Outcome::same);
+  EXPECT_TRUE(result.comparison->configuration.empty());
+}
+
+TEST_F(CheckBaseline, AppliesTheOverrides) {
+  Baseline baseline = stored_run();
+  baseline.overrides = {"renderer.stiffness_N_per_m=450"};
+  const BaselineCheck result = check(baseline);
+  EXPECT_EQ(result.state, State::changed);
+  EXPECT_HAS(result.text, "force");
+  ASSERT_TRUE(result.comparison);
+  ASSERT_EQ(result.comparison->configuration.size(), 1u);
+  EXPECT_HAS(result.comparison->configuration.front(), "renderer.stiffness_N_per_m 600.0 against 450");
+}
+
+TEST_F(CheckBaseline, ChangedNumbers) {
+  Baseline baseline = stored_run([](Trace& trace) { trace.force_N[120].y() += 0x1p-20; });
+  const BaselineCheck changed = check(baseline);
+  EXPECT_EQ(changed.state, State::changed);
+  EXPECT_TRUE(changed.text.starts_with("force of 18 columns, from tick 120 on (drift)")) << changed.text;
+  ASSERT_TRUE(changed.comparison && changed.comparison->columns && changed.comparison->columns->divergence);
+  EXPECT_EQ(changed.comparison->columns->divergence->tick, 120u);
+
+  baseline.tolerances = {{"force", {0x1p-21}}};
+  EXPECT_EQ(check(baseline).state, State::changed);
+  baseline.tolerances = {{"proxy_position", {1}}};
+  EXPECT_EQ(check(baseline).state, State::changed);
+  baseline.tolerances = {{"force", {0x1p-19}}};
+  const BaselineCheck within = check(baseline);
+  EXPECT_EQ(within.state, State::same);
+  EXPECT_EQ(within.text, "18 columns, every number is within its tolerance");
+}
+
+TEST_F(CheckBaseline, ReportsChangesThatNoToleranceCovers) {
+  for (const auto& change : std::vector<std::function<void(Trace&)>>{
+           [](Trace& trace) { trace.state[100] ^= 1; }, [](Trace& trace) { trace.frame_hash[0] ^= 1; },
+           [](Trace& trace) { trace.nearest_distance_m[9] = std::nan(""); },
+           [](Trace& trace) { trace.force_N[3].x() = INFINITY; }}) {
+    Baseline baseline = stored_run(change);
+    baseline.tolerances = {{"*", {1e99}}};
+    EXPECT_EQ(check(baseline).state, State::changed);
+  }
+}
+
+// A value that no number depends on.
+TEST_F(CheckBaseline, AnotherExperimentWithTheSameNumbers) {
+  const BaselineCheck result = check(stored_run([](Trace&) {}, [](auto& config) { config["seed"] = 2; }));
+  EXPECT_EQ(result.state, State::changed);
+  EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 2 against 1");
+  ASSERT_TRUE(result.comparison);
+  EXPECT_EQ(result.comparison->outcome, Outcome::changed);
+  EXPECT_EQ(result.comparison->verdict, result.text);
+}
+
+TEST_F(CheckBaseline, AChangedFileOfTheExperiment) {
+  const Baseline baseline = stored_run();
+  ordered_json json = ordered_json::parse(kExperiment);
+  json["title"] = "told in other words";
+  folder_.write("short.json", json.dump());
+  EXPECT_EQ(check(baseline).state, State::same);
+  json["renderer"]["r1_m"] = 0.004;
+  folder_.write("short.json", json.dump());
+  const BaselineCheck changed = check(baseline);
+  EXPECT_EQ(changed.state, State::changed);
+  EXPECT_HAS(changed.text, "(configuration differs)");
+  EXPECT_HAS(changed.comparison->configuration.front(), "renderer.r1_m ");
+  json["duration_s"] = 0.1;
+  folder_.write("short.json", json.dump());
+  EXPECT_EQ(check(baseline).state, State::changed);
+
+  for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
+           {"", "short.json: "}, {"[]", "short.json: not an object"}, {"{}", "scenario: missing"}}) {
+    folder_.write("short.json", text);
+    expect_uncomparable(baseline, "", why);
+  }
+  fs::remove(folder_ / "short.json");
+  expect_uncomparable(baseline, place("short.json"), "cannot be read");
+}
+
+TEST_F(CheckBaseline, UnknownNamesAreNotComparable) {
+  Baseline baseline = stored_run();
+  baseline.subject = "moon";
+  expect_uncomparable(baseline, "moon: cannot be read", "remote-touch list");
+  baseline.subject = "short.json", baseline.overrides = {"renderer.moon=1"};
+  expect_uncomparable(baseline, "renderer.moon: unknown", "did you mean");
+  baseline.overrides = {}, baseline.tolerances = {{"moon", {1}}};
+  expect_uncomparable(baseline, "tolerance of moon", "no such column");
+}
+
+// --- checks of configurations by other versions of the program ---
+
+TEST_F(CheckBaseline, AParameterThatIsNoMore) {
+  const BaselineCheck result =
+      check(stored_run([](Trace&) {}, [](auto& config) { config["renderer"]["moon_m"] = 3; }));
+  EXPECT_EQ(result.state, State::changed);
+  EXPECT_EQ(result.text,
+            "the numbers are equal, but the experiment differs: renderer.moon_m 3 against absent");
+}
+
+TEST_F(CheckBaseline, AParameterThatIsNew) {
+  EXPECT_EQ(check(stored_run([](Trace&) {}, [](auto& config) { config["renderer"].erase("gamma"); })).state,
+            State::same);
+  EXPECT_EQ(check(stored_run([](Trace&) {}, [](auto& config) { config.erase("frame_latency_s"); })).state,
+            State::same);
+  // It has its default where the stored configuration lacks it, and that is not what is run now.
+  ordered_json json = ordered_json::parse(kExperiment);
+  json["seed"] = 7;
+  folder_.write("short.json", json.dump());
+  const BaselineCheck result = check(stored_run([](Trace&) {}, [](auto& config) { config.erase("seed"); }));
+  EXPECT_EQ(result.state, State::changed);
+  EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 1 against 7");
+}
+
+TEST_F(CheckBaseline, AConfigurationThatCannotBeRead) {
+  Baseline baseline = stored_run();
+  const Trace trace = simulate(Experiment::load(place("short.json")));
+  write_trace(folder_ / "short.h5", trace, {{"config", "{\"seed\":"}}, {});
+  expect_uncomparable(entered(baseline), "configuration", "parse error");
+  for (const char* config : {"", "[]", "null"}) {
+    write_trace(folder_ / "short.h5", trace, {{"config", config}}, {});
+    EXPECT_EQ(check(entered(baseline)).state, State::changed) << config;
+  }
+}
+
+// --- checks of damaged files ---
+
+void flip(const fs::path& folder, const std::string& name, std::size_t at) {
+  std::string bytes = bytes_of(folder / name);
+  bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
+  std::ofstream(folder / name, std::ios::binary) << bytes;
+}
+
+// A file that is not the one of the manifest is refused as it is, whatever is in it.
+TEST_F(CheckBaseline, AFileThatIsNotTheStoredOne) {
+  const Baseline run = stored_run(), sweep = stored_sweep();
+  for (const Baseline& baseline : {run, sweep}) {
+    const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
+    const std::string why = "SHA-256 differs from the manifest";
+    for (const std::size_t at :
+         {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
+      flip(folder_.path(), name, at);
+      expect_uncomparable(baseline, place(name), why);
+      folder_.write(name, bytes);
+    }
+    for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
+                                     bytes + "x", std::string(), std::string("a text\n")}) {
+      folder_.write(name, other);
+      expect_uncomparable(baseline, place(name), why);
+    }
+    fs::remove(folder_ / name);
+    expect_uncomparable(baseline, place(name), "");
+    fs::create_directory(folder_ / name);
+    expect_uncomparable(baseline, place(name), "");
+    fs::remove(folder_ / name);
+    folder_.write(name, bytes);
+    EXPECT_EQ(check(baseline).state, State::same);
+  }
+}
+
+// The manifest speaks of the damaged file itself.
+TEST_F(CheckBaseline, AFileThatWasStoredDamaged) {
+  for (const Baseline& baseline : {stored_run(), stored_sweep()}) {
+    const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
+    for (const std::size_t at :
+         {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
+      flip(folder_.path(), name, at);
+      expect_uncomparable(entered(baseline), place(name), "");
+      folder_.write(name, bytes);
+    }
+    for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
+                                     bytes + "x", std::string(), std::string("a text\n")}) {
+      folder_.write(name, other);
+      expect_uncomparable(entered(baseline), place(name), "expected");
+    }
+  }
+}
+
+TEST_F(CheckBaseline, AnotherSchema) {
+  const Baseline run = stored_run(), sweep = stored_sweep();
+  fs::copy_file(folder_ / "short.h5", folder_ / "map.h5", fs::copy_options::overwrite_existing);
+  expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/2");
+  stored_sweep();
+  fs::copy_file(folder_ / "map.h5", folder_ / "short.h5", fs::copy_options::overwrite_existing);
+  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/2");
+
+  for (const std::string other : {"remote-touch-trace/1", "remote-touch-trace/3"}) {
+    Hdf5Writer hdf5;
+    hdf5.attribute("/", "schema", other);
+    hdf5.save(folder_ / "short.h5");
+    expect_uncomparable(entered(run), place("short.h5"), "schema " + other);
+  }
+}
+
+// --- checks that need a recording ---
+
+TEST_F(CheckBaseline, ARecordingThatIsNotHere) {
+  Baseline baseline = stored_run();
+  baseline.subject = "fig4.16-boxes", baseline.overrides = {"scenario.path=" + place("nowhere.pcd")};
+  const BaselineCheck result = check(baseline);
+  EXPECT_EQ(result.state, State::not_run);
+  EXPECT_HAS(result.text, place("nowhere.pcd"));
+  EXPECT_HAS(result.text, "no such recording");
+  EXPECT_FALSE(result.comparison);
+
+  folder_.write("nowhere.pcd", "no recording");
+  expect_uncomparable(baseline, place("nowhere.pcd"), "");
+  fs::remove(folder_ / "nowhere.pcd");
+  flip(folder_.path(), "short.h5", 1000);  // a damaged file is told all the same
+  expect_uncomparable(baseline, place("short.h5"), "SHA-256");
+}
+
+// --- checks of sweeps ---
+
+TEST_F(CheckBaseline, Sweeps) {
+  EXPECT_EQ(check(stored_sweep()).state, State::same);
+  Baseline baseline = stored_sweep(
+      [](SweepResult& result) { std::get<std::vector<double>>(result.measures[1].values)[2] += 0x1p-20; });
+  const BaselineCheck changed = check(baseline);
+  EXPECT_EQ(changed.state, State::changed);
+  EXPECT_HAS(changed.text, "1 of 4 runs");
+  baseline.tolerances = {{"max_penetration", {0x1p-19}}};
+  EXPECT_EQ(check(baseline).state, State::same);
+
+  const auto same = [](SweepResult&) {};
+  const BaselineCheck older =
+      check(stored_sweep(same, [](auto& config) { config["experiment"]["renderer"].erase("gamma"); }));
+  EXPECT_EQ(older.state, State::same) << older.text;
+  const BaselineCheck other =
+      check(stored_sweep(same, [](auto& config) { config["experiment"]["frame_latency_s"] = 0.5; }));
+  EXPECT_EQ(other.state, State::changed);
+  EXPECT_HAS(other.text, "the experiment differs: experiment.frame_latency_s 0.5 against 0.0");
+
+  const Baseline axes = stored_sweep();
+  folder_.write("map.json", changed_config(kSweep, [](auto& json) { json["axes"][1]["values"] = {0, 5}; }));
+  const BaselineCheck incomparable = check(axes);
+  EXPECT_EQ(incomparable.state, State::not_comparable);
+  EXPECT_EQ(incomparable.text, "axis acceleration_m_per_s2: the values differ");
+}
+
+TEST_F(CheckBaseline, AnInterruptionIsNoVerdict) {
+  const std::atomic<bool> stop = true;
+  for (const Baseline& baseline : {stored_run(), stored_sweep()})
+    EXPECT_THROW(check_baseline(folder_.path(), baseline, scenes::kernels(), &stop), Interrupted);
+}
+
+}  // namespace
+}  // namespace remote_touch::baseline_test

@@ -1,0 +1,373 @@
+// Files against files: what is compared, the verdict, and what the reports say of it.
+#include "runners/evaluation/regression/result_comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/junit_report.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/runners/evaluation/regression/compared_files.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::result_comparison_test {
+namespace {
+
+using namespace compared_files;
+
+// --- traces ---
+
+class CompareTraceFiles : public Compare {
+ protected:
+  static Trace run(const Experiment& experiment) {
+    SimulationOptions options;
+    options.hash_frames = true;
+    return simulate(experiment, options);
+  }
+  void write(const std::string& name, const std::vector<std::string>& overrides = {},
+             const TextAttributes& build = {{"command", "remote-touch run fig4.12"}, {"git_commit", "abc"}}) {
+    const Experiment experiment = Experiment::load("fig4.12", overrides);
+    TextAttributes attributes = build;
+    attributes.emplace_back("config", experiment.to_json());
+    write_trace(folder_ / name, run(experiment), attributes, {});
+  }
+  void write_changed(const std::string& name, const std::function<void(Trace&)>& change) {
+    const Experiment experiment = Experiment::load("fig4.12");
+    Trace trace = run(experiment);
+    change(trace);
+    write_trace(folder_ / name, trace, {{"config", experiment.to_json()}}, {});
+  }
+  static bool differs(const ResultComparison& comparison) {
+    return comparison.outcome == Outcome::regressed || comparison.outcome == Outcome::changed;
+  }
+};
+
+TEST_F(CompareTraceFiles, TheSameRunTwice) {
+  write("a.h5"), write("b.h5");
+  const ResultComparison same = compare("a.h5", "b.h5");
+  EXPECT_EQ(same.outcome, Outcome::same);
+  EXPECT_EQ(same.kind, "trace");
+  EXPECT_EQ(same.baseline, (folder_ / "a.h5").string());
+  EXPECT_EQ(same.candidate, (folder_ / "b.h5").string());
+  EXPECT_EQ(same.verdict, "18 columns, every number is the same");
+  EXPECT_TRUE(same.configuration.empty() && same.provenance.empty());
+  const json told = json_of(same);
+  EXPECT_EQ(told["outcome"], "same");
+  EXPECT_TRUE(told["divergence"].is_null());
+  EXPECT_EQ(told["columns"].size(), 18u);
+  for (const json& column : told["columns"]) {
+    EXPECT_EQ(column["same"], true);
+    EXPECT_EQ(column["rows"], 867);
+    EXPECT_TRUE(column["first_difference"].is_null());
+  }
+  EXPECT_HAS(junit_of(same), counts(19, 0, 0));
+  EXPECT_FALSE(contains(junit_of(same), "<failure"));
+}
+
+// Builds and commands are told, not judged; neither is the title.
+TEST_F(CompareTraceFiles, ProvenanceIsReportedAndNotJudged) {
+  write("a.h5");
+  write("b.h5", {"title=another"},
+        {{"git_commit", "def"}, {"isa", "x86-64"}, {"input_digests", "scene: sha256 01"}});
+  const ResultComparison same = compare("a.h5", "b.h5");
+  EXPECT_EQ(same.outcome, Outcome::same);
+  EXPECT_TRUE(same.configuration.empty());
+  EXPECT_EQ(same.provenance.size(), 4u);
+  for (const char* difference : {"git_commit abc against def", "command remote-touch run fig4.12 against ",
+                                 "isa  against x86-64", "input scene absent against sha256 01"})
+    EXPECT_TRUE(any_has(same.provenance, difference)) << difference;
+  EXPECT_EQ(json_of(same)["provenance"].size(), 4u);
+}
+
+TEST_F(CompareTraceFiles, AnotherSeedIsAnotherConfigurationAndOtherFrames) {
+  write("a.h5"), write("b.h5", {"seed=2"});
+  const ResultComparison other = compare("a.h5", "b.h5");
+  EXPECT_TRUE(differs(other));
+  EXPECT_EQ(other.configuration, std::vector<std::string>{"seed 1 against 2"});
+  ASSERT_TRUE(other.columns && other.columns->divergence);
+  const Divergence& found = *other.columns->divergence;
+  EXPECT_EQ(found.cause, Cause::configuration);
+  EXPECT_EQ(found.explanation, "seed 1 against 2");
+  EXPECT_EQ(found.situation, Cause::input);
+  EXPECT_HAS(found.observation, "frame_hash");
+  EXPECT_HAS(other.verdict, "from tick " + std::to_string(found.tick) + " on (configuration differs)");
+  const json divergence = json_of(other)["divergence"];
+  EXPECT_EQ(divergence["cause"], "configuration differs");
+  EXPECT_EQ(divergence["situation"], "input differs");
+}
+
+// Another configuration with the same numbers is told, and is the same.
+TEST_F(CompareTraceFiles, AConfigurationAloneIsNoRegression) {
+  write("a.h5", {"scenario.noise_sigma_m=0"}), write("b.h5", {"scenario.noise_sigma_m=0", "seed=2"});
+  const ResultComparison same = compare("a.h5", "b.h5");
+  EXPECT_EQ(same.outcome, Outcome::same);
+  EXPECT_EQ(same.configuration, std::vector<std::string>{"seed 1 against 2"});
+}
+
+TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
+  write_changed("a.h5", [](Trace&) {});
+  write_changed("b.h5", [](Trace& trace) {
+    trace.force_N[410].y() += 0.25;
+    trace.force_N[412].y() += 1e-3;
+    trace.nearest_distance_m[600] = kNaN;
+    trace.state[700] = (trace.state[700] + 1) % 3;
+  });
+  ComparisonRules rules;
+  rules.tolerances = {{"force", {1e-6, 1e-9}}, {"*", {1e-12, 0}}};
+  const ResultComparison other = compare("a.h5", "b.h5", rules);
+  EXPECT_EQ(other.outcome, Outcome::regressed);
+  EXPECT_HAS(other.verdict, "force and 2 more of 18 columns, from tick 410 on (");
+  const json told = json_of(other), divergence = told["divergence"];
+  EXPECT_EQ(told["outcome"], "regressed");  // a tick more counts as in contact
+  EXPECT_EQ(told["verdict"], other.verdict);
+  EXPECT_EQ(told["kind"], "trace");
+  EXPECT_EQ(divergence["tick"], 410);
+  EXPECT_EQ(divergence["first_difference"], 410);
+  EXPECT_DOUBLE_EQ(divergence["time_s"], 0.41);
+  EXPECT_EQ(divergence["quantity"], "force");
+  EXPECT_NEAR(divergence["deviation"], 0.25, 1e-12);
+  EXPECT_EQ(divergence["rows_from_tick"], 409);
+  const Trace trace = run(Experiment::load("fig4.12"));
+  const json before = divergence["baseline"]["force"], after = divergence["candidate"]["force"];
+  ASSERT_EQ(before.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(before[i], trace.force_N[409 + i / 3][static_cast<int>(i % 3)]);  // equal to the last bit
+  EXPECT_EQ(after[4], trace.force_N[410].y() + 0.25);
+  for (const json& name : divergence["baseline"]["state"])
+    EXPECT_TRUE(name == "free" || name == "contact" || name == "entrenched") << name;
+  EXPECT_EQ(divergence["baseline"]["frame_hash"][1], trace.frame_hash[410]);  // all 64 bits
+  for (const json& column : told["columns"]) {
+    if (column["name"] == "force") {
+      EXPECT_EQ(column["units"], "N");
+      EXPECT_EQ(column["rows"], 867);
+      EXPECT_EQ(column["outside"], 2);
+      EXPECT_EQ(column["first_difference"], 410);
+      EXPECT_EQ(column["first_outside"], 410);
+      EXPECT_EQ(column["absolute_tolerance"], 1e-6);
+      EXPECT_EQ(column["relative_tolerance"], 1e-9);
+      EXPECT_NEAR(column["max"], 0.25, 1e-12);
+      EXPECT_NEAR(column["rms"], std::sqrt((0.0625 + 1e-6) / 867), 1e-9);
+    } else if (column["name"] == "nearest_distance") {
+      EXPECT_EQ(column["not_numbers"], 1);
+      EXPECT_EQ(column["same"], false);
+    } else if (column["name"] == "state") {
+      EXPECT_EQ(column["first_outside"], 700);
+    } else {
+      EXPECT_EQ(column["same"], true) << column["name"];
+      EXPECT_EQ(column["absolute_tolerance"], 1e-12);
+    }
+  }
+  const std::string xml = junit_of(other);
+  EXPECT_HAS(xml, "<testcase classname=\"baseline.h5\" name=\"time\"/>");
+  EXPECT_HAS(xml, "name=\"force\"><skipped message=\"2 of 867 rows outside, the largest deviation 0.25\"/>");
+  EXPECT_HAS(xml, "name=\"rms_surface_error\"><failure message=");
+  EXPECT_HAS(xml, "name=\"trace\"><failure message=\"force and 2 more");
+}
+
+// JSON has no NaN, and no number is written as 0 that is none.
+TEST_F(CompareTraceFiles, NanIsNullInJson) {
+  write_changed("a.h5", [](Trace&) {});
+  write_changed("b.h5", [](Trace& trace) { trace.signed_distance_m[77] = kNaN; });
+  const json divergence = json_of(compare("a.h5", "b.h5"))["divergence"];
+  EXPECT_TRUE(divergence["deviation"].is_null());
+  EXPECT_TRUE(divergence["candidate"]["signed_distance"][1].is_null());
+  EXPECT_TRUE(divergence["baseline"]["signed_distance"][1].is_number());
+}
+
+// A renderer that is wrong may give numbers that have no name.
+TEST_F(CompareTraceFiles, AStateWithoutAName) {
+  write_changed("a.h5", [](Trace& trace) { trace.state[410] = 1; });
+  for (const int unknown : {7, -1}) {
+    write_changed("b.h5", [&](Trace& trace) { trace.state[410] = unknown; });
+    const ResultComparison other = compare("a.h5", "b.h5");
+    EXPECT_TRUE(differs(other));
+    EXPECT_EQ(json_of(other)["divergence"]["baseline"]["state"][1], "contact");
+    EXPECT_EQ(json_of(other)["divergence"]["candidate"]["state"][1], unknown);
+  }
+}
+
+TEST_F(CompareTraceFiles, TinyDifferencesAreReported) {
+  write_changed("a.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 1e-20; });
+  write_changed("b.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 2e-20; });
+  const ResultComparison other = compare("a.h5", "b.h5");
+  EXPECT_EQ(other.outcome, Outcome::changed);  // no measure needs it
+  EXPECT_HAS(junit_of(other), "1 of 867 rows outside, the largest deviation 1e-20");
+}
+
+TEST_F(CompareTraceFiles, AnEmptyRunIsNotTheSameAsItself) {
+  write_trace(folder_ / "a.h5", Trace{}, {}, {});
+  const ResultComparison none = compare("a.h5", "a.h5");
+  EXPECT_EQ(none.outcome, Outcome::not_comparable);
+  EXPECT_EQ(none.verdict, "nothing was compared");
+  EXPECT_HAS(junit_of(none), "name=\"trace\"><error message=\"nothing was compared\"/>");
+}
+
+TEST_F(CompareTraceFiles, AShorterRunIsAnother) {
+  write("a.h5"), write("b.h5", {"duration_s=0.5"});
+  for (const auto& [baseline, candidate] : {std::pair("a.h5", "b.h5"), std::pair("b.h5", "a.h5")}) {
+    const ResultComparison other = compare(baseline, candidate);
+    EXPECT_EQ(other.outcome, Outcome::changed);
+    EXPECT_FALSE(other.columns->divergence);
+    EXPECT_HAS(other.verdict, "time and 17 more of 18 columns");
+    EXPECT_HAS(other.verdict, "no measures: ");
+    EXPECT_HAS(junit_of(other), counts(19, 0, 0, 19));
+  }
+}
+
+TEST_F(CompareTraceFiles, AToleranceOfNoColumnIsRefused) {
+  write("a.h5");
+  for (const char* name : {"forces", "", "Force", "force "}) {
+    ComparisonRules rules;
+    rules.tolerances[name] = {1, 0};
+    const std::string message = refusal([&] { compare("a.h5", "a.h5", rules); });
+    EXPECT_HAS(message, "tolerance of " + std::string(name) + ": there is no such column: expected time, ");
+  }
+  ComparisonRules rules;
+  rules.tolerances = {{"*", {1, 0}}, {"force", {1, 0}}};
+  EXPECT_EQ(compare("a.h5", "a.h5", rules).outcome, Outcome::same);
+}
+
+// --- hashes, and files of different kinds ---
+
+TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
+  write_changed("a.h5", [](Trace&) {});
+  write_changed("b.h5", [](Trace& trace) { trace.force_N[410].x() += 1e-9; });
+  for (const char* name : {"a", "b"})
+    write_hashes(folder_ / (std::string(name) + "_hashes.h5"),
+                 hashes_of_trace(StoredTrace(folder_ / (std::string(name) + ".h5")), 100),
+                 {{"git_commit", name}});
+  for (const auto& [baseline, candidate] :
+       {std::pair("a_hashes.h5", "a.h5"), std::pair("a.h5", "a_hashes.h5"),
+        std::pair("a_hashes.h5", "a_hashes.h5")}) {
+    const ResultComparison same = compare(baseline, candidate);
+    EXPECT_EQ(same.kind, "hashes");
+    EXPECT_EQ(same.outcome, Outcome::same);
+    EXPECT_EQ(same.verdict, "10 hashes compared, all the same");
+    EXPECT_HAS(junit_of(same), counts(1, 0, 0));
+  }
+  for (const auto& [baseline, candidate] :
+       {std::pair("a_hashes.h5", "b.h5"), std::pair("a.h5", "b_hashes.h5"),
+        std::pair("a_hashes.h5", "b_hashes.h5")}) {
+    const ResultComparison other = compare(baseline, candidate);
+    EXPECT_EQ(other.outcome, Outcome::changed);
+    EXPECT_HAS(other.verdict, "the first divergent tick is after tick 400 and not after tick 500");
+    EXPECT_EQ(json_of(other)["hashes"]["same_up_to_tick"], 400);
+    EXPECT_EQ(json_of(other)["hashes"]["different_at_tick"], 500);
+    EXPECT_EQ(json_of(other)["hashes"]["compared"], 10);
+  }
+  EXPECT_TRUE(any_has(compare("a_hashes.h5", "b_hashes.h5").provenance, "git_commit a against b"));
+}
+
+TEST_F(CompareTraceFiles, HashesOfLongerRunsAndOfNothing) {
+  write("a.h5"), write("b.h5", {"duration_s=0.5"});
+  write_hashes(folder_ / "b_hashes.h5", hashes_of_trace(StoredTrace(folder_ / "b.h5"), 1), {});
+  const ResultComparison longer = compare("a.h5", "b_hashes.h5");
+  EXPECT_EQ(longer.outcome, Outcome::changed);
+  EXPECT_HAS(longer.verdict, "500 hashes compared, all the same, but one run is longer");
+  write_hashes(folder_ / "none.h5", {}, {});
+  EXPECT_EQ(compare("a.h5", "none.h5").outcome, Outcome::not_comparable);
+  EXPECT_EQ(compare("none.h5", "none.h5").outcome, Outcome::not_comparable);
+}
+
+// A hash has no deviation, so a tolerance of it means nothing.
+TEST_F(CompareTraceFiles, HashesHaveNoTolerances) {
+  write("a.h5");
+  write_hashes(folder_ / "hashes.h5", hashes_of_trace(StoredTrace(folder_ / "a.h5"), 1), {});
+  ComparisonRules rules;
+  rules.tolerances = {{"force", {1, 0}}};
+  for (const char* baseline : {"a.h5", "hashes.h5"})
+    EXPECT_HAS(refusal([&] { compare(baseline, "hashes.h5", rules); }), "tolerance of force: ");
+}
+
+TEST_F(CompareTraceFiles, DifferentKindsAreRefused) {
+  write("trace.h5");
+  write_figure(folder_ / "figure.h5", Figure{"4.99", "", ""}, {});
+  write_hashes(folder_ / "hashes.h5", hashes_of_trace(StoredTrace(folder_ / "trace.h5"), 1), {});
+  SweepResult sweep;
+  sweep.axes = {{"x", "1", "x", std::vector<double>{1}, 1, {}}};
+  sweep.measures = {{"y", "1", "", {}, 1, {}}};
+  sweep.start(false);
+  write_sweep(folder_ / "sweep.h5", sweep, {});
+  const std::string kinds[] = {"trace", "figure", "hashes", "sweep"};
+  for (const std::string& ours : kinds)
+    for (const std::string& theirs : kinds) {
+      const bool hashed = (ours == "trace" || ours == "hashes") && (theirs == "trace" || theirs == "hashes");
+      if (ours == theirs || hashed) continue;
+      const std::string message = refusal([&] { compare(ours + ".h5", theirs + ".h5"); });
+      EXPECT_HAS(message, theirs + ".h5: is a " + theirs + ": expected a " + ours);
+    }
+}
+
+TEST_F(CompareTraceFiles, OtherVersionsOfTheLayoutAreRefused) {
+  write("a.h5");
+  for (const auto& [schema, why] :
+       {std::pair("remote-touch-trace/1",
+                  "written by version 0.1 (schema remote-touch-trace/1); this version reads "
+                  "remote-touch-trace/2: run it again"),
+        {"remote-touch-trace/3", "is of schema remote-touch-trace/3: expected remote-touch-trace/2"},
+        {"remote-touch-figure/9", "expected remote-touch-figure/2"},
+        {"remote-touch-hashes/0", "expected remote-touch-hashes/2"},
+        {"remote-touch-sweep/1", "reads remote-touch-sweep/2: run it again"},
+        {"remote-touch-session/1", "reads remote-touch-session/2: run it again"},
+        {"of-another/1", "is of schema of-another/1: expected a trace, a sweep, a figure or hashes"},
+        {"", "names no schema: expected a trace"}}) {
+    Hdf5Writer hdf5;
+    hdf5.attribute("/", "schema", schema);
+    hdf5.save(folder_ / "b.h5");
+    const std::string message = refusal([&] { compare("b.h5", "b.h5"); });
+    EXPECT_HAS(message, "b.h5: ");
+    EXPECT_HAS(message, why);
+  }
+}
+
+// A configuration that is no JSON: the message names the file.
+TEST_F(CompareTraceFiles, ABrokenConfigurationIsNamed) {
+  write("a.h5");
+  write_trace(folder_ / "b.h5", run(Experiment::load("fig4.12")), {{"config", "{\"seed\":"}}, {});
+  EXPECT_HAS(refusal([&] { compare("a.h5", "b.h5"); }), "configuration");
+}
+
+// --- reports ---
+
+TEST(Reports, AnyTextIsWellFormed) {
+  ReportSuite suite{"a<b>&\"c\"\n"};
+  suite.cases = {{"passes & \t", ReportCase::State::passed},
+                 {"fails", ReportCase::State::failed, "1 < 2 && \"x\" > 'y'"},
+                 {"errs", ReportCase::State::error, "\x01\x1f\xff"},
+                 {"skips", ReportCase::State::skipped, "no recording"}};
+  const std::string name = "a&lt;b>&amp;&quot;c&quot;?",
+                    of_suite = "    <testcase classname=\"" + name + "\" ";
+  EXPECT_EQ(junit({suite}),
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + name +
+                "\" tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\">\n" +  //
+                of_suite + "name=\"passes &amp; ?\"/>\n" +                       //
+                of_suite +
+                "name=\"fails\"><failure message=\"1 &lt; 2 &amp;&amp; &quot;x&quot; > 'y'\"/></testcase>\n" +
+                of_suite + "name=\"errs\"><error message=\"???\"/></testcase>\n" +  //
+                of_suite + "name=\"skips\"><skipped message=\"no recording\"/></testcase>\n" +
+                "  </testsuite>\n</testsuites>\n");
+}
+
+TEST_F(CompareTraceFiles, ReportsOfSeveral) {
+  write("a.h5"), write("b.h5", {"seed=2"});
+  const ResultComparison same = compare("a.h5", "a.h5"), other = compare("a.h5", "b.h5");
+  const json list = json::parse(comparison_json({same, other}));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0], json_of(same));
+  EXPECT_EQ(list[1], json_of(other));
+  EXPECT_EQ(json::parse(comparison_json(std::vector<ResultComparison>{})), json::array());
+}
+
+TEST(Reports, AreWrittenForANameThatIsNotUtf8) {
+  ResultComparison comparison{"bad \xff name", "x", "trace"};
+  EXPECT_HAS(json_of(comparison)["baseline"].get<std::string>(), "bad ");
+  EXPECT_EQ(json_of(comparison)["outcome"], "not_comparable");
+}
+
+}  // namespace
+}  // namespace remote_touch::result_comparison_test

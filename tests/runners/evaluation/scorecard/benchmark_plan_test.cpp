@@ -1,0 +1,276 @@
+// The scorecard's scenes and methods as they are in data/: each runs with each, over the same noise.
+#include "runners/evaluation/scorecard/benchmark.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <set>
+
+#include "analysis/storage/digest.h"
+#include "runners/evaluation/scorecard/benchmark_choice.h"
+#include "runners/evaluation/scorecard/benchmark_plan.h"
+#include "runners/evaluation/scorecard/passivity.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "scenarios/recordings/recording_part.h"
+#include "tests/support/recorded_data.h"
+#include "tests/support/test_files.h"
+#include "tests/support/test_name.h"
+
+namespace remote_touch::benchmark_plan_test {
+
+// gtest prints a scene as its name.
+void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+namespace {
+
+// The run with the noise of 0.6 r_c, or the scene's own, cut short: four frames.
+Experiment beginning(const Sweep& sweep) {
+  const std::size_t cell = std::min<std::size_t>(3, sweep.plan().cell_count() - 1);
+  Json json = parse_json(sweep.experiment(cell, 1).to_json(), "run");
+  json["duration_s"] = 0.11;
+  return Experiment::from_json(std::move(json));
+}
+
+std::vector<Method> methods_for(const BenchmarkScene& scene) {
+  return chosen_benchmark({}, {scene.name}, 2, "card").methods;
+}
+
+class Scenes : public testing::TestWithParam<BenchmarkScene> {};
+
+TEST_P(Scenes, RunWithEveryMethodOverTheSameNoise) {
+  set_data_folder(data_root().string());
+  const BenchmarkScene& scene = GetParam();
+  std::vector<std::uint64_t> hashes;
+  for (const Method& method : methods_for(scene)) {
+    SimulationOptions options;
+    options.hash_frames = true;
+    Trace trace;
+    try {
+      trace = simulate(beginning(scene.sweep(method, 2)), options);
+    } catch (const MissingRecording& missing) {
+      GTEST_SKIP() << scene.name << ": " << missing.what();
+    }
+    EXPECT_GE(trace.length(), 110u) << method.name;
+    EXPECT_NE(trace.frame_hash.back(), 0u) << method.name;
+    if (hashes.empty()) hashes = trace.frame_hash;
+    EXPECT_EQ(trace.frame_hash, hashes) << method.name;
+  }
+}
+
+TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
+  const Sweep sweep = GetParam().sweep(methods_for(GetParam()).front(), 2);
+  const SweepResult plan = sweep.plan();
+  for (const Bound& bound : GetParam().success) EXPECT_NO_THROW(plan.measure(bound.measure));
+  for (const Bound& bound : GetParam().old_success) EXPECT_NO_THROW(plan.measure(bound.measure));
+  EXPECT_NO_THROW(plan.measure("jump_fraction_10"));
+  EXPECT_NO_THROW(plan.measure("packet_rate_10"));
+  for (const auto& judged : GetParam().measures) EXPECT_NO_THROW(plan.measure(judged.measure));
+  EXPECT_EQ(plan.cell_count(), GetParam().noise.empty() ? 1u : scorecard_noise_m().size());
+  EXPECT_EQ(plan.replicates, GetParam().noise.empty() ? 10 : 2);  // five levels have noise
+}
+
+INSTANTIATE_TEST_SUITE_P(OfData, Scenes, testing::ValuesIn(chosen_scenes({})),
+                         [](const auto& scene) { return test_name(scene.param.name); });
+
+TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
+  const auto two = chosen_methods({"tracked-sheet", "proxy"});
+  EXPECT_EQ(two[0].name, "tracked-sheet");
+  EXPECT_EQ(two[1].name, "proxy");
+  const TestFolder folder("benchmark_plan_test");
+  const std::string mine =
+      folder.write("mine.json", R"({"title": "my own", "renderer": {"name": "penalty"}})").string();
+  const auto own = chosen_methods({mine, "proxy"});
+  EXPECT_EQ(own.front().name, "mine");
+  EXPECT_EQ(own.front().title, "my own");
+  EXPECT_HAS(refusal([&] { chosen_methods({mine, mine}); }), "method mine: appears twice");
+  EXPECT_HAS(refusal([&] { chosen_methods({folder.write("a b.json", "{}").string()}); }), "expected letters");
+  EXPECT_HAS(refusal([&] { chosen_methods({folder.write("bad.json", "[").string()}); }), "expected JSON");
+  EXPECT_HAS(refusal([] { chosen_scenes({"none.json"}); }), "none.json: cannot be read");
+  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected finger-proxy, ");
+  EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
+  EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "appears twice");
+}
+
+std::vector<std::string> names(const auto& list) {
+  std::vector<std::string> all;
+  for (const auto& each : list) all.push_back(each.name);
+  return all;
+}
+
+TEST(Benchmark, ToolsAreComparedWithTools) {
+  const auto chosen = [](std::vector<std::string> methods, std::vector<std::string> scenes) {
+    return chosen_benchmark(methods, scenes, 2, "card");
+  };
+  const Benchmark all = chosen({}, {}), tools = chosen({"tool-voxels"}, {}), slot = chosen({}, {"tool-slot"});
+  for (const BenchmarkScene& scene : all.scenes) EXPECT_FALSE(is_for_tools(scene)) << scene.name;
+  for (const Method& method : all.methods) EXPECT_FALSE(is_for_tools(method)) << method.name;
+  for (const BenchmarkScene& scene : tools.scenes) EXPECT_TRUE(is_for_tools(scene)) << scene.name;
+  EXPECT_EQ(all.scenes.size() + tools.scenes.size(), chosen_scenes({}).size());
+  EXPECT_EQ(all.methods.size() + slot.methods.size(), chosen_methods({}).size());
+  EXPECT_GE(tools.scenes.size(), 5u);
+  EXPECT_EQ(names(slot.methods),
+            (std::vector<std::string>{"tool-continuous", "tool-god-object", "tool-look-ahead", "tool-penalty",
+                                      "tool-tracked", "tool-voxels", "tool-voxmap"}));
+  EXPECT_HAS(refusal([&] { chosen({"proxy"}, {"tool-slot"}); }),
+             "scene tool-slot: expected only those for a HIP");
+  EXPECT_HAS(refusal([&] {
+               chosen({"tool-voxels", "proxy"}, {});
+             }),
+             "method proxy: expected only those for tools");
+  EXPECT_HAS(refusal([&] { chosen({}, {"flat-press", "tool-slot"}); }), "scene tool-slot: expected only");
+}
+
+TEST(Benchmark, NamesWhatIsWrongInAFile) {
+  const auto scene = [](const std::string& text) {
+    return refusal([&] { read_benchmark_scene("x", text); });
+  };
+  EXPECT_HAS(scene("[]"), "scene x");
+  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"),
+             "colour: unknown: expected title, experiment, tool, noise");
+  EXPECT_HAS(scene(R"({"title": "t"})"), "experiment: missing");
+  const std::string begin = R"({"title": "t", "experiment": {}, )";
+  EXPECT_HAS(scene(begin + R"("measures": {"force_fraction": "bigger"}})"), "expected larger, smaller");
+  EXPECT_HAS(scene(begin + R"("measures": {}, "success": {"meaning": "m", "bounds": []}})"), "bounds");
+  EXPECT_HAS(
+      scene(
+          begin +
+          R"("measures": {}, "success": {"meaning": "m", "bounds": [{"measure": "end_distance", "least": 1}]}})"),
+      "least");
+  const Method proxy = chosen_methods({"proxy"}).front();
+  BenchmarkScene with_renderer = chosen_scenes({"flat-press"}).front();
+  with_renderer.experiment = R"({"renderer": {"name": "proxy"}})";
+  EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "methods define it");
+  EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
+}
+
+// The card states the method as it is written.
+TEST(Benchmark, AMethodWithAnotherToolThanTheScenesIsRefused) {
+  const BenchmarkScene slot = chosen_scenes({"tool-slot"}).front();
+  const auto method = [](const std::string& tool) {
+    return read_method("mine",
+                       R"({"title": "t", "renderer": {"name": "tool", "tool_mesh": ")" + tool + "\"}}");
+  };
+  EXPECT_HAS(refusal([&] { slot.sweep(method("ball"), 1); }),
+             "method mine: renderer.tool_mesh = \"ball\": scene tool-slot has a tool of its own");
+  EXPECT_NO_THROW(slot.sweep(method(parse_json(slot.tool, "tool")["tool_mesh"]), 1));
+}
+
+// The measures say which way they get better, in one table; a scene says only what is judged.
+TEST(Benchmark, AMeasureIsJudgedByItsOwnDirection) {
+  const auto scene = [](const std::string& measures) {
+    return read_benchmark_scene(
+        "x",
+        R"({"title": "t", "experiment": {}, "success": {"rule": "held"}, "measures": )" + measures + "}");
+  };
+  const auto better = [&](const std::string& measures) { return scene(measures).measures.front().better; };
+  EXPECT_EQ(better(R"({"force_noise": "judged"})"), Better::smaller);
+  EXPECT_EQ(better(R"({"contact_force_fraction": "judged"})"), Better::larger);
+  EXPECT_EQ(better(R"({"force_noise": "smaller"})"), Better::smaller);  // as files before said it
+  EXPECT_EQ(better(R"({"force_noise": "reported"})"), Better::neither);
+  EXPECT_EQ(better(R"({"max_force": "smaller"})"), Better::smaller);  // where nothing should be touched
+  EXPECT_HAS(refusal([&] { scene(R"({"force_noise": "larger"})"); }),
+             "measures.force_noise = \"larger\": smaller is better: expected judged, reported");
+  EXPECT_HAS(refusal([&] { scene(R"({"max_force": "judged"})"); }), "expected larger, smaller");
+}
+
+TEST(Benchmark, EveryStoredSceneJudgesByTheTable) {
+  for (const BenchmarkScene& scene : chosen_scenes({}))
+    for (const BenchmarkScene::Judged& judged : scene.measures)
+      if (const Better own = direction_of(directions(), judged.measure);
+          own != Better::neither && judged.better != Better::neither) {
+        EXPECT_EQ(judged.better, own) << scene.name << ", " << judged.measure;
+      }
+}
+
+// A scene asks for a held surface in one word.
+TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
+  const std::string begin = R"({"title": "t", "experiment": {}, "measures": {}, "success": )";
+  const BenchmarkScene scene = read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0.002,
+                       "old_bounds": [{"measure": "end_distance", "min": -0.001}]}})");
+  ASSERT_EQ(scene.success.size(), 3u);
+  EXPECT_EQ(scene.success[0].measure, "max_contact_error");
+  EXPECT_EQ(scene.success[0].max, 0.002);
+  EXPECT_EQ(scene.success[1].measure, "contact_force_fraction");
+  EXPECT_EQ(scene.success[2].measure, "contact_known_fraction");
+  EXPECT_HAS(scene.meaning, "never more than 2 mm from it, above or below");
+  EXPECT_HAS(scene.meaning, "from 0.1 s after");
+  ASSERT_EQ(scene.old_success.size(), 1u);
+  EXPECT_EQ(scene.old_success[0].min, -0.001);
+  const BenchmarkScene more = read_benchmark_scene(
+      "x",
+      begin + R"({"rule": "held", "meaning": "in time", "bounds": [{"measure": "max_force", "max": 3}]}})");
+  ASSERT_EQ(more.success.size(), 4u);
+  EXPECT_EQ(more.success[0].max, kScorecardRadius_m);
+  EXPECT_EQ(more.success[3].measure, "max_force");
+  EXPECT_HAS(more.meaning, "these ticks; in time");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "kept"}})"); }), "expected held");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0}})"); }),
+             "tolerance_m");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "held", "old_bounds": []}})"); }),
+             "old_bounds");
+}
+
+TEST(Benchmark, RunsNoSeedThatParametersWereFixedWith) {
+  const Method proxy = chosen_methods({"proxy"}).front();
+  for (const BenchmarkScene& scene : chosen_scenes({"flat-press", "camera"})) {
+    const Sweep sweep = scene.sweep(proxy, 2);
+    for (std::size_t cell = 0; cell < sweep.plan().cell_count(); ++cell)
+      EXPECT_GT(sweep.experiment(cell, 1).settings().key.seed, 40u) << scene.name;
+  }
+  BenchmarkScene tuned = chosen_scenes({"flat-press"}).front();
+  tuned.experiment = R"({"seed": 1})";
+  EXPECT_HAS(refusal([&] { tuned.sweep(proxy, 2); }), "experiment.seed");
+}
+
+TEST(Benchmark, CostsAreThoseOfTheSamePoints) {
+  const BenchmarkScene scene = chosen_scenes({"flat-slide"}).front();
+  for (const Method& method : methods_for(scene)) {
+    Json json = parse_json(beginning(scene.sweep(method, 2)).to_json(), "run");
+    json["duration_s"] = 0.3;
+    const Experiment run = Experiment::from_json(std::move(json));
+    SimulationOptions made;
+    made.generate_all_points = true;
+    EXPECT_EQ(digest(simulate(run).columns()), digest(simulate(run, made).columns())) << method.name;
+  }
+}
+
+TEST(Benchmark, TheAuditsOwnForceLawsAreTheScenesSweeps) {
+  const BenchmarkPlan plan =
+      plan_of({chosen_methods({"proxy", "penalty"}), chosen_scenes({kPassivityScenes[0]}), 2, "card"});
+  std::set<std::string> names;
+  for (const BenchmarkSweep& sweep : plan.sweeps())
+    EXPECT_TRUE(names.insert(sweep.name).second) << sweep.name;
+  EXPECT_EQ(names.size(), plan.laws.size());
+}
+
+TEST(Benchmark, TheAuditOfToolsHasTwoScenes) {
+  const BenchmarkPlan plan = plan_of({chosen_methods({"tool-voxels", "tool-penalty"}),
+                                      chosen_scenes({kPassivityScenes[1], kPassivityScenes[2]}), 2, "card"});
+  EXPECT_EQ(plan.laws.size(), 2u);
+  ASSERT_EQ(plan.audit.size(), 2u);
+  for (const ScenePlan& one : plan.audit) EXPECT_EQ(one.sweeps.size(), 2u);
+  EXPECT_EQ(plan.sweeps().size(), 4u);
+}
+
+TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {
+  const auto count = [](const char* name) { return force_laws_of(chosen_methods({name}).front()).size(); };
+  EXPECT_EQ(count("proxy"), 9u);  // three signs of the velocity term, without damper and with either sign
+  EXPECT_EQ(count("predecessor"), 3u);  // estimates no velocity
+  EXPECT_EQ(count("penalty"), 2u);
+  EXPECT_EQ(count("god-object"), 1u);
+  std::set<std::string> names, renderers;
+  for (const Method& method : chosen_methods({}))
+    for (const Method& law : force_laws_of(method)) {
+      EXPECT_TRUE(names.insert(law.name).second) << law.name;
+      EXPECT_TRUE(renderers.insert(law.renderer).second) << law.renderer;
+    }
+}
+
+}  // namespace
+}  // namespace remote_touch::benchmark_plan_test

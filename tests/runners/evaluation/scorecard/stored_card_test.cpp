@@ -1,0 +1,123 @@
+#include "runners/evaluation/scorecard/stored_card.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/scorecard/overview.h"
+#include "core/kernels/isa.h"
+#include "runners/evaluation/scorecard/evaluation.h"
+#include "scenarios/text_files/json_text.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::stored_card_test {
+namespace {
+
+// Two methods in a scene of a few ticks.
+constexpr const char* kScene = R"({
+  "title": "a short press",
+  "experiment": {
+    "scenario": {"name": "flat-grid", "columns": 30, "rows": 30},
+    "trajectory": {"name": "waypoints", "waypoints": [[0, 0.006, 0, 0], [0, -0.005, 0, 0.5]]},
+    "duration_s": 0.15
+  },
+  "noise": "scenario.noise_sigma_m",
+  "measures": {"max_force": "smaller"},
+  "success": {"rule": "held"}
+})";
+
+BenchmarkPlan plan_in(const TestFolder& folder, const std::vector<Method>& methods,
+                      const std::string& scene = kScene) {
+  return plan_of({methods, {read_benchmark_scene("short", scene)}, 3, folder / "card"});
+}
+
+Scorecard scored(const BenchmarkPlan& plan) {
+  std::filesystem::create_directories(plan.benchmark.folder / "runs");
+  do_sweeps(plan.sweeps(), kernels_for(best_isa()), nullptr, [](auto...) {});
+  return scores_of(plan);
+}
+
+TextAttributes config_of(const BenchmarkPlan& plan) {
+  return {{"config", configuration_of(plan)}};
+}
+
+class StoredCards : public testing::Test {
+ protected:
+  StoredCards() : folder_("stored_card_test"), plan_(plan_in(folder_, chosen_methods({"proxy", "penalty"}))) {
+    card_ = scored(plan_);
+    file_ = folder_ / "stored.h5";
+    write_stored_card(file_, card_, config_of(plan_));
+  }
+  TestFolder folder_;
+  BenchmarkPlan plan_;
+  Scorecard card_;
+  std::filesystem::path file_;
+};
+
+TEST_F(StoredCards, AgreeWithTheSameCardAndWithPartsOfIt) {
+  const StoredCard stored = read_stored_card(file_);
+  EXPECT_EQ(stored.replicates, 3);
+  EXPECT_EQ(stored.methods, (std::vector<std::string>{"proxy", "penalty"}));
+  EXPECT_EQ(stored.scenes, std::vector<std::string>{"short"});
+  EXPECT_EQ(stored.numbers.counts.size(), 2 * scorecard_noise_m().size());
+  EXPECT_TRUE(differences(stored, plan_, card_).empty());
+  const BenchmarkPlan part = plan_in(folder_, chosen_methods({"penalty"}));
+  EXPECT_TRUE(differences(stored, part, scored(part)).empty());
+}
+
+TEST_F(StoredCards, DifferWhereANumberIsAnother) {
+  Scorecard changed = card_;
+  changed.scenes[0].success[0].at_level[2] = {0, 3, 0, 0, 0.5};
+  const auto list = differences(read_stored_card(file_), plan_, changed);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_HAS(list[0], "short, proxy, noise 1 mm: 0 of 3 runs succeed, stored 3 of 3");
+}
+
+TEST_F(StoredCards, DifferWhereSomethingIsDefinedAnew) {
+  Json scene = parse_json(kScene, "scene");
+  scene["success"]["tolerance_m"] = 0.004;
+  BenchmarkPlan plan = plan_in(folder_, chosen_methods({"proxy", "penalty"}), scene.dump());
+  auto list = differences(read_stored_card(file_), plan, card_);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0], "scene short: defined in another way in the stored card");
+  plan = plan_;
+  plan.benchmark.methods[0].name = "newcomer";
+  list = differences(read_stored_card(file_), plan, card_);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0], "method newcomer: not in the stored card");
+}
+
+// One of three runs of the own method is behind the proxy's, which is too few to show it.
+TEST_F(StoredCards, SayFirstWhereTheOwnMethodIsNotTheBest) {
+  Scorecard card = card_;
+  card.methods[1] = kOwnMethod;
+  write_stored_card(file_, card, config_of(plan_));
+  const std::string text = stored_summary(file_);
+  EXPECT_EQ(text.find("Where tracked-sheet is not the best, by more than chance:\n"), 0u) << text;
+  EXPECT_HAS(text, "| scene | what | tracked-sheet | better | p, corrected |\n");
+  EXPECT_HAS(text, "| short | success without noise | 0 | 1 (proxy) | - |\n");
+  EXPECT_HAS(text, "All methods, means over 1 scenes:");
+  EXPECT_LT(text.find("| proxy | "), text.rfind("| tracked-sheet | "));  // the most successful first
+}
+
+TEST_F(StoredCards, OtherFilesAreRefused) {
+  EXPECT_HAS(refusal([&] { read_stored_card(folder_ / "none.h5"); }), "none.h5");
+  const auto other = folder_ / "other.h5";
+  write_figure(other, scorecard_figure(card_), config_of(plan_));
+  EXPECT_HAS(refusal([&] { read_stored_card(other); }), "not a stored card: expected");
+  for (const char* config : {"", "[]", "{}", R"({"replicates": "x", "methods": {}, "scenes": {}})"}) {
+    write_stored_card(other, card_, {{"config", config}});
+    EXPECT_HAS(refusal([&] { read_stored_card(other); }), "has no configuration of a scorecard");
+  }
+  Figure without = {kStoredCardFigure, "t", "c", {counts_table(numbers_of(card_, KeptMeasures::judged))}};
+  write_figure(other, without, config_of(plan_));
+  EXPECT_HAS(refusal([&] { read_stored_card(other); }), "has no table measures");
+  without.tables.push_back({"measures", "t"});
+  without.tables.back().add("mean", "1", "mean", {1});
+  write_figure(other, without, config_of(plan_));
+  EXPECT_HAS(refusal([&] { read_stored_card(other); }), "no usable column scene");
+}
+
+}  // namespace
+}  // namespace remote_touch::stored_card_test

@@ -1,0 +1,274 @@
+// Every renderer of the catalog stands the metamorphic checks, and each check can fail.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/verification/dimension.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
+#include "runners/evaluation/verification/verification_scenes.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "tests/runners/evaluation/verification/wrong_renderers.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::verification_test {
+namespace {
+
+using Names = std::set<std::string>;
+
+std::vector<CheckResult> verify(const RendererEntry& entry,
+                                const std::vector<std::string>& assignments = {}) {
+  return verify_renderer(entry, assignments, scenes::kernels());
+}
+
+template <class Action>
+std::string refusal(Action action) {
+  try {
+    action();
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// "check in scene" of every failure.
+Names failures(const std::vector<CheckResult>& results) {
+  Names failed;
+  for (const CheckResult& result : results)
+    if (!result.passed()) failed.insert(result.check + " in " + result.scene);
+  return failed;
+}
+
+// --- the catalog ---
+
+TEST(Verification, EveryRendererOfTheCatalog) {
+  int verified = 0;
+  for (const RendererEntry& entry : renderers()) {
+    if (entry.degrees_of_freedom == DegreesOfFreedom::six) continue;  // tool_verification_test.cpp
+    EXPECT_EQ(failures(verify(entry)), Names{}) << entry.name;
+    ++verified;
+  }
+  EXPECT_GT(verified, 0);
+}
+
+TEST(Verification, OtherReadingsOfTheProxy) {
+  const std::vector<std::string> kReadings[] = {
+      {"step_rule=fixed", "velocity_estimate=false"},  // the predecessor
+      {"velocity_estimate=false"},
+      {"damping_Ns_per_m=2"},
+      {"damping_Ns_per_m=2", "damping_sign=minus", "velocity_force=plus"},
+      {"velocity_force=none"},
+      {"force_gate=contact_now"},
+      {"free_root=smallest_magnitude"},
+  };
+  const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
+  for (const auto& reading : kReadings)
+    EXPECT_EQ(failures(verify(proxy, reading)), Names{}) << reading.front();
+}
+
+TEST(Verification, EveryCheckIsMadeAndComparesTicksOfTouch) {
+  const auto results = verify(find_entry(renderers(), "proxy", "renderer"));
+  for (const CheckName& check : check_names()) {
+    int ticks = 0, scenes = 0;
+    for (const CheckResult& result : results)
+      if (result.check == check.name) ticks += result.comparison.ticks, ++scenes;
+    EXPECT_GE(scenes, 1) << check.name;
+    EXPECT_GE(ticks, 300) << check.name;  // one whole scene: where it runs to its end, most of it is touch
+  }
+}
+
+// Large steps go to and fro in a corner, and differences as small as rounding grow.
+TEST(Verification, SaysWhereASceneDecidesNothing) {
+  int undecided = 0;
+  for (const CheckResult& result : verify(find_entry(renderers(), "proxy", "renderer"), {"gamma=1"}))
+    if (!result.passed() && result.scene == "corner") {
+      EXPECT_EQ(result.remark.find("undecided"), 0u) << result.check;
+      ++undecided;
+    }
+  EXPECT_GT(undecided, 0);
+}
+
+// --- each check can fail ---
+
+struct Wrong {
+  RendererEntry entry;
+  Names caught_by;
+};
+
+const Wrong kWrong[] = {
+    {wrong_renderer<Fault::silent>("silent"), {"touch"}},
+    {wrong_renderer<Fault::remembers_others>("remembers_others"), {"repeat"}},
+    {wrong_renderer<Fault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
+    {wrong_renderer<Fault::looks_at_first_point>("looks_at_first_point"),
+     {"order", "search-all", "search-grid", "rigid-motion"}},
+    {wrong_renderer<Fault::counts_points>("counts_points"), {"missing-points", "far-points"}},
+    {wrong_renderer<Fault::looks_far>("looks_far"), {"far-points"}},
+    {wrong_renderer<Fault::regions_of_nothing>("regions_of_nothing"), {"zero-regions", "size-2"}},
+    {wrong_renderer<Fault::mistrusts_stiff_points>("mistrusts_stiff_points"),
+     {"own-stiffness", "no-own-stiffness"}},
+    {wrong_renderer<Fault::adds_its_own>("adds_its_own"), {"renderer-stiffness"}},
+    {wrong_renderer<Fault::leans_x>("leans_x"), {"mirror-x"}},
+    {wrong_renderer<Fault::leans_y>("leans_y"), {"mirror-y"}},
+    {wrong_renderer<Fault::leans_z>("leans_z"), {"mirror-z"}},
+    {wrong_renderer<Fault::prefers_up>("prefers_up"), {"rigid-motion"}},
+    {wrong_renderer<Fault::fixed_gap>("fixed_gap"), {"size-2", "size-1/4", "size-3"}},
+    {wrong_renderer<Fault::fixed_strength>("fixed_strength"),
+     {"force-1/2", "force-1/2-points", "size-2", "size-1/4", "size-3"}},
+    {wrong_renderer<Fault::fixed_rate>("fixed_rate"), {"speed-2"}},
+    {wrong_renderer<Fault::reads_the_clock>("reads_the_clock"), {"clock", "speed-2"}},
+    {wrong_renderer<Fault::takes_every_frame>("takes_every_frame"), {"sent-twice", "sent-late"}},
+    {wrong_renderer<Fault::drops_silently>("drops_silently"), {"sent-twice", "sent-late"}},
+    {wrong_renderer<Fault::jolts_at_frames>("jolts_at_frames"), {"frame-rate", "frame-rate-held", "size-2"}},
+};
+
+// These three scenes show every fault; all scenes would take four times as long.
+std::vector<MetamorphicScene> telling_scenes() {
+  std::vector<MetamorphicScene> telling;
+  for (MetamorphicScene& scene : verification_scenes(scenes::kernels()))
+    if (Names{"held", "regions", "ridge"}.contains(scene.name)) telling.push_back(std::move(scene));
+  return telling;
+}
+
+TEST(Verification, AWrongRendererIsCaught) {
+  const std::vector<MetamorphicScene> telling = telling_scenes();
+  ASSERT_EQ(telling.size(), 3u);
+  for (const Wrong& wrong : kWrong) {
+    Names caught_by;
+    for (const CheckResult& result : verify_renderer(wrong.entry, {}, scenes::kernels(), telling)) {
+      if (result.passed()) continue;
+      caught_by.insert(result.check);
+      EXPECT_LT(result.comparison.first_violation, result.comparison.ticks);
+      if (!wrong.caught_by.contains("repeat")) {  // who answers at random is as different anywhere
+        EXPECT_EQ(result.remark, "") << wrong.entry.name << ": " << result.check;
+      }
+    }
+    for (const std::string& check : wrong.caught_by)
+      EXPECT_TRUE(caught_by.contains(check)) << wrong.entry.name << " passes " << check;
+  }
+}
+
+TEST(Verification, ARightOneInTheSameClothesPasses) {
+  EXPECT_EQ(failures(verify(wrong_renderer<Fault::none>("none"))), Names{});
+}
+
+TEST(Verification, EveryCheckHasAWrongRendererThatItCatches) {
+  Names catching;
+  for (const Wrong& wrong : kWrong) catching.insert(wrong.caught_by.begin(), wrong.caught_by.end());
+  for (const CheckName& check : check_names()) EXPECT_TRUE(catching.contains(check.name)) << check.name;
+}
+
+// --- scenes ---
+
+double nearest_distance_m(const PointCloud& cloud, const Vec3& p_W) {
+  double nearest = 1;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double distance = (cloud.point(i) - p_W).norm();
+    nearest = distance < nearest ? distance : nearest;  // NaN is not less
+  }
+  return nearest;
+}
+
+// Number of views that entrench the proxy at the position that they meet, after the correction by (4.3).
+int entrenching_views(const MetamorphicScene& scene) {
+  ProxyRenderer renderer(ProxyParameters{}, scene.haptic_rate_hz, scenes::kernels());
+  const std::vector<RenderOutput> outputs = play(scene, renderer);
+  int count = 0;
+  for (const CloudView& view : scene.views) {
+    std::size_t tick = 0;
+    while (tick < outputs.size() && scene.time_s(tick) < view.arrives_s) ++tick;
+    if (tick == 0 || tick == outputs.size()) continue;
+    const Vec3 met_W = outputs[tick - 1].proxy_W + outputs[tick].frame_correction_m;
+    if (nearest_distance_m(view.cloud, met_W) < ProxyParameters{}.r1_m) ++count;
+  }
+  return count;
+}
+
+TEST(VerificationScenes, UpdatesEntrenchTheProxy) {
+  for (const MetamorphicScene& scene : verification_scenes(scenes::kernels()))
+    if (scene.name == "rise") {
+      EXPECT_GE(entrenching_views(scene), 5);
+    }
+}
+
+TEST(VerificationScenes, NamesAreUniqueAndTimesAreExact) {
+  Names names;
+  for (const MetamorphicScene& scene : verification_scenes(scenes::kernels())) {
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+    EXPECT_EQ(scene.hip_W.size(), 320u) << scene.name;
+    for (const CloudView& view : scene.views)
+      for (const double time_s : {view.captured_s, view.arrives_s})
+        EXPECT_EQ(time_s * 1024, std::round(time_s * 1024)) << scene.name;
+  }
+}
+
+// --- units ---
+
+TEST(Dimension, IsReadFromTheEndOfAName) {
+  EXPECT_EQ(dimension_of("r1_m"), (Dimension{1, 0, 0}));
+  EXPECT_EQ(dimension_of("max_prediction_s"), (Dimension{0, 1, 0}));
+  EXPECT_EQ(dimension_of("speed_m_per_s"), (Dimension{1, -1, 0}));
+  EXPECT_EQ(dimension_of("acceleration_m_per_s2"), (Dimension{1, -2, 0}));
+  EXPECT_EQ(dimension_of("stiffness_N_per_m"), (Dimension{-1, 0, 1}));
+  EXPECT_EQ(dimension_of("damping_Ns_per_m"), (Dimension{-1, 1, 1}));
+  EXPECT_EQ(dimension_of("noise_per_m"), (Dimension{-1, 0, 0}));
+  EXPECT_EQ(dimension_of("cutoff_hz"), (Dimension{0, -1, 0}));
+  EXPECT_EQ(dimension_of("theta_deg"), Dimension{});
+  EXPECT_EQ(dimension_of("gamma"), Dimension{});
+  EXPECT_EQ(refusal([] { dimension_of("latency_ms"); }).find("latency_ms: ends in no known unit"), 0u);
+}
+
+TEST(Dimension, EveryKindOfParameterFollows) {
+  double length = 0.01, number = 0.5;
+  int count = 30;
+  bool on = true;
+  Vec3 offset(0.01, -0.02, 0);
+  std::vector<double> rows{1, 2, 3, 4};
+  const Parameters parameters = {
+      {"length_m", &length, 0, 1, ""},        {"number", &number, 0, 1, ""},
+      {"steps_per_tick", &count, 1, 100, ""}, {"on", &on, 0, 1, ""},
+      {"offset_m", &offset, -1, 1, ""},       {"way", Rows{{"x_m", "speed_m_per_s"}, &rows}, -10, 100, ""}};
+  change_units(parameters, {2, 0.5, 1});
+  EXPECT_EQ(length, 0.02);
+  EXPECT_EQ(number, 0.5);
+  EXPECT_EQ(count, 30);
+  EXPECT_EQ(offset, Vec3(0.02, -0.04, 0));
+  EXPECT_EQ(rows, (std::vector<double>{2, 8, 6, 16}));
+  EXPECT_EQ(max_length_m(parameters), 0.02);
+}
+
+TEST(Dimension, RefusalNamesTheParameterThatCannotFollow) {
+  double length = 0.6, odd = 1;
+  int window = 5;
+  const auto changed = [](const Parameter& p) { return refusal([&] { change_units({p}, {2, 1, 1}); }); };
+  EXPECT_EQ(changed({"length_m", &length, 0, 1, ""}),
+            "length_m = 0.6: a check multiplies it by 2: expected 0 to 1 after that too");
+  EXPECT_EQ(changed({"window_m", &window, 0, 100, ""}).find("window_m: an integer"), 0u);
+  EXPECT_EQ(changed({"odd_furlong", &odd, 0, 1, ""}).find("odd_furlong: ends in no known unit"), 0u);
+}
+
+struct OddParameters : ProxyParameters {
+  double patience_fortnight = 1;
+};
+Parameters parameters(OddParameters& p) {
+  Parameters list = parameters(static_cast<ProxyParameters&>(p));
+  list.push_back({"patience_fortnight", &p.patience_fortnight, 0, 10, "in an unheard-of unit"});
+  return list;
+}
+
+TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
+  const RendererEntry odd{
+      {"odd", "a parameter in an unheard-of unit",
+       []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {
+         return std::make_unique<
+             FactoryFor<WrongRenderer<Fault::none>, OddParameters, Renderer, double, const Kernels&>>();
+       }}};
+  EXPECT_EQ(refusal([&] { verify(odd); }).find("patience_fortnight: ends in no known unit"), 0u);
+  const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
+  EXPECT_EQ(refusal([&] { verify(proxy, {"r3_m=0.7"}); }).find("r3_m = 0.7: a check multiplies it by 2"), 0u);
+  EXPECT_EQ(refusal([&] { verify(proxy, {"r4_m=0.7"}); }).find("r4_m: unknown"), 0u);
+  EXPECT_EQ(refusal([&] { verify(proxy, {"r2_m=0.02"}); }).find("r2_m = 0.02: expected below r3_m"), 0u);
+}
+
+}  // namespace
+}  // namespace remote_touch::verification_test

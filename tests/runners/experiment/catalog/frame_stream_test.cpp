@@ -1,0 +1,349 @@
+// Frames between capture and arrival: which ones a renderer gets, when, and with which fixtures.
+#include "runners/experiment/catalog/frame_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "analysis/trace/hash64.h"
+#include "core/dissertation/virtual_fixtures/everywhere.h"
+#include "scenarios/recordings/recorded_scene.h"
+#include "scenarios/synthetic/moving_lift.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::frame_stream_test {
+namespace {
+
+// Notes what it is given.
+class Recorder final : public Renderer {
+ public:
+  void on_frame(const Frame& frame) override { frames.push_back(frame); }
+  RenderOutput step(const DeviceState&, double) override { return {}; }
+  std::vector<Frame> frames;
+};
+
+// One point, which is at x = j in frame j.
+class Walk final : public Scenario {
+ public:
+  explicit Walk(int frames) : frames_(frames) {}
+  double frame_rate_hz() const override { return 100; }
+  int frame_count() const override { return frames_; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    return make_search(cloud(frame));
+  }
+  PointCloud cloud(int frame) const override {
+    EXPECT_TRUE(frame >= 0 && frame < frames_) << frame;
+    PointCloud cloud;
+    cloud.append({static_cast<double>(frame), 0, 0});
+    return cloud;
+  }
+  double signed_distance(const Vec3&, double) const override { return 0; }
+
+ private:
+  int frames_;
+};
+
+const PointCloud& cloud_of(const Frame& frame) {
+  return dynamic_cast<const CloudSearch&>(*frame.points).cloud();
+}
+
+FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {}) {
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  rules.push_back(std::make_unique<Everywhere>(Everywhere::Settings{{radius_m, -1, std::move(schedule)}}));
+  return FixtureAssignment(std::move(rules));
+}
+
+// Returns the frames that a renderer receives up to a time. The stream is polled every millisecond, as in a
+// run.
+std::vector<Frame> received(const Scenario& scenario, double until_s, const Transport& transport,
+                            std::uint64_t seed = 1, FixtureAssignment fixtures = {}) {
+  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, transport, {seed}, false);
+  Recorder recorder;
+  for (int tick = 0; 0.001 * tick <= until_s; ++tick) {
+    const double now_s = 0.001 * tick;
+    const std::size_t before = recorder.frames.size();
+    stream.deliver_until(now_s, recorder);
+    for (std::size_t i = before; i < recorder.frames.size(); ++i) {
+      // A frame is delivered in the tick in which it arrives, neither before nor after.
+      EXPECT_LE(recorder.frames[i].arrives_s, now_s + kSameTime_s);
+      EXPECT_GT(recorder.frames[i].arrives_s, now_s - 0.001 - kSameTime_s);
+    }
+  }
+  return recorder.frames;
+}
+
+std::vector<int> indices(const std::vector<Frame>& frames) {
+  std::vector<int> list;
+  for (const Frame& frame : frames) list.push_back(frame.index);
+  return list;
+}
+
+// --- delivery ---
+
+TEST(FrameStream, FramesArriveWhenCapturedByDefault) {
+  const auto frames = received(Walk(50), 1, {});
+  ASSERT_EQ(frames.size(), 50u);
+  for (int j = 0; j < 50; ++j) {
+    const Frame& frame = frames[static_cast<std::size_t>(j)];
+    EXPECT_EQ(frame.index, j);
+    EXPECT_EQ(frame.captured_s, j / 100.0);
+    EXPECT_EQ(frame.arrives_s, j / 100.0);
+    EXPECT_EQ(cloud_of(frame).x, std::vector<double>{static_cast<double>(j)});
+    EXPECT_FALSE(frame.points->has_fixture_radius() || frame.points->has_stiffness());
+  }
+}
+
+TEST(FrameStream, LatencyIsAddedToTheTimeOfCapture) {
+  const auto frames = received(Walk(50), 0.3, {0.0525});
+  ASSERT_EQ(frames.size(), 25u);  // captured by 0.2475 s
+  for (const Frame& frame : frames) {
+    EXPECT_EQ(frame.captured_s, frame.index / 100.0);
+    EXPECT_EQ(frame.arrives_s, frame.captured_s + 0.0525);
+  }
+  EXPECT_TRUE(received(Walk(50), 0.05, {0.0525}).empty());
+}
+
+TEST(FrameStream, FramesArriveInTheOrderOfTheirArrival) {
+  const Transport transport{0.02, 0.05};
+  const auto frames = received(Walk(2000), 21, transport);
+  ASSERT_EQ(frames.size(), 2000u);
+  double sum = 0;
+  int overtaken = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double delay = frames[i].arrives_s - frames[i].captured_s;
+    EXPECT_GE(delay, 0.02 - 1e-12);
+    EXPECT_LE(delay, 0.07 + 1e-12);
+    sum += delay;
+    if (i == 0) continue;
+    EXPECT_GE(frames[i].arrives_s, frames[i - 1].arrives_s);
+    overtaken += frames[i].index < frames[i - 1].index ? 1 : 0;
+  }
+  EXPECT_GT(overtaken, 200);
+  // Evenly spread: the mean is half the jitter, within 5 standard deviations of 2000 draws.
+  EXPECT_NEAR(sum / 2000, 0.045, 5 * 0.05 / std::sqrt(12 * 2000.0));
+  std::vector<int> sorted = indices(frames);
+  std::sort(sorted.begin(), sorted.end());
+  for (int j = 0; j < 2000; ++j) ASSERT_EQ(sorted[static_cast<std::size_t>(j)], j) << "each comes once";
+}
+
+TEST(FrameStream, DeliveryIsDrawnFromTheKey) {
+  const Transport transport{0, 0.05, 0.2};
+  const auto once = received(Walk(300), 4, transport, 7), again = received(Walk(300), 4, transport, 7),
+             other = received(Walk(300), 4, transport, 8);
+  EXPECT_EQ(indices(once), indices(again));
+  for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].arrives_s, again[i].arrives_s);
+  EXPECT_NE(indices(once), indices(other));
+}
+
+TEST(FrameStream, FramesOfASimulationCarryTheTruthForOracles) {
+  const MovingLift lift({}, NoiseKey{1}, scenes::kernels());
+  const auto frames = received(lift, 0.5, {});
+  ASSERT_GT(frames.size(), 5u);
+  const Vec3 p(0.01, 0.02, 0.03);
+  for (const Frame& frame : frames)
+    for (const double t : {0.0, 0.2, 0.4})
+      EXPECT_EQ(frame.truth->signed_distance(p, t), lift.signed_distance(p, t));
+}
+
+// However often the stream is asked, frames come in the same order.
+TEST(FrameStream, OneLateRequestHandsOverTheSameFrames) {
+  const Walk walk(300);
+  const Transport transport{0.01, 0.05, 0.2};
+  FrameStream stream(walk, {}, transport, {7}, false);
+  Recorder recorder;
+  stream.deliver_until(4, recorder);
+  EXPECT_EQ(indices(recorder.frames), indices(received(walk, 4, transport, 7)));
+}
+
+TEST(FrameStream, DropsItsShareOfTheFrames) {
+  EXPECT_EQ(received(Walk(2000), 21, {0, 0, 0}).size(), 2000u);
+  EXPECT_TRUE(received(Walk(2000), 21, {0, 0, 1}).empty());
+  const auto frames = received(Walk(2000), 19.995, {0, 0, 0.3});
+  EXPECT_NEAR(static_cast<double>(frames.size()) / 2000, 0.7, 4 * std::sqrt(0.3 * 0.7 / 2000));
+  // Each for itself: the frames after a lost one are lost as often as any.
+  std::vector<bool> came(2000);
+  for (const Frame& frame : frames) came[static_cast<std::size_t>(frame.index)] = true;
+  int lost = 0, twice = 0;
+  for (std::size_t j = 1; j < came.size(); ++j)
+    if (!came[j - 1]) ++lost, twice += came[j] ? 0 : 1;
+  EXPECT_NEAR(static_cast<double>(twice) / lost, 0.3, 4 * std::sqrt(0.3 * 0.7 / lost));
+}
+
+// A lost frame changes nothing for the others.
+TEST(FrameStream, LossAndJitterAreDrawnApart) {
+  const Walk walk(300);
+  const auto all = received(walk, 4, {0, 0.05, 0}, 3), some = received(walk, 2.995, {0, 0.05, 0.5}, 3);
+  double slow = 0;
+  for (const Frame& frame : some) {
+    const auto same =
+        std::find_if(all.begin(), all.end(), [&](const Frame& f) { return f.index == frame.index; });
+    ASSERT_NE(same, all.end());
+    EXPECT_EQ(same->arrives_s, frame.arrives_s);
+    slow += (frame.arrives_s - frame.captured_s) / static_cast<double>(some.size());
+  }
+  EXPECT_NEAR(slow, 0.025, 5 * 0.05 / std::sqrt(12.0 * static_cast<double>(some.size())));
+}
+
+// --- a scene at rest ---
+
+TEST(FrameStream, ASceneAtRestIsSentOnce) {
+  EXPECT_EQ(indices(received(Walk(1), 1, {})), std::vector<int>{0});
+  const auto protected_once = received(Walk(1), 1, {}, 1, everywhere(0.02));
+  ASSERT_EQ(protected_once.size(), 1u);
+  EXPECT_EQ(cloud_of(protected_once[0]).fixture_radius_m, std::vector<double>{0.02});
+  EXPECT_EQ(received(Walk(1), 1, {}, 1, everywhere(0.02, {0, 0.5, 1, 0.5})).size(), 1u);
+}
+
+TEST(FrameStream, ASceneAtRestIsSentOnWhenItsFixturesChange) {
+  const auto frames = received(Walk(1), 0.3, {0.01}, 1, everywhere(0.02, {0.1, 0, 0.2, 1}));
+  ASSERT_EQ(frames.size(), 30u);
+  for (int j = 0; j < 30; ++j) {
+    const Frame& frame = frames[static_cast<std::size_t>(j)];
+    EXPECT_EQ(frame.index, j);
+    EXPECT_NEAR(frame.captured_s, j / 100.0, 1e-12);
+    EXPECT_NEAR(frame.arrives_s, j / 100.0 + 0.01, 1e-12);
+    EXPECT_EQ(cloud_of(frame).x, std::vector<double>{0});
+    // The schedule uses the time of capture, not of arrival.
+    EXPECT_NEAR(cloud_of(frame).fixture_radius_m.at(0), 0.02 * std::clamp((j - 10) / 10.0, 0.0, 1.0), 1e-12);
+  }
+}
+
+// The camera sees it all the time: a lost frame is not the last one.
+TEST(FrameStream, ASceneAtRestIsSentOnWhenFramesGetLost) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    const auto frames = received(Walk(1), 1, {0, 0, 0.5}, seed);
+    ASSERT_GT(frames.size(), 25u) << seed;
+    ASSERT_LT(frames.size(), 75u) << seed;
+    for (const Frame& frame : frames) {
+      EXPECT_EQ(frame.captured_s, frame.index / 100.0);
+      EXPECT_EQ(cloud_of(frame).x, std::vector<double>{0});
+    }
+  }
+}
+
+// --- hashes ---
+
+std::vector<std::uint64_t> hashes(const Scenario& scenario, FixtureAssignment fixtures,
+                                  double latency_s = 0) {
+  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, {latency_s}, {1}, true);
+  Recorder recorder;
+  std::vector<std::uint64_t> list;
+  for (int tick = 0; tick < 40; ++tick) {
+    stream.deliver_until(0.001 * tick, recorder);
+    list.push_back(stream.newest_hash());
+  }
+  return list;
+}
+
+TEST(FrameStream, TheNewestHashIsThatOfTheNewestFrame) {
+  const auto plain = hashes(Walk(3), {}), late = hashes(Walk(3), {}, 0.005);
+  EXPECT_NE(plain[0], 0u);
+  EXPECT_EQ(plain[0], plain[9]);
+  EXPECT_NE(plain[9], plain[10]);
+  EXPECT_NE(plain[19], plain[20]);
+  EXPECT_EQ(plain[20], plain[39]);
+  EXPECT_EQ(late[4], 0u) << "before the first frame";
+  for (std::size_t tick = 5; tick < late.size(); ++tick) EXPECT_EQ(late[tick], plain[tick - 5]) << tick;
+}
+
+// Its points are made when asked for, by the frame's number: a scene that is sent on shows its last frame.
+TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
+  MovingLift::Settings settings;
+  settings.grid = {4, 4, 0.0015, 0, 0}, settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
+  const MovingLift lift(settings, {1}, scenes::kernels());
+  FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, true);
+  Recorder recorder;
+  for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
+  ASSERT_GT(recorder.frames.back().index, lift.frame_count());
+  EXPECT_EQ(stream.newest_hash(), mixed(points_hash(lift.cloud(lift.frame_count() - 1)),
+                                        std::bit_cast<std::uint64_t>(recorder.frames.back().captured_s)));
+}
+
+TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
+  MovingLift::Settings settings;
+  settings.grid = {4, 4, 0.0015, 0, 0}, settings.noise_sigma_m = 0.001;
+  settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
+  const MovingLift lift(settings, {1}, scenes::kernels());
+  for (const bool made : {false, true}) {
+    FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, false, made);
+    Recorder recorder;
+    for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
+    const Frame& last = recorder.frames.back();
+    const auto* stored = dynamic_cast<const CloudSearch*>(last.points.get());
+    ASSERT_EQ(stored != nullptr, made);
+    if (!made) continue;
+    EXPECT_EQ(points_hash(stored->cloud()), points_hash(lift.cloud(lift.frame_count() - 1)));
+  }
+}
+
+TEST(FrameStream, TheHashChangesWithTheFixtures) {
+  const Walk rest(1);
+  const auto plain = hashes(rest, {}), small = hashes(rest, everywhere(0.02)),
+             large = hashes(rest, everywhere(0.03));
+  EXPECT_NE(plain[0], small[0]);
+  EXPECT_NE(small[0], large[0]);
+  EXPECT_EQ(small, hashes(rest, everywhere(0.02)));
+  const auto changing = hashes(rest, everywhere(0.02, {0, 1, 1, 0}));
+  EXPECT_EQ(changing[0], small[0]);
+  EXPECT_NE(changing[9], changing[10]);
+}
+
+TEST(FrameStream, HashesAreNotMadeUnasked) {
+  const Walk walk(3);
+  FrameStream stream(walk, {}, {}, {1}, false);
+  Recorder recorder;
+  stream.deliver_until(1, recorder);
+  EXPECT_EQ(recorder.frames.size(), 3u);
+  EXPECT_EQ(stream.newest_hash(), 0u);
+}
+
+// --- a recording that ends ---
+
+TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
+  const TestFolder folder("frame_stream_test");
+  folder.write_depth("depth/0000.png", 500), folder.write_depth("depth/0001.png", 600);
+  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                                  "depth_scale_m": 0.001, "frame_rate_hz": 20})");
+  RecordedScene::Settings settings;
+  settings.path = folder.path().string();
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_EQ(indices(received(scene, 1, {})), (std::vector<int>{0, 1}));
+
+  // It goes on at its rate while fixtures change, with what the camera saw last.
+  const auto frames = received(scene, 0.5, {}, 1, everywhere(0.02, {0, 0, 0.5, 1}));
+  ASSERT_EQ(frames.size(), 11u);
+  for (std::size_t j = 0; j < frames.size(); ++j) {
+    EXPECT_NEAR(frames[j].captured_s, 0.05 * static_cast<double>(j), 1e-12);
+    EXPECT_EQ(cloud_of(frames[j]).z, scene.cloud(j == 0 ? 0 : 1).z);
+    EXPECT_NEAR(cloud_of(frames[j]).fixture_radius_m.at(0), 0.002 * static_cast<double>(j), 1e-12);
+    EXPECT_TRUE(cloud_of(frames[j]).image.has_value());
+  }
+}
+
+// A registration moves the cloud, its camera and the truth as one.
+TEST(FrameStream, ARecordingIsRegisteredToTheBaseFrame) {
+  const TestFolder folder("frame_stream_test");
+  folder.write_depth("depth/0000.png", 500);
+  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                                  "depth_scale_m": 0.001, "frame_rate_hz": 20})");
+  RecordedScene::Settings settings;
+  settings.path = folder.path().string();
+  const RecordedScene as_recorded(settings, {}, scenes::kernels());
+  settings.camera_position_m = {1, 2, 3}, settings.camera_rotation_deg = {0, 0, 90};
+  const RecordedScene moved(settings, {}, scenes::kernels());
+  const PointCloud before = as_recorded.cloud(0), after = moved.cloud(0);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Vec3 p = before.point(i), expected(1 - p.y(), 2 + p.x(), 3 + p.z());
+    EXPECT_LT((after.point(i) - expected).norm(), 1e-12);
+  }
+  ASSERT_TRUE(after.image);
+  EXPECT_LT((after.image->X_WC.translation() - Vec3(1, 2, 3)).norm(), 1e-12);
+  EXPECT_LT((after.image->X_WC.linear() * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace remote_touch::frame_stream_test

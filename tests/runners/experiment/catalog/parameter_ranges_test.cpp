@@ -1,0 +1,303 @@
+// Every parameter of the catalogue: the values that it accepts and refuses, and that its value survives being
+// written and read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::parameter_ranges_test {
+namespace {
+
+// Programs write NaN as null, but a value made in memory can be NaN.
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Calls visit(label, make) for everything that has parameters; make() gives a new owner of default settings.
+template <class Visit>
+void for_each_owner(Visit visit) {
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries())
+      visit(std::string(section.key) + " " + entry.name, entry.make);
+}
+
+template <class Owner>
+Json written(Owner& owner) {
+  Json json = Json::object();
+  write_parameters(owner.settings(), json);
+  return json;
+}
+
+// The message with which a parameter refuses a value; empty when it takes it.
+std::string refused(const Parameter& parameter, const Json& value) {
+  try {
+    read_parameters({{parameter.name, value}}, {parameter}, "part");
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+void expect_taken(const Parameter& parameter, const Json& value) {
+  EXPECT_EQ(refused(parameter, value), "");
+}
+
+void expect_refused(const Parameter& parameter, const Json& value) {
+  const std::string message = refused(parameter, value);
+  EXPECT_EQ(message, "part." + parameter.name + " = " + value.dump() + ": expected " + allowed(parameter));
+}
+
+bool is_number(const Parameter& p) {
+  return std::holds_alternative<double*>(p.value) || std::holds_alternative<int*>(p.value) ||
+         std::holds_alternative<std::uint64_t*>(p.value) || std::holds_alternative<Vec3*>(p.value);
+}
+
+// --- lists of parameters ---
+
+TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    SCOPED_TRACE(label);
+    const auto owner = make();
+    std::set<std::string> names;
+    for (const Parameter& p : owner->settings()) {
+      EXPECT_TRUE(names.insert(p.name).second) << p.name << " is there twice";
+      EXPECT_TRUE(std::islower(static_cast<unsigned char>(p.name.front()))) << p.name;
+      EXPECT_EQ(p.name.find_first_of(". =\"\n"), std::string::npos) << p.name << " cannot be said with --set";
+      EXPECT_FALSE(p.help.empty()) << p.name;
+      EXPECT_EQ(p.help.find('\n'), std::string::npos) << p.name;
+      EXPECT_NE(p.name, "name") << "is taken by the name of the part";
+    }
+  });
+}
+
+// Pure numbers, counts and places in an image; everything else says its unit, or of what it is the share.
+bool carries_unit(const std::string& name) {
+  static const std::set<std::string> kPure = {"gamma",
+                                              "max_missed_frames",
+                                              "max_exit_steps",
+                                              "xi",
+                                              "phase_x",
+                                              "phase_z",
+                                              "steps_per_tick",
+                                              "columns",
+                                              "rows",
+                                              "first_frame",
+                                              "last_frame",
+                                              "width",
+                                              "height",
+                                              "row",
+                                              "first_column",
+                                              "last_column",
+                                              "column",
+                                              "seed",
+                                              "cell",
+                                              "replicate",
+                                              "normal",
+                                              "strength",
+                                              "min_saturation",
+                                              "min_lightness",
+                                              "max_lightness",
+                                              "filter_window",
+                                              "normal_window",
+                                              "normal_step",
+                                              "device_scale",
+                                              "detections_per_tick",
+                                              "disk_radius_ratio",
+                                              "colour_noise",
+                                              "approach_axis",
+                                              "max_tool_leaves",
+                                              "max_patches",
+                                              "min_points",
+                                              "button",
+                                              "fraction",
+                                              "sheets",
+                                              "view_direction",
+                                              "threshold",
+                                              "normal_neighbours",
+                                              "friction",
+                                              "fused_frames",
+                                              "view",
+                                              "alpha",
+                                              "persistence_hits",
+                                              "persistence_frames",
+                                              "mean_frames",
+                                              "radius_ratio",
+                                              "rotational_stiffness_ratio",
+                                              "stiffness_ratio",
+                                              "neighbours"};
+  static const char* const kUnits[] = {"_probability", "_fraction", "_m",          "_s",          "_hz",
+                                       "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",
+                                       "_Ns_per_m",    "_m_per_s",  "_m_per_s2",   "_N",          "_Nm",
+                                       "_kg",          "_kg_m2",    "_Nm_per_rad", "_Nms_per_rad"};
+  if (name == "value") return true;  // of a change: the unit of the parameter that changes
+  return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
+                                             [&](const char* unit) { return name.ends_with(unit); });
+}
+
+TEST(Parameters, NumbersCarryTheirUnit) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    SCOPED_TRACE(label);
+    const auto owner = make();
+    for (const Parameter& p : owner->settings()) {
+      std::vector<std::string> names;
+      if (is_number(p)) names = {p.name};
+      if (const auto* rows = std::get_if<Rows>(&p.value)) names = rows->columns;
+      for (const std::string& name : names) EXPECT_TRUE(carries_unit(name)) << name;
+    }
+  });
+}
+
+TEST(Parameters, DefaultsAreAllowedAndSurviveARoundTrip) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    SCOPED_TRACE(label);
+    const auto owner = make(), again = make();
+    const Json defaults = written(*owner);
+    EXPECT_EQ(defaults.size(), owner->settings().size());
+    ASSERT_NO_THROW(read_parameters(Json::parse(defaults.dump()), again->settings(), "part"));
+    EXPECT_EQ(written(*again), defaults);
+  });
+}
+
+// Another value than the default, with as many digits as a number can have.
+struct Change {
+  const Parameter& p;
+  double inside(double fraction) const { return p.low + fraction * (p.high - p.low); }
+  void operator()(double* v) const { *v = inside(0.31415926535897931); }
+  void operator()(int* v) const { *v = static_cast<int>(std::floor(inside(0.4))); }
+  void operator()(std::uint64_t* v) const { *v = p.high > 1e19 ? 18446744073709551557u : 4294967291u; }
+  void operator()(bool* v) const { *v = !*v; }
+  void operator()(std::string* v) const { *v = "a \"name\" \\ of one's own: \u00fc"; }
+  void operator()(Vec3* v) const { *v = Vec3(inside(0.1), inside(1.0 / 3), inside(0.7)); }
+  void operator()(const Choice& c) const { c.set((c.get() + 1) % static_cast<int>(c.names.size())); }
+  void operator()(const Rows& r) const {
+    for (std::size_t i = 0; i < 3 * r.columns.size(); ++i)
+      r.values->push_back(inside(1 / (3.0 + static_cast<double>(i))));
+  }
+};
+
+TEST(Parameters, EveryValueSurvivesARoundTrip) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    SCOPED_TRACE(label);
+    const auto owner = make(), again = make();
+    for (const Parameter& p : owner->settings()) std::visit(Change{p}, p.value);
+    const Json changed = written(*owner);
+    const Json defaults = written(*again);
+    for (const auto& [name, value] : defaults.items()) EXPECT_NE(changed[name], value) << name;
+    ASSERT_NO_THROW(read_parameters(Json::parse(changed.dump()), again->settings(), "part"));
+    EXPECT_EQ(written(*again), changed);
+  });
+}
+
+// --- what a parameter takes and refuses ---
+
+// Checks each kind of parameter at both ends of its range and just outside.
+struct Bounds {
+  const Parameter& p;
+  double below() const { return std::nextafter(p.low, -kInfinity); }
+  double above() const { return std::nextafter(p.high, kInfinity); }
+
+  void operator()(double*) const {
+    EXPECT_LT(p.low, p.high);
+    for (const double v : {p.low, p.high}) expect_taken(p, v);
+    for (const double v : {below(), above(), kInfinity, -kInfinity, kNan}) expect_refused(p, v);
+  }
+  void operator()(int*) const {
+    EXPECT_LT(p.low, p.high);
+    const auto low = static_cast<std::int64_t>(p.low), high = static_cast<std::int64_t>(p.high);
+    for (const std::int64_t v : {low, high}) expect_taken(p, v);
+    for (const std::int64_t v : {low - 1, high + 1}) expect_refused(p, v);
+    for (const double v : {p.low + 0.5, below(), above(), 1e300, kNan}) expect_refused(p, v);
+  }
+  void operator()(std::uint64_t*) const {
+    expect_taken(p, 0u);
+    expect_taken(
+        p, p.high > 1e19 ? std::numeric_limits<std::uint64_t>::max() : static_cast<std::uint64_t>(p.high));
+    expect_refused(p, -1);
+    expect_refused(p, 0.5);
+    expect_refused(p, above());
+    if (p.high < 1e19) expect_refused(p, static_cast<std::uint64_t>(p.high) + 1);
+  }
+  void operator()(bool*) const { expect_taken(p, true), expect_taken(p, false); }
+  void operator()(std::string*) const { expect_taken(p, ""), expect_taken(p, "a/b c"); }
+  void operator()(Vec3*) const {
+    EXPECT_LT(p.low, p.high);
+    expect_taken(p, {p.low, 0, p.high});
+    for (const double v : {below(), above(), kInfinity, kNan}) {
+      expect_refused(p, {v, 0, 0});
+      expect_refused(p, {0, 0, v});
+    }
+    expect_refused(p, {0, 0});
+    expect_refused(p, {0, 0, 0, 0});
+    expect_refused(p, {0, "0", 0});
+  }
+  void operator()(const Choice& choice) const {
+    for (const std::string& name : choice.names) expect_taken(p, name);
+    for (const std::string name : {"", "no such name"}) expect_refused(p, name);
+    expect_refused(p, choice.names.front() + " ");
+  }
+  void operator()(const Rows& rows) const {
+    const Json row(std::vector<double>(rows.columns.size(), p.high));
+    Json long_row = row, high_row = row, text_row = row;
+    long_row.push_back(0), high_row.back() = above(), text_row.back() = "0";
+    expect_taken(p, Json::array());
+    expect_taken(p, Json::array({row, row}));
+    expect_refused(p, row);
+    for (const Json& wrong : {long_row, high_row, text_row, Json::array(), Json(3)})
+      expect_refused(p, Json::array({row, wrong}));
+  }
+};
+
+TEST(Parameters, TakeTheEndsOfTheRangeAndRefuseJustOutside) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    const auto owner = make();
+    for (const Parameter& p : owner->settings()) {
+      SCOPED_TRACE(label + "." + p.name);
+      std::visit(Bounds{p}, p.value);
+    }
+  });
+}
+
+TEST(Parameters, RefuseEveryOtherKind) {
+  for_each_owner([](const std::string& label, const auto& make) {
+    const auto owner = make();
+    for (const Parameter& p : owner->settings()) {
+      SCOPED_TRACE(label + "." + p.name);
+      const bool vector = std::holds_alternative<Vec3*>(p.value);
+      const bool text = std::holds_alternative<std::string*>(p.value);
+      expect_refused(p, nullptr);
+      expect_refused(p, Json::object());
+      expect_refused(p, Json::array({Json::object()}));
+      if (!std::holds_alternative<bool*>(p.value)) expect_refused(p, true);
+      if (!text) expect_refused(p, "1");
+      if (!is_number(p) || vector) expect_refused(p, 1);
+      if (!std::holds_alternative<Rows>(p.value)) expect_refused(p, Json::array());
+    }
+  });
+}
+
+TEST(Parameters, AWholeNumberMayBeWrittenWithAPoint) {
+  int count = 0;
+  const Parameters list = {{"count", &count, 0, 10, "a count"}};
+  read_parameters(Json::parse(R"({"count": 3.0})"), list, "part");
+  EXPECT_EQ(count, 3);
+}
+
+TEST(Parameters, ALongValueIsShortenedInTheMessage) {
+  int count = 0;
+  const Parameter p{"count", &count, 0, 10, "a count"};
+  const std::string message = refused(p, std::string(5000, 'x'));
+  EXPECT_LT(message.size(), 300u);
+  EXPECT_HAS(message, "part.count = \"xxx");
+  EXPECT_HAS(message, "...: expected integers 0 to 10");
+}
+
+}  // namespace
+}  // namespace remote_touch::parameter_ranges_test

@@ -1,0 +1,137 @@
+// The table of sections: what each line owes to reading, writing and help.
+#include "runners/experiment/catalog/sections.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/renamed_names.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::sections_test {
+namespace {
+
+// One that has every section.
+constexpr const char* kAll = R"({"scenario": {"name": "camera-scene"}, "faults": {}, "depth_pipeline": {},
+    "fixtures": [{"name": "everywhere", "role": "guidance", "label": "all", "radius_m": 0.01}], "guidance": {},
+    "sequence": [{"action": "activate", "fixture": "all"}], "renderer": {"name": "proxy"},
+    "changes": [{"time_s": 1, "parameter": "renderer.r3_m", "value": 0.02}],
+    "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "live": {}, "safety": {}})";
+
+std::string why(const std::string& assignment) {
+  return refusal([&] { Experiment::from_json(kAll, "all", {assignment}); });
+}
+
+std::vector<std::string> keys_of(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+TEST(Sections, HaveNamesOfTheirOwnAndASentence) {
+  std::set<std::string> keys;
+  for (const ExperimentSection& section : experiment_sections()) {
+    EXPECT_TRUE(keys.insert(section.key).second) << section.key << " is there twice";
+    EXPECT_GT(std::string(section.summary).size(), 10u) << section.key;
+    ASSERT_FALSE(section.entries().empty()) << section.key;
+    for (const SectionEntry& entry : section.entries()) {
+      EXPECT_EQ(entry.name.empty(), section.heading == nullptr) << section.key;
+      EXPECT_TRUE(entry.name.empty() || !keys.contains(entry.name)) << entry.name << ": describe finds two";
+      EXPECT_FALSE(entry.make()->settings().empty()) << section.key << " " << entry.name;
+    }
+  }
+}
+
+TEST(Sections, AreWrittenInTheOrderOfTheTable) {
+  std::vector<std::string> expected;
+  for (const ExperimentSection& section : experiment_sections())
+    if (section.is_top_level)
+      for (const Parameter& p : section.entries().front().make()->settings()) expected.push_back(p.name);
+    else
+      expected.push_back(section.key);
+  const std::string text = Experiment::from_json(kAll, "all").to_json();
+  EXPECT_EQ(keys_of(Json::parse(text)), expected);
+  EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
+}
+
+TEST(Sections, AreWrittenCompletely) {
+  const Json resolved = Json::parse(Experiment::from_json(kAll, "all").to_json());
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (section.is_top_level) continue;
+    const Json& written = resolved[section.key];
+    const Json& one = written.is_array() ? written.at(0) : written;
+    for (const SectionEntry& entry : section.entries()) {
+      if (!entry.name.empty() && one["name"] != entry.name) continue;
+      const auto made = entry.make();
+      EXPECT_EQ(one.size(), made->settings().size() + !entry.name.empty()) << section.key;
+      for (const Parameter& p : made->settings()) EXPECT_TRUE(one.contains(p.name)) << section.key << p.name;
+    }
+  }
+}
+
+TEST(Sections, RefuseWhatIsNoSection) {
+  for (const ExperimentSection& section : experiment_sections()) {
+    const std::string key = section.key;
+    if (section.is_top_level) {
+      EXPECT_EQ(why(key + "=3").find(key + ": unknown; did you mean "), 0u) << why(key + "=3");
+      continue;
+    }
+    for (const char* value : {"3", "text", "true", "[3]"}) {
+      EXPECT_EQ(why(key + "=" + value).find(key), 0u) << key << ": " << why(key + "=" + value);
+      EXPECT_HAS(why(key + "=" + value), "expected ");
+    }
+  }
+}
+
+TEST(Sections, RefuseUnknownParametersByTheirPath) {
+  for (const ExperimentSection& section : experiment_sections()) {
+    const bool is_list = Json::parse(kAll).value(section.key, Json()).is_array();
+    const std::string path = section.is_top_level ? "" : std::string(section.key) + (is_list ? ".0." : ".");
+    EXPECT_EQ(why(path + "moon_px=3").find(path + "moon_px: unknown; did you mean " + path), 0u)
+        << why(path + "moon_px=3");
+  }
+}
+
+// Sections that may be left out can be null too, and are then not written; others say that they are missing.
+TEST(Sections, LeftOutAndNullAreTheSame) {
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (section.is_top_level) continue;
+    const auto resolved = [&](bool is_null) {
+      Json json = Json::parse(kAll);
+      json.erase("sequence");  // its steps name a fixture
+      if (is_null)
+        json[section.key] = nullptr;
+      else
+        json.erase(section.key);
+      if (section.key == std::string("fixtures")) json.erase("guidance");  // which belongs to a fixture
+      return Experiment::from_json(json).to_json();
+    };
+    SCOPED_TRACE(section.key);
+    const std::string missing = refusal([&] { resolved(false); });
+    EXPECT_EQ(refusal([&] { resolved(true); }), missing);
+    if (missing == "no InputError") {
+      EXPECT_EQ(resolved(true), resolved(false));
+    } else {
+      EXPECT_HAS(missing, std::string(section.key) + ": missing");
+    }
+  }
+}
+
+// A hint that a key has another name now has to be right.
+TEST(Sections, RenamedNamesAreThoseOfParametersMeasuresAndColumns) {
+  std::set<std::string> names = {"max_replicates", "guidance_active", "tool_penetration"};
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries())
+      for (const Parameter& p : entry.make()->settings()) names.insert(p.name);
+  for (const Measure& measure : measures()) names.insert(measure.name);
+  for (const RenamedName& name : renamed_names()) EXPECT_TRUE(names.contains(name.new_name)) << name.new_name;
+}
+
+}  // namespace
+}  // namespace remote_touch::sections_test

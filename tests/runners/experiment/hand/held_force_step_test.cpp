@@ -1,0 +1,218 @@
+// The closed form of a step against matrix exponentials, and its energies.
+#include "runners/experiment/hand/held_force_step.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "tests/runners/experiment/hand/held_motion_oracle.h"
+
+namespace remote_touch::held_force_step_test {
+namespace {
+
+using oracle::Real;
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : random_(seed) {}
+  double between(double low, double high) { return low + (high - low) * random_() / 4294967296.0; }
+  double log_between(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  bool one_in(int n) { return random_() % static_cast<unsigned>(n) == 0; }
+  Vec3 vector(double length) {
+    std::normal_distribution<double> normal;
+    return length * Vec3(normal(random_), normal(random_), normal(random_)).normalized();
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+struct Case {
+  MassOnSpring system;
+  double duration_s = 0.001;
+};
+
+oracle::System of(const MassOnSpring& s) {
+  return {s.mass, s.stiffness, s.path_damping, s.ground_damping};
+}
+
+// The cases cover what the settings accept at 100 to 10000 ticks a second, for translation and rotation:
+// sqrt(k / m) T up to 31.6 and (c / m) T up to 1e5. One in four has the critical damping; some have zeros.
+Case draw_case(Draw& draw) {
+  Case c;
+  c.duration_s = draw.log_between(1e-4, 1e-2);
+  c.system.mass = draw.log_between(1e-5, 100);
+  const double per_s = 1 / c.duration_s;
+  if (!draw.one_in(5)) c.system.stiffness = draw.log_between(1e-8, 1000) * c.system.mass * per_s * per_s;
+  double damping = draw.log_between(1e-8, 1e5) * c.system.mass * per_s;
+  if (draw.one_in(4)) damping = 2 * std::sqrt(c.system.stiffness * c.system.mass);
+  if (draw.one_in(5)) damping = 0;
+  const double share = draw.one_in(3) ? 1 : draw.one_in(2) ? 0 : draw.between(0, 1);
+  c.system.path_damping = share * damping, c.system.ground_damping = (1 - share) * damping;
+  return c;
+}
+
+// The largest |displacement| and |velocity| in [0, T], to which an error is compared.
+struct Largest {
+  Largest(const oracle::System& system, const oracle::State& start, double duration_s) {
+    for (int i = 1; i <= 16; ++i) {
+      const oracle::State s = oracle::after(system, start, static_cast<Real>(duration_s) * i / 16);
+      displacement = std::max(displacement, std::abs(s(0) - start(0)));
+      velocity = std::max(velocity, std::abs(s(1)));
+    }
+    velocity = std::max(velocity, std::abs(start(1)));
+  }
+  Real displacement = 0, velocity = 0;
+};
+
+// Each start has one quantity alone, so that every coefficient is compared by itself.
+Real worst_error(const Case& c) {
+  const HeldForceStep step(c.system, c.duration_s);
+  HeldForceStep::Start starts[4];
+  starts[0].velocity.x() = 1;
+  starts[1].force.x() = c.system.mass;
+  starts[2].apart.x() = 1;
+  starts[3].path_velocity.x() = 1;
+  Real worst = 0;
+  for (const HeldForceStep::Start& start : starts) {
+    oracle::State state;
+    state << 0, start.velocity.x(), start.apart.x(), start.path_velocity.x(),
+        static_cast<Real>(start.force.x()) / c.system.mass;
+    const oracle::State expected = oracle::after(of(c.system), state, c.duration_s);
+    const Largest largest(of(c.system), state, c.duration_s);
+    const HeldForceStep::Motion got = step.motion(start);
+    if (largest.velocity == 0) {
+      EXPECT_EQ(got.displacement, Vec3::Zero());
+      EXPECT_EQ(got.velocity, Vec3::Zero());
+      continue;
+    }
+    worst = std::max({worst, std::abs(got.displacement.x() - expected(0)) / largest.displacement,
+                      std::abs(got.velocity.x() - expected(1)) / largest.velocity});
+  }
+  return worst;
+}
+
+TEST(HeldForceStep, AgreesWithMatrixExponentialsWithinItsBound) {
+  Draw draw(1);
+  Real worst = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Case c = draw_case(draw);
+    const Real error = worst_error(c);
+    ASSERT_LT(error, 1e-13L) << "case " << i << ": m " << c.system.mass << " k " << c.system.stiffness
+                             << " c " << c.system.path_damping << " + " << c.system.ground_damping << " T "
+                             << c.duration_s;
+    worst = std::max(worst, error);
+  }
+  RecordProperty("worst_error", std::to_string(static_cast<double>(worst * 1e15L)) + "e-15");
+}
+
+TEST(HeldForceStep, AgreesAtTheEndsOfTheSettings) {
+  const double rotation[] = {1e-5, 100, 1000, 100};
+  const std::vector<Case> cases = {{{0.01, 1e5, 0, 0}, 0.01},
+                                   {{0.01, 1e5, 1000, 0}, 0.01},
+                                   {{0.01, 0, 1000, 0}, 0.01},
+                                   {{0.01, 100, 0, 1000}, 0.01},
+                                   {{100, 1, 0, 0}, 1e-4},
+                                   {{100, 0, 0, 0}, 1e-4},
+                                   {{1, 1e6, 2000, 0}, 0.001},
+                                   {{1, 1e6, 1999.999999, 0}, 0.001},
+                                   {{1, 1e6, 2000.000001, 0}, 0.001},
+                                   {{rotation[0], 100, 0, 0}, 0.01},
+                                   {{rotation[0], 100, rotation[1], 0}, 0.01},
+                                   {{10, rotation[2], rotation[3], 0}, 1e-4}};
+  for (const Case& c : cases) EXPECT_LT(worst_error(c), 1e-13L) << c.system.mass << " " << c.system.stiffness;
+}
+
+// --- energies ---
+
+struct Drawn {
+  Case c;
+  HeldForceStep::Start start;
+};
+
+Drawn draw_start(Draw& draw) {
+  Drawn d{draw_case(draw), {}};
+  if (!draw.one_in(8)) d.start.apart = draw.vector(draw.log_between(1e-5, 0.1));
+  if (!draw.one_in(8)) d.start.velocity = draw.vector(draw.log_between(1e-3, 1));
+  if (!draw.one_in(3)) d.start.path_velocity = draw.vector(draw.log_between(1e-3, 1));
+  if (!draw.one_in(5)) d.start.force = draw.vector(draw.log_between(1e-2, 100));
+  return d;
+}
+
+TEST(HeldForceStep, GainAndDissipationAreTheWorkOfDeviceAndPath) {
+  Draw draw(2);
+  for (int i = 0; i < 20000; ++i) {
+    const Drawn d = draw_start(draw);
+    const StepEnergy e = HeldForceStep(d.c.system, d.c.duration_s).energy(d.start);
+    const double size = std::abs(e.force_work_J) + std::abs(e.path_work_J) + e.dissipated_J();
+    // A stiff spring exchanges its energy with the mass within the error bound of the coefficients, also
+    // where next to nothing is supplied.
+    const double stored = 0.5 * d.c.system.mass * d.start.velocity.squaredNorm() +
+                          0.5 * d.c.system.stiffness * d.start.apart.squaredNorm();
+    ASSERT_LE(std::abs(e.gained_J() + e.dissipated_J() - e.supplied_J()), 1e-9 * size + 1e-13 * stored)
+        << "case " << i << ": m " << d.c.system.mass << " k " << d.c.system.stiffness << " c "
+        << d.c.system.path_damping << " + " << d.c.system.ground_damping << " T " << d.c.duration_s;
+  }
+}
+
+// Each energy by itself, from the change of the state and from integrals of squares.
+StepEnergy expected_energy(const Drawn& d) {
+  const oracle::System system = of(d.c.system);
+  StepEnergy e;
+  for (int axis = 0; axis < 3; ++axis) {
+    oracle::State start, slip, speed;
+    start << 0, d.start.velocity(axis), d.start.apart(axis), d.start.path_velocity(axis),
+        static_cast<Real>(d.start.force(axis)) / system.mass;
+    slip << 0, 1, 0, -1, 0;
+    speed << 0, 1, 0, 0, 0;
+    const Real t = d.c.duration_s, m = system.mass, k = system.stiffness;
+    const oracle::State change = oracle::change(system, start, t);
+    const Real apart_change = change(2) - change(0);
+    e.force_work_J += static_cast<double>(d.start.force(axis) * change(0));
+    e.kinetic_J += static_cast<double>(m / 2 * change(1) * (2 * start(1) + change(1)));
+    e.potential_J += static_cast<double>(k / 2 * apart_change * (2 * start(2) + apart_change));
+    e.path_damper_J += static_cast<double>(system.path_damping * square_integral(system, start, slip, t));
+    e.ground_damper_J +=
+        static_cast<double>(system.ground_damping * square_integral(system, start, speed, t));
+    // Newton's law, integrated, has the impulse of spring and damper.
+    const Real impulse = m * change(1) - d.start.force(axis) * t + system.ground_damping * change(0);
+    e.path_work_J += static_cast<double>(d.start.path_velocity(axis) * impulse);
+  }
+  return e;
+}
+
+TEST(HeldForceStep, EveryEnergyAgreesWithIntegralsOfTheMotion) {
+  Draw draw(3);
+  for (int i = 0; i < 300; ++i) {
+    const Drawn d = draw_start(draw);
+    const StepEnergy got = HeldForceStep(d.c.system, d.c.duration_s).energy(d.start);
+    const StepEnergy expected = expected_energy(d);
+    const double size = std::abs(expected.force_work_J) + std::abs(expected.path_work_J) +
+                        expected.dissipated_J() + std::abs(expected.kinetic_J) +
+                        std::abs(expected.potential_J);
+    for (const auto part : {&StepEnergy::force_work_J, &StepEnergy::path_work_J, &StepEnergy::path_damper_J,
+                            &StepEnergy::ground_damper_J, &StepEnergy::kinetic_J, &StepEnergy::potential_J})
+      ASSERT_NEAR(got.*part, expected.*part, 1e-10 * size) << "case " << i;
+  }
+}
+
+TEST(HeldForceStep, APathWithoutSpringAndDamperHasNoEffect) {
+  Draw draw(4);
+  for (int i = 0; i < 100; ++i) {
+    const HeldForceStep step({draw.log_between(0.01, 10), 0, 0, draw.log_between(0.1, 100)}, 0.001);
+    HeldForceStep::Start start;
+    start.velocity = draw.vector(0.1), start.force = draw.vector(2);
+    HeldForceStep::Start moved = start;
+    moved.apart = draw.vector(0.1), moved.path_velocity = draw.vector(10);
+    EXPECT_EQ(step.motion(start).displacement, step.motion(moved).displacement);
+    EXPECT_EQ(step.motion(start).velocity, step.motion(moved).velocity);
+    EXPECT_EQ(step.energy(moved).path_work_J, 0);
+    EXPECT_EQ(step.energy(start).ground_damper_J, step.energy(moved).ground_damper_J);
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::held_force_step_test

@@ -1,0 +1,132 @@
+// Frames of another size or camera than the first, as a hand meets them that follows a pixel. The oracle is a
+// plane whose points are computed for each camera.
+#include "runners/experiment/hand/image_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "runners/experiment/hand/image_press.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::image_frames_test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr CameraIntrinsics kCamera{100, 80, 100, 100, 49.5, 39.5};
+
+// A plane at a depth, as the camera sees it from X_WC.
+PointCloud plane(double depth_m, const CameraIntrinsics& camera = kCamera,
+                 const RigidTransform& X_WC = RigidTransform::Identity()) {
+  const auto pixels = camera.pixels();
+  return cloud_from_depth({camera.width, camera.height, std::vector<double>(pixels, depth_m)}, camera, X_WC);
+}
+
+PointCloud without_image(PointCloud cloud) {
+  cloud.image.reset();
+  return cloud;
+}
+
+class Frames final : public Scenario {
+ public:
+  explicit Frames(std::vector<PointCloud> frames) : frames_(std::move(frames)) {}
+  double frame_rate_hz() const override { return 10; }
+  int frame_count() const override { return static_cast<int>(frames_.size()); }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    return make_search(cloud(frame));
+  }
+  PointCloud cloud(int frame) const override { return frames_[static_cast<std::size_t>(frame)]; }
+  double signed_distance(const Vec3&, double) const override { return kNaN; }
+
+ private:
+  const std::vector<PointCloud> frames_;
+};
+
+constexpr double kInFirst_s = 0.05, kInSecond_s = 0.15;
+
+std::string refusal_of_second(PointCloud second) {
+  const Frames scene({plane(0.5), std::move(second)});
+  const ImagePress hand({.row = 40, .column = 50}, scene);
+  hand.at(kInFirst_s);
+  return refusal([&] { hand.at(kInSecond_s); });
+}
+
+TEST(ImageFrames, RefusesAFrameOfAnotherSize) {
+  const CameraIntrinsics half{50, 40, 50, 50, 24.5, 19.5}, turned{80, 100, 100, 100, 39.5, 49.5};
+  EXPECT_EQ(
+      refusal_of_second(plane(0.5, half)),
+      "trajectory.name = image-press: frame 1 has 50 x 40 pixels: expected 100 x 80 pixels, as frame 0 has");
+  EXPECT_HAS(refusal_of_second(plane(0.5, turned)), "frame 1 has 80 x 100 pixels");
+  EXPECT_HAS(refusal_of_second(without_image(plane(0.5, half))), "frame 1 has 2000 points");
+  PointCloud cut = plane(0.5);
+  cut.x.resize(3000), cut.y.resize(3000), cut.z.resize(3000);
+  EXPECT_HAS(refusal_of_second(cut), "frame 1 has 3000 points") << "fewer points than its layout promises";
+}
+
+// The ray of the last column moves by 2.5 pixels with f = 105; one pixel is allowed for the fit of a camera.
+TEST(ImageFrames, RefusesAFrameOfAnotherCamera) {
+  CameraIntrinsics longer = kCamera, shifted = kCamera, fitted = kCamera;
+  longer.fx = 105, shifted.cy += 1.1, fitted.cx += 0.5, fitted.fx = 100.5;
+  EXPECT_HAS(
+      refusal_of_second(plane(0.5, longer)),
+      "frame 1 has another camera (f = 105, 100, c = 49.5, 39.5): expected that of frame 0 (f = 100, 100");
+  EXPECT_HAS(refusal_of_second(plane(0.5, shifted)), "frame 1 has another camera");
+  EXPECT_EQ(refusal_of_second(plane(0.5, fitted)), "no InputError");
+  EXPECT_HAS(refusal_of_second(without_image(plane(0.5, longer))), "frame 1 is not an image");
+}
+
+// Few points may not suffice to fit a camera to a frame of a PCD recording: their places tell.
+TEST(ImageFrames, AcceptsPointsOnTheRaysOfTheFirstFrame) {
+  EXPECT_EQ(refusal_of_second(without_image(plane(0.6))), "no InputError");
+  const Frames scene({plane(0.5), without_image(plane(0.6))});
+  const ImagePress hand({.row = 40, .column = 50, .press_at_s = 10}, scene);
+  EXPECT_NEAR(hand.at(kInSecond_s).position_W.z(), 0.6 - 0.03, 1e-12);
+}
+
+// The hand waits in front of the surface that was shown last.
+TEST(ImageFrames, AFrameWithoutPointsIsAnImageOfHoles) {
+  for (const PointCloud& nothing : {PointCloud{}, without_image(plane(kNaN)), plane(kNaN)}) {
+    const Frames scene({plane(0.5), nothing});
+    const ImagePress hand({.row = 40, .column = 50, .press_at_s = 0, .approach_m_per_s = 10}, scene);
+    EXPECT_NEAR(hand.at(kInFirst_s).position_W.z(), 0.51, 1e-12);
+    EXPECT_NEAR(hand.at(kInSecond_s).position_W.z(), 0.47, 1e-12);
+  }
+}
+
+// A camera that is carried along looks along the ray of the pixel from its new place.
+TEST(ImageFrames, TheCameraMayMove) {
+  RigidTransform X_WC = RigidTransform::Identity();
+  X_WC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  X_WC.translation() = Vec3(1, 2, 3);
+  const Frames scene({plane(0.5), plane(0.6, kCamera, X_WC)});
+  const ImagePress hand({.row = 20, .column = 70, .press_at_s = 10}, scene);
+  const Vec3 expected_W = X_WC * (0.57 * Vec3((70 - 49.5) / 100, (20 - 39.5) / 100, 1));
+  EXPECT_LT((hand.at(kInSecond_s).position_W - expected_W).norm(), 1e-12);
+}
+
+// Rows and columns alone are no image: an organised cloud of a PCD file may be mirrored.
+TEST(ImageFrames, RefusesAFirstFrameThatNoCameraSees) {
+  PointCloud organised = without_image(plane(0.5));
+  EXPECT_EQ(refusal([&] { first_image(Frames({organised}), "x"); }),
+            "x: the frames are not images: expected a scenario with a camera");
+  organised.grid_columns = kCamera.width;
+  EXPECT_EQ(
+      refusal([&] { first_image(Frames({organised}), "x"); }),
+      "x: the frames have rows and columns but are not images, because no camera sees each point at its "
+      "pixel: expected clouds in the frame of the camera that are not mirrored");
+}
+
+TEST(ImageFrames, TheFirstFrameHasAPointForEachPixel) {
+  PointCloud cut = plane(0.5);
+  cut.x.resize(3000), cut.y.resize(3000), cut.z.resize(3000);
+  const Frames scene({cut});
+  EXPECT_HAS(refusal([&] { first_image(scene, "x"); }),
+             "x: frame 0 has 3000 points: expected 100 x 80 pixels");
+}
+
+}  // namespace
+}  // namespace remote_touch::image_frames_test

@@ -1,0 +1,80 @@
+#include "runners/experiment/hand/poses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/synthetic/flat_grid.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::poses_test {
+namespace {
+
+const double kDegree = std::acos(-1.0) / 180;
+
+Poses poses(std::vector<double> rows) {
+  return Poses({std::move(rows)}, FlatGrid({}, NoiseKey{}, scenes::kernels()));
+}
+
+void expect_at(const DeviceState& got, const Vec3& place, const Eigen::Quaterniond& orientation) {
+  EXPECT_LT((got.position_W - place).norm(), 1e-15) << got.position_W.transpose();
+  EXPECT_LT(got.orientation_W.angularDistance(orientation), 1e-7) << got.orientation_W;
+  EXPECT_LT((got.orientation_W.toRotationMatrix() - orientation.toRotationMatrix()).norm(), 2e-15);
+  EXPECT_NEAR(got.orientation_W.norm(), 1, 4e-16);
+}
+
+Eigen::Quaterniond about(const Vec3& axis, double degrees) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, axis.normalized()));
+}
+
+TEST(Poses, GoStraightAndTurnEvenly) {
+  const Poses device = poses({0,   0.1,  0, 0,  0,   0, 9,    //
+                              0,   -0.1, 0, 0,  0,   0, 2,    //
+                              0,   -0.1, 0, 0,  30,  0, 3,    //
+                              0.3, 0,    0, 0,  -60, 0, 0.5,  //
+                              1,   1,    1, 90, 0,   0, 0});
+  EXPECT_EQ(device.duration_s(), 5.5);
+  const Vec3 y = Vec3::UnitY();
+  expect_at(device.at(-1), {0, 0.1, 0}, about(y, 0));
+  expect_at(device.at(0.5), {0, 0.05, 0}, about(y, 0));
+  expect_at(device.at(2), {0, -0.1, 0}, about(y, 0));
+  expect_at(device.at(3), {0, -0.1, 0}, about(y, 10));
+  expect_at(device.at(5), {0, -0.1, 0}, about(y, 30));
+  expect_at(device.at(5.25), {0.15, -0.05, 0}, about(y, -15));
+  expect_at(device.at(5.5), {1, 1, 1}, about(Vec3::UnitX(), 90));  // jumped, and stays
+  expect_at(device.at(99), {1, 1, 1}, about(Vec3::UnitX(), 90));
+}
+
+// The turn from one to the other about a fixed axis: slerp.
+TEST(Poses, TakeTheShorterWayRound) {
+  const Poses device = poses({0, 0, 0, 20, -50, 80, 0, 0, 0, 0, -100, 30, 10, 1, 0, 0, 0, 0, 0, 200, 1});
+  const Eigen::Quaterniond a = about({20, -50, 80}, Vec3(20, -50, 80).norm());
+  const Eigen::Quaterniond b = about({-100, 30, 10}, Vec3(-100, 30, 10).norm());
+  for (double fraction = 0; fraction < 1; fraction += 0.07)
+    expect_at(device.at(fraction), {0, 0, 0}, a.slerp(fraction, b));
+  // 200 degrees are 160 the other way.
+  const Eigen::Quaterniond c = about({0, 0, 1}, -160);
+  for (double fraction = 0; fraction < 1; fraction += 0.07)
+    expect_at(device.at(1 + fraction), {0, 0, 0}, b.slerp(fraction, c));
+  // The rotation has a constant rate.
+  const double first = device.at(0.3).orientation_W.angularDistance(device.at(0.31).orientation_W);
+  const double later = device.at(0.7).orientation_W.angularDistance(device.at(0.71).orientation_W);
+  EXPECT_NEAR(first, later, 1e-8);
+}
+
+TEST(Poses, RefuseWhatIsNotUnique) {
+  EXPECT_EQ(validate(Poses::Settings{}), "");
+  EXPECT_NE(validate(Poses::Settings{{}}), "");
+  EXPECT_NE(validate(Poses::Settings{{0, 0, 0, 0, 0, 0, -1}}), "");
+  const auto turned = [](double degrees, double duration) {
+    return validate(Poses::Settings{{0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 10 + degrees, 0, duration}});
+  };
+  EXPECT_EQ(turned(179, 1), "");
+  EXPECT_NE(turned(180, 1), "");
+  EXPECT_NE(turned(-180, 1), "");
+  EXPECT_EQ(turned(180, 0), "") << "a jump goes no way";
+  EXPECT_EQ(turned(360, 1), "");
+}
+
+}  // namespace
+}  // namespace remote_touch::poses_test

@@ -1,0 +1,110 @@
+// The folder of the cache is bounded: what was used longest ago goes first.
+#include "runners/experiment/provenance/cache_size.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <string>
+
+#include "runners/experiment/provenance/cache_file.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::cache_size_test {
+namespace {
+
+class CacheSizeTest : public testing::Test {
+ protected:
+  CacheSizeTest() { ::unsetenv("REMOTE_TOUCH_CACHE_MB"); }  // the user may have set it
+  ~CacheSizeTest() override { ::unsetenv("REMOTE_TOUCH_CACHE_MB"); }
+
+  void add(const std::string& name, std::size_t bytes, int used_s_ago) const {
+    folder_.write(name, std::string(bytes, 'x'));
+    set_used(name, used_s_ago);
+  }
+  void set_used(const std::string& name, int s_ago) const {
+    const timespec times[] = {{std::time(nullptr) - s_ago, 0}, {0, UTIME_OMIT}};
+    ASSERT_EQ(::utimensat(AT_FDCWD, (folder_ / name).c_str(), times, 0), 0);
+  }
+  std::vector<std::string> names() const { return files_in(folder_.path()); }
+
+  TestFolder folder_{"cache_size"};
+};
+
+TEST_F(CacheSizeTest, RemovesTheLeastRecentlyUsedFilesFirst) {
+  add("a.tool", 100, 30), add("b.spheres", 100, 50), add("c.tool", 100, 10), add("d.tool", 100, 40);
+  EXPECT_EQ(cache_size(folder_.path()).bytes, 400u);
+  EXPECT_EQ(shrink_cache(folder_.path(), 400).files, 4u);
+  const CacheSize left = shrink_cache(folder_.path(), 250);
+  EXPECT_EQ(left.files, 2u);
+  EXPECT_EQ(left.bytes, 200u);
+  EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "c.tool"}));
+  EXPECT_EQ(shrink_cache(folder_.path(), 0).files, 0u);
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(CacheSizeTest, OnlyItsOwnFilesGo) {
+  add("notes.txt", 100, 9999), add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60);
+  EXPECT_EQ(shrink_cache(folder_.path(), 0).bytes, 0u);
+  EXPECT_EQ(names(), (std::vector<std::string>{"l.partial-AbCdEf", "notes.txt"}));
+}
+
+// Also small files of a size that is known: they do not count, but programs that write them can be killed.
+TEST_F(CacheSizeTest, EveryWriterRemovesWhatKilledProgramsLeft) {
+  add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60), add("a.tool", 100, 9999);
+  ASSERT_TRUE(write_cache_file(folder_.path(), {"levels", 1, 4096}, "m", [](CacheWriter&) {}));
+  EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "l.partial-AbCdEf", "m.levels"}));
+}
+
+TEST_F(CacheSizeTest, NoFolderHoldsNothing) {
+  EXPECT_EQ(cache_size(folder_ / "nowhere").files, 0u);
+  EXPECT_EQ(shrink_cache(folder_ / "nowhere", 0).files, 0u);
+}
+
+// Written files make room for themselves, and reading one keeps it.
+TEST_F(CacheSizeTest, WritingKeepsTheCacheBelowItsMaximum) {
+  ::setenv("REMOTE_TOUCH_CACHE_MB", "0.0025", 1);  // 2500 bytes: two files
+  const auto put = [](CacheWriter& pack) { pack.text(std::string(1000, 'x')); };
+  const auto take = [](Unpacker& unpack) {
+    std::string text;
+    unpack.text(text);
+  };
+  const CacheKind kind{"tool", 1};
+  ASSERT_TRUE(write_cache_file(folder_.path(), kind, "a", put));
+  ASSERT_TRUE(write_cache_file(folder_.path(), kind, "b", put));
+  set_used("a.tool", 60), set_used("b.tool", 50);
+  ASSERT_TRUE(read_cache_file(folder_.path(), kind, "a", take));
+  ASSERT_TRUE(write_cache_file(folder_.path(), kind, "c", put));
+  EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "c.tool"}));
+}
+
+// A small file is written whatever the maximum says, and one that is longer than its kind can be is not read.
+TEST_F(CacheSizeTest, AKindCanHaveAMaximum) {
+  ::setenv("REMOTE_TOUCH_CACHE_MB", "wrong", 1);
+  const auto take = [](Unpacker& unpack) {
+    std::string text;
+    unpack.text(text);
+  };
+  const CacheKind kind{"levels", 1, 200};
+  for (const std::size_t length : {10u, 200u}) {
+    const auto put = [&](CacheWriter& pack) { pack.text(std::string(length, 'x')); };
+    ASSERT_TRUE(write_cache_file(folder_.path(), kind, "a", put));
+    EXPECT_EQ(read_cache_file(folder_.path(), kind, "a", take), length == 10);
+    EXPECT_TRUE(read_cache_file(folder_.path(), {"levels", 1}, "a", take));
+  }
+}
+
+TEST_F(CacheSizeTest, TheMaximumIsTakenFromTheEnvironment) {
+  EXPECT_EQ(max_cache_bytes(), 512'000'000u);
+  ::setenv("REMOTE_TOUCH_CACHE_MB", "1.5", 1);
+  EXPECT_EQ(max_cache_bytes(), 1'500'000u);
+  for (const char* wrong : {"-1", "x", "1 MB", "nan", "inf"}) {
+    ::setenv("REMOTE_TOUCH_CACHE_MB", wrong, 1);
+    EXPECT_HAS(refusal([] { max_cache_bytes(); }), std::string("REMOTE_TOUCH_CACHE_MB = ") + wrong);
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::cache_size_test

@@ -1,0 +1,339 @@
+// A recording that does not come to its end can be read up to its last whole block, and is then, row by row,
+// the beginning of the whole recording.
+#include "runners/experiment/sessions/session_recorder.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <new>
+#include <random>
+#include <type_traits>
+
+#include "analysis/storage/hdf5_file.h"
+#include "runners/experiment/sessions/session_file.h"
+#include "runners/experiment/sessions/unfinished_session.h"
+#include "tests/runners/experiment/sessions/small_session.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::session_recorder_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kParameters{"renderer.r1_m", "scenario.noise_per_m"};
+
+// A session with ticks that are all different, a frame for every 33 of them, taken 5 ticks after it came, and
+// a change of a parameter now and then.
+struct Recorded {
+  SmallSession session;
+  std::vector<SessionChange> changes;
+  static constexpr int kTicksOfAFrame = 33;
+
+  Recorded(int ticks, SensorView view) {
+    session.view = view;
+    std::mt19937_64 random(1);
+    const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+    for (int i = 0; i < ticks; ++i) {
+      if (i % kTicksOfAFrame == 0) add_frame(i / kTicksOfAFrame, random);
+      SessionTick tick;
+      tick.number = i + i / 50, tick.taken = i % kTicksOfAFrame == 5 ? i / kTicksOfAFrame : -1;
+      tick.device = {{number(), number(), number()},
+                     {number(), number(), number(), number()},
+                     static_cast<std::uint32_t>(random())};
+      tick.written = {{number(), number(), number()}, {number(), number(), number()}};
+      tick.gate = i % 4;
+      session.ticks.push_back(tick);
+      if (i % 70 == 69) changes.push_back({static_cast<std::uint64_t>(tick.number), i % 2, number()});
+    }
+  }
+
+  void add_frame(int number, std::mt19937_64& random) {
+    SensorFrame frame;
+    frame.number = number;
+    const CameraIntrinsics& camera = session.view.camera;
+    if (session.view.cloud) {
+      for (std::size_t i = 0; i < session.view.cloud->numbers_per_point() * (number % 4); ++i)
+        frame.points.push_back(static_cast<float>(random()));
+    } else {
+      for (int i = 0; i < camera.width * camera.height; ++i)
+        frame.depth.push_back(static_cast<std::uint16_t>(random()));
+    }
+    const std::size_t colours =
+        session.view.cloud ? static_cast<std::size_t>(number % 4) : frame.depth.size();
+    for (std::size_t i = 0; session.view.has_colour && i < colours; ++i)
+      frame.colour.push_back(static_cast<std::uint32_t>(random()));
+    session.frames.push_back(frame), session.captured_s.push_back(0.033 * number);
+    session.fixtures_off.push_back(random());
+  }
+
+  TextAttributes provenance() const {
+    return {{"config", session.config}, {"command", "a \xff byte\nand a line"}};
+  }
+
+  // done(ticks, frames): what was appended so far.
+  template <class Done>
+  void fill(SessionRecorder& recorder, const Done& done) const {
+    std::size_t change = 0, frame = 0;
+    for (std::size_t i = 0; i < session.ticks.size(); ++i) {
+      if (i % kTicksOfAFrame == 0) {
+        recorder.append(session.frames[frame], session.captured_s[frame], session.fixtures_off[frame]);
+        ++frame;
+      }
+      const auto number = static_cast<std::uint64_t>(session.ticks[i].number);
+      while (change < changes.size() && changes[change].tick == number) recorder.append(changes[change++]);
+      recorder.append(session.ticks[i]);
+      done(i + 1, frame);
+    }
+  }
+  SessionRecorder recorder(const fs::path& file) const {
+    return SessionRecorder(file, session.view, session.registered, provenance(), kParameters);
+  }
+
+  // The whole, written without a journal.
+  Hdf5Content whole(const TestFolder& folder) const {
+    SessionWriter writer(folder / "whole.h5", session.view, session.registered, provenance(), kParameters);
+    session.fill(writer);
+    for (const SessionChange& change : changes) writer.append(change);
+    writer.finish();
+    return read_hdf5(folder / "whole.h5");
+  }
+};
+
+SensorView images() {
+  SensorView view = SmallSession{}.view;
+  view.camera.width = 16, view.camera.height = 12, view.has_colour = true;
+  return view;
+}
+SensorView clouds() {
+  SensorView view = SmallSession{}.view;
+  view.cloud = CloudLayout{true, 0, 10};
+  view.has_colour = true;
+  return view;
+}
+
+std::size_t rows_of(const Hdf5Content& content, const std::string& path) {
+  for (const auto& [name, column] : content.datasets)
+    if (name == path) return column.length();
+  return 0;
+}
+
+// Each column of the part is the beginning of the column of the whole, bit by bit, and those of a group end
+// at the same row.
+void expect_beginning(const Hdf5Content& part, const Hdf5Content& whole) {
+  ASSERT_EQ(part.datasets.size(), whole.datasets.size());
+  for (std::size_t i = 0; i < part.datasets.size(); ++i) {
+    const auto& [path, some] = part.datasets[i];
+    const Column& all = whole.datasets[i].second;
+    ASSERT_EQ(path, whole.datasets[i].first);
+    ASSERT_EQ(some.width, all.width) << path;
+    if (path.starts_with("/ticks")) {
+      EXPECT_EQ(some.length(), rows_of(part, "/ticks/number")) << path;
+    }
+    std::visit(
+        [&, &of = path](const auto& values) {
+          const auto& expected = std::get<std::decay_t<decltype(values)>>(all.values);
+          ASSERT_LE(values.size(), expected.size()) << of;
+          using Value = std::decay_t<decltype(values[0])>;
+          if constexpr (std::is_arithmetic_v<Value>) {
+            EXPECT_EQ(std::memcmp(values.data(), expected.data(), values.size() * sizeof(Value)), 0) << of;
+          }
+        },
+        some.values);
+  }
+  for (const auto& [name, value] : whole.attributes)
+    EXPECT_EQ(attribute(part.attributes, name), value) << name;
+}
+
+class SessionRecorderOf : public testing::TestWithParam<bool> {
+ protected:
+  static SensorView view() { return GetParam() ? clouds() : images(); }
+};
+
+TEST_P(SessionRecorderOf, MakesTheFileThatTheWriterMakes) {
+  const TestFolder folder("session_recorder");
+  for (const int ticks : {0, 1, 99, 100, 101, 1234}) {
+    const Recorded recorded(ticks, view());
+    const Hdf5Content whole = recorded.whole(folder);
+    SessionRecorder recorder = recorded.recorder(folder / "x.h5");
+    recorded.fill(recorder, [](std::size_t, std::size_t) {});
+    EXPECT_TRUE(fs::exists(folder / "x.h5.unfinished"));
+    EXPECT_FALSE(fs::exists(folder / "x.h5"));
+    recorder.finish({{"ended", "its duration has elapsed"}});
+    EXPECT_EQ(recorder.keep(), "");
+    EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"whole.h5", "x.h5"}));
+    const Hdf5Content made = read_hdf5(folder / "x.h5");
+    expect_beginning(made, whole);
+    EXPECT_EQ(rows_of(made, "/ticks/number"), recorded.session.ticks.size());
+    EXPECT_EQ(rows_of(made, "/frames/number"), recorded.session.frames.size());
+    EXPECT_EQ(rows_of(made, "/changes/tick"), recorded.changes.size());
+    EXPECT_EQ(attribute(made.attributes, "ended"), "its duration has elapsed");
+    fs::remove(folder / "x.h5");
+  }
+}
+
+// kill -9 at forty moments over the whole recording, its end included: by the process itself between two
+// ticks, and from outside at any point of a write. The counts are in memory that outlasts the process.
+TEST_P(SessionRecorderOf, KilledAtAnyMomentKeepsEveryBlock) {
+  const TestFolder folder("session_recorder");
+  const Recorded recorded(2500, view());
+  const Hdf5Content whole = recorded.whole(folder);
+  struct Counts {
+    std::atomic<std::size_t> ticks, frames, finishing;
+  };
+  void* const shared =
+      ::mmap(nullptr, sizeof(Counts), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  std::mt19937_64 random(7);
+  int midway = 0, midway_at_least = 0;
+  for (int kill = 0; kill < 40; ++kill) {
+    Counts& counts = *new (shared) Counts{};
+    const std::size_t last = recorded.session.ticks.size(), when = random() % (last + last / 4);
+    const bool by_itself = kill % 2 == 0 && when < last;
+    midway_at_least += by_itself && when >= SessionRecorder::kTicksInABlock ? 1 : 0;
+    const fs::path file = folder / "x.h5", journal = folder / "x.h5.unfinished";
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      SessionRecorder recorder = recorded.recorder(file);
+      recorded.fill(recorder, [&](std::size_t ticks, std::size_t frames) {
+        counts.frames = frames, counts.ticks = ticks;
+        if (by_itself && ticks >= when) ::raise(SIGKILL);
+      });
+      counts.finishing = 1;
+      recorder.finish({{"ended", "its duration has elapsed"}});
+      ::_exit(0);
+    }
+    if (!by_itself) {
+      while (counts.ticks < std::min(when, last) || (when > last && counts.finishing == 0)) ::sched_yield();
+      if (when > last) ::usleep(static_cast<useconds_t>(random() % 20000));
+      ::kill(child, SIGKILL);
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    if (fs::exists(file)) {
+      EXPECT_EQ(rows_of(read_hdf5(file), "/ticks/number"), last) << "a file with that name is whole";
+      expect_beginning(read_hdf5(file), whole);
+    }
+    if (fs::exists(journal)) {
+      const UnfinishedSession found = read_unfinished(journal);
+      EXPECT_GE(found.ticks,
+                counts.ticks / SessionRecorder::kTicksInABlock * SessionRecorder::kTicksInABlock);
+      EXPECT_GE(found.frames, counts.frames.load());
+      EXPECT_FALSE(found.is_growing);
+      if (found.ticks + found.frames > 0) {
+        recover_session(journal, folder / "r.h5");
+        const Hdf5Content part = read_hdf5(folder / "r.h5");
+        expect_beginning(part, whole);
+        EXPECT_EQ(rows_of(part, "/ticks/number"), found.ticks);
+        EXPECT_EQ(rows_of(part, "/frames/number"), found.frames);
+        const SessionReader read(folder / "r.h5");  // it is one that can be run
+        EXPECT_EQ(read.tick_count(), found.ticks);
+        midway += found.ticks < last ? 1 : 0;
+      }
+    } else {
+      EXPECT_TRUE(fs::exists(file) || counts.ticks == 0);
+    }
+    for (const std::string& name : files_in(folder.path()))
+      if (name != "whole.h5") fs::remove(folder / name);
+  }
+  ::munmap(shared, sizeof(Counts));
+  EXPECT_GE(midway, midway_at_least);  // however late the kills from outside come
+  EXPECT_GE(midway_at_least, 10);      // the moments are always the same
+}
+
+// Every cut of the file: as a full disk or a power cut leaves it.
+TEST_P(SessionRecorderOf, CutAnywhereItIsTheBeginning) {
+  const TestFolder folder("session_recorder");
+  const Recorded recorded(230, view());
+  const Hdf5Content whole = recorded.whole(folder);
+  {
+    SessionRecorder recorder = recorded.recorder(folder / "x.h5");
+    recorded.fill(recorder, [](std::size_t, std::size_t) {});
+  }
+  const std::string bytes = bytes_of(folder / "x.h5.unfinished");
+  const std::uint64_t all = recorded.session.ticks.size();
+  ASSERT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, all);
+  std::uint64_t least = 0;
+  for (std::size_t size = 0; size <= bytes.size();
+       size += size < bytes.size() && size + 97 > bytes.size() ? 1 : 97) {
+    const fs::path cut = folder.write("cut", bytes.substr(0, size));
+    try {
+      const UnfinishedSession found = recover_session(cut, folder / "r.h5");
+      EXPECT_GE(found.ticks, least) << "a longer file has no fewer ticks";
+      least = found.ticks;
+      EXPECT_EQ(found.has_end, false);
+      const Hdf5Content part = read_hdf5(folder / "r.h5");
+      expect_beginning(part, whole);
+      EXPECT_EQ(attribute(part.attributes, "ended"), kInterruptedRecording);
+      EXPECT_HAS(attribute(part.attributes, "notes"),
+                 "the recording was interrupted after " + std::to_string(found.ticks) + " ticks");
+    } catch (const InputError& error) {
+      EXPECT_HAS(std::string(error.what()), cut.string() + ": ");
+      EXPECT_EQ(least, 0u) << error.what();
+    }
+  }
+  EXPECT_EQ(least, all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, SessionRecorderOf, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "clouds" : "images"; });
+
+TEST(SessionRecorder, ATickIsNotWholeBeforeTheFrameThatItTook) {
+  const TestFolder folder("session_recorder");
+  SmallSession session;
+  session.add_frame(0, 0);
+  SessionRecorder recorder(folder / "x.h5", session.view, session.registered, {{"config", session.config}});
+  for (int i = 0; i < 150; ++i) {
+    SessionTick tick;
+    tick.number = i, tick.taken = i == 120 ? 0 : -1;
+    recorder.append(tick);
+  }
+  EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 100u);
+  recorder.keep();
+  EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 120u)
+      << "the frame of the next one is missing";
+  recorder.append(session.frames[0], 0, 0);
+  EXPECT_HAS(recorder.keep(), "x.h5.unfinished keeps 150 ticks and 1 frames");
+  EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 150u);
+}
+
+TEST(SessionRecorder, LeavesNothingWhereNothingWasRecorded) {
+  const TestFolder folder("session_recorder");
+  const Recorded recorded(0, images());
+  { SessionRecorder recorder = recorded.recorder(folder / "x.h5"); }
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+// The recording ended, and its file found no place: the whole is recovered, with the attributes of its end.
+TEST(SessionRecorder, AFileThatCannotBeMadeLeavesTheWhole) {
+  const TestFolder folder("session_recorder");
+  const Recorded recorded(500, images());
+  const Hdf5Content whole = recorded.whole(folder);
+  {
+    SessionRecorder recorder = recorded.recorder(folder / "x.h5");
+    recorded.fill(recorder, [](std::size_t, std::size_t) {});
+    fs::create_directory(folder / "x.h5");
+    EXPECT_HAS(refusal([&] {
+                 recorder.finish({{"ended", "its duration has elapsed"}, {"notes", "n"}});
+               }),
+               "x.h5: cannot be written");
+    EXPECT_HAS(recorder.keep(), "x.h5.unfinished keeps 500 ticks and 16 frames");
+  }
+  EXPECT_TRUE(read_unfinished(folder / "x.h5.unfinished").has_end);
+  recover_session(folder / "x.h5.unfinished", folder / "r.h5");
+  const Hdf5Content made = read_hdf5(folder / "r.h5");
+  expect_beginning(made, whole);
+  EXPECT_EQ(rows_of(made, "/ticks/number"), 500u);
+  EXPECT_EQ(attribute(made.attributes, "ended"), "its duration has elapsed");
+  EXPECT_EQ(attribute(made.attributes, "notes"), "n");
+  EXPECT_TRUE(fs::exists(folder / "x.h5.unfinished")) << "only the user removes it";
+}
+
+}  // namespace
+}  // namespace remote_touch::session_recorder_test

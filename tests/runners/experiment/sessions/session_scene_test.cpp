@@ -1,0 +1,200 @@
+// A recorded session as a scenario, as a trajectory, and as an experiment.
+#include "runners/experiment/sessions/session_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "runners/experiment/sessions/sensor_cloud.h"
+#include "tests/runners/experiment/sessions/small_session.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::session_scene_test {
+namespace {
+
+using Json = nlohmann::json;
+
+// Ticks 3, 4, 7, 9 and 12 of 500 a second; of three frames the second was overtaken.
+class SessionSceneTest : public testing::Test {
+ protected:
+  SessionSceneTest() {
+    session_.config = R"({"haptic_rate_hz": 500})";
+    session_.registered = RigidTransform(Eigen::Translation3d(1, 2, 3));
+    session_.add_frame(7, 0.001), session_.add_frame(8, 0.004, 600, 5), session_.add_frame(10, 0.01, 700);
+    session_.add_tick(3), session_.add_tick(4, 0), session_.add_tick(7), session_.add_tick(9, 2);
+    session_.add_tick(12);
+  }
+
+  SessionScene scene() const { return {{session_.write(file_)}, {}, scenes::kernels()}; }
+  SessionHand hand() const {
+    const SessionScene any = scene();
+    return {{file_.string()}, any};
+  }
+
+  const TestFolder folder_{"session_scene"};
+  const std::filesystem::path file_ = folder_ / "session.h5";
+  SmallSession session_;
+};
+
+// --- the scenario ---
+
+TEST_F(SessionSceneTest, AFrameArrivesWhenTheRendererTookIt) {
+  const SessionScene scene = this->scene();
+  EXPECT_EQ(scene.arrives_s(0), 4 / 500.0);
+  EXPECT_EQ(scene.arrives_s(1), std::numeric_limits<double>::infinity()) << "the renderer never got it";
+  EXPECT_EQ(scene.arrives_s(2), 9 / 500.0);
+}
+
+TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
+  const SessionScene scene = this->scene();
+  EXPECT_EQ(scene.frame_count(), 3);
+  EXPECT_EQ(scene.frame_rate_hz(), 30);
+  EXPECT_TRUE(scene.ends());
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(scene.captured_s(i), session_.captured_s[at]);
+    EXPECT_EQ(scene.fixtures_off(i), session_.fixtures_off[at]);
+    const PointCloud live = cloud_of(session_.frames[at], session_.view, session_.registered);
+    const PointCloud cloud = scene.cloud(i);
+    EXPECT_EQ(cloud.x, live.x);
+    EXPECT_EQ(cloud.y, live.y);
+    EXPECT_EQ(cloud.z, live.z);
+    EXPECT_EQ(scene.points(i)->size(), cloud.size());
+  }
+  EXPECT_TRUE(std::isnan(scene.signed_distance(Vec3::Zero(), 0))) << "there is no truth";
+}
+
+// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer got the first and the last.
+TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
+  const SessionScene scene = this->scene();
+  scene.cloud(0), scene.points(0);
+  EXPECT_EQ(scene.input(), file_.string() +
+                               ": 3 frame(s) of a live session, 3 x 2 pixels; 1 read: "
+                               "100 % of 6 points measured, depth 0.25 to 0.253 m, without colours");
+  ASSERT_EQ(scene.input_notes().size(), 1u);
+  EXPECT_EQ(scene.input_notes()[0].kind, "frames unused");
+  EXPECT_EQ(scene.input_notes()[0].text,
+            file_.string() + ": 1 of 2 frames were not used: the run ends before");
+  scene.points(2);
+  EXPECT_TRUE(scene.input_notes().empty()) << "the frame that was overtaken belongs to no run";
+  EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
+}
+
+TEST_F(SessionSceneTest, AFrameThatWasReplacedIsNotSaidToBeAfterTheEnd) {
+  const SessionScene scene = this->scene();
+  scene.points(2);
+  ASSERT_EQ(scene.input_notes().size(), 1u);
+  EXPECT_EQ(scene.input_notes()[0].text,
+            file_.string() + ": 1 of 2 frames were not used: newer ones replaced them, or they were lost");
+}
+
+TEST_F(SessionSceneTest, IsRefusedIfThereAreNoFrames) {
+  session_.frames.clear(), session_.ticks.clear();
+  EXPECT_EQ(refusal([this] { scene(); }), file_.string() + ": has no frames: expected a session with some");
+  session_.write(file_);
+  EXPECT_HAS(refusal([this] { SessionScene({(folder_ / "none.h5").string()}, {}, scenes::kernels()); }),
+             "none.h5: no such recording");
+}
+
+// --- the hand ---
+
+TEST_F(SessionSceneTest, TheHandIsThatOfTheTickOrTheOneBefore) {
+  const SessionHand hand = this->hand();
+  const auto tick_at = [&](double number) { return hand.at(number / 500).position_W.x(); };
+  EXPECT_EQ(tick_at(3), 3);
+  EXPECT_EQ(tick_at(4), 4);
+  EXPECT_EQ(tick_at(5), 4);
+  EXPECT_EQ(tick_at(6), 4);
+  EXPECT_EQ(tick_at(7), 7);
+  EXPECT_EQ(tick_at(8), 7);
+  EXPECT_EQ(tick_at(11), 9);
+  EXPECT_EQ(tick_at(12), 12);
+  for (const double rounding : {-0.4, -1e-9, 1e-9, 0.4}) EXPECT_EQ(tick_at(7 + rounding), 7) << rounding;
+}
+
+TEST_F(SessionSceneTest, OutsideOfTheSessionTheHandIsThatOfItsEnds) {
+  const SessionHand hand = this->hand();
+  for (const double number : {-1e9, -1.0, 0.0, 2.0})
+    EXPECT_EQ(hand.at(number / 500).position_W.x(), 3) << number;
+  for (const double number : {13.0, 1e9}) EXPECT_EQ(hand.at(number / 500).position_W.x(), 12) << number;
+}
+
+TEST_F(SessionSceneTest, TicksThatAreNotThereWereMissed) {
+  const SessionHand hand = this->hand();
+  for (int number = 0; number <= 13; ++number) {
+    const bool is_there = number == 3 || number == 4 || number == 7 || number == 9 || number == 12;
+    EXPECT_EQ(hand.is_missed(number / 500.0), !is_there) << number;
+  }
+  EXPECT_EQ(hand.duration_s(), 13 / 500.0) << "its last tick included";
+}
+
+TEST_F(SessionSceneTest, ASessionOfOneTickHasAHand) {
+  session_.ticks.resize(1);
+  const SessionHand hand = this->hand();
+  for (const double number : {0.0, 3.0, 5.0}) EXPECT_EQ(hand.at(number / 500).position_W.x(), 3) << number;
+  EXPECT_EQ(hand.duration_s(), 4 / 500.0);
+}
+
+TEST_F(SessionSceneTest, HandIsRefusedIfThereAreNoTicks) {
+  session_.ticks.clear();
+  EXPECT_EQ(refusal([this] { hand(); }), file_.string() + ": has no ticks: expected a session with some");
+}
+
+// --- both as settings ---
+
+TEST(SessionSettings, AreThePathOfAFile) {
+  SessionScene::Settings scene;
+  SessionHand::Settings hand;
+  EXPECT_HAS(validate(scene), "path = \"\": expected a file of remote-touch live --record");
+  EXPECT_HAS(validate(hand), "path = \"\": expected a file of remote-touch live --record");
+  for (const Parameters& list : {parameters(scene), parameters(hand)}) {
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].name, "path");
+    *std::get<std::string*>(list[0].value) = "session.h5";
+  }
+  EXPECT_EQ(validate(scene), "");
+  EXPECT_EQ(validate(hand), "");
+  EXPECT_EQ(input_files(scene), RecordingPart{"session.h5"});
+  EXPECT_EQ(input_files(hand), RecordingPart{"session.h5"});
+}
+
+// --- the experiment ---
+
+// Settings that made the frames and moved the hand are dropped, because the recording contains their effects.
+// Fixtures and renderer are applied again.
+TEST_F(SessionSceneTest, TheExperimentIsTheRecordedOneWithTheseFramesAndThisHand) {
+  session_.config = R"({"haptic_rate_hz": 500, "seed": 7, "duration_s": 9, "frame_latency_s": 0.1,
+    "frame_jitter_s": 0.01, "frame_drop_probability": 0.5, "scenario": {"name": "ramp", "width": 64},
+    "trajectory": {"name": "press"}, "renderer": {"name": "proxy", "r1_m": 0.004}, "fixtures": [{"name": "everywhere"}],
+    "faults": {}, "operator": {}, "device": {}, "live": {}, "safety": {}})";
+  const Json file = {{"name", "live-session"}, {"path", session_.write(file_)}};
+  const Json expected = {{"haptic_rate_hz", 500},
+                         {"seed", 7},
+                         {"duration_s", 0},
+                         {"frame_latency_s", 0},
+                         {"frame_jitter_s", 0},
+                         {"frame_drop_probability", 0},
+                         {"scenario", file},
+                         {"trajectory", file},
+                         {"renderer", {{"name", "proxy"}, {"r1_m", 0.004}}},
+                         {"fixtures", Json::array({{{"name", "everywhere"}}})}};
+  EXPECT_EQ(Json::parse(session_experiment(file_.string())), expected);
+}
+
+TEST_F(SessionSceneTest, AnExperimentOfNoSessionIsRefused) {
+  EXPECT_HAS(refusal([this] { session_experiment((folder_ / "none.h5").string()); }),
+             "none.h5: no such recording");
+  session_.config = "[]";
+  EXPECT_EQ(refusal([this] { session_experiment(session_.write(file_)); }),
+            file_.string() + ": damaged (its attributes view and config): expected a result of this program");
+  // It would be printed by a function that calls itself for every level.
+  session_.config =
+      R"({"haptic_rate_hz": 1000, "title": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}";
+  EXPECT_HAS(refusal([this] { session_experiment(session_.write(file_)); }), "nested too deep");
+}
+
+}  // namespace
+}  // namespace remote_touch::session_scene_test

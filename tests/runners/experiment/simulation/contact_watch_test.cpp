@@ -1,0 +1,186 @@
+// The notes on where a run starts, where points are too far apart, and where a fast surface passes the proxy.
+#include "runners/experiment/simulation/contact_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "analysis/measures/measures.h"
+#include "analysis/theory/first_touch.h"
+#include "core/search/neighbour_search.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::contact_watch_test {
+namespace {
+
+struct Noted {
+  RunReport report;
+  Trace trace;
+
+  std::vector<std::string> kinds() const {
+    std::vector<std::string> kinds;
+    for (const Note& note : report.notes) kinds.push_back(note.kind);
+    return kinds;
+  }
+  bool has(const std::string& kind) const {
+    const std::vector<std::string> all = kinds();
+    return std::count(all.begin(), all.end(), kind) > 0;
+  }
+};
+
+Noted run(const std::string& scenario, const std::string& trajectory, const std::string& renderer = "proxy",
+          const std::string& duration_s = "0.3") {
+  const std::string text = R"({"scenario": )" + scenario + R"(, "renderer": {"name": ")" + renderer +
+                           R"("}, "trajectory": )" + trajectory + R"(, "duration_s": )" + duration_s + "}";
+  Noted made;
+  SimulationOptions options;
+  options.report = &made.report;
+  made.trace = simulate(Experiment::from_json(text, "test"), options);
+  return made;
+}
+
+std::string flat(const std::string& spacing_m) {
+  return R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )" + spacing_m + "}";
+}
+
+std::string press_from(double x_m, double y_m, double z_m = 0.0001) {
+  return R"({"name": "press", "press_at_s": 0.1, "depth_m": 0.01, "start_m": [)" + std::to_string(x_m) + "," +
+         std::to_string(y_m) + "," + std::to_string(z_m) + "]}";
+}
+
+std::string straight_down(double x_m, double z_m) {
+  const std::string x = "[" + std::to_string(x_m) + ", ", z = ", " + std::to_string(z_m) + ", ";
+  return R"({"name": "waypoints", "waypoints": [)" + x + "0.02" + z + "0], " + x + "-0.02" + z + "0.2]]}";
+}
+
+// The contact radius is 5 mm.
+TEST(ContactWatch, ReportsAHandThatStartsInContact) {
+  for (const double height_m : {0.02, 0.0051})
+    EXPECT_EQ(run(flat("0.0015"), press_from(0.0003, height_m)).kinds(), std::vector<std::string>{})
+        << height_m;
+  for (const double height_m : {0.0049, 0.0002, 0.0, -0.0002, -0.008}) {
+    const Noted made = run(flat("0.0015"), press_from(0.0003, height_m));
+    EXPECT_TRUE(made.has("starts in contact")) << height_m;
+  }
+  EXPECT_HAS(run(flat("0.0015"), press_from(0, 0.002)).report.notes.front().text,
+             "the hand starts 2 mm in front of the true surface, nearer than the contact radius of 5 mm");
+  EXPECT_HAS(run(flat("0.0015"), press_from(0, -0.002)).report.notes.front().text,
+             "the hand starts 2 mm behind the true surface");
+}
+
+// Single points have no sides, so that their distance alone counts.
+TEST(ContactWatch, ReportsAStartAtPointsWithoutATrueSurface) {
+  const std::string points = R"({"name": "points", "points": [[0, 0.016, 0]]})";
+  EXPECT_TRUE(run(points, straight_down(0, 0)).has("starts in contact"));
+  EXPECT_FALSE(run(points, straight_down(0.0035, 0)).has("starts in contact")) << "5.3 mm away";
+}
+
+// The plate is there, but the sensor does not see it, because it is too high: nothing is touched.
+TEST(ContactWatch, AStartBehindASurfaceWithoutPointsIsNone) {
+  const std::string hidden =
+      R"({"name": "plates", "plates": [[0, 0.03, 0, 0.2, 0.2, 0, 0, 0, 0]], "max_height_m": 0.01})";
+  EXPECT_FALSE(run(hidden, straight_down(0, 0)).has("starts in contact"));
+}
+
+// The rows are 12.5 mm apart, the points of a row 1.6 mm: every point has near neighbours.
+std::string scan_lines(double rows_m) {
+  std::string points;
+  for (int row = -8; row <= 8; ++row)
+    for (int i = -30; i <= 30; ++i)
+      points += (points.empty() ? "[" : ", [") + std::to_string(0.0016 * i) + ", 0, " +
+                std::to_string(row * rows_m) + "]";
+  return R"({"name": "points", "points": [)" + points + "]}";
+}
+
+TEST(ContactWatch, ReportsScanLinesFarApart) {
+  const Noted apart = run(scan_lines(0.0125), straight_down(0.0007, 0.003));
+  EXPECT_EQ(apart.kinds(), std::vector<std::string>{"wide spacing"});
+  EXPECT_HAS(apart.report.notes.front().text, "a gap of radius 6.3 mm at the first contact");
+  EXPECT_EQ(run(scan_lines(0.02), straight_down(0.0007, 0)).kinds(),
+            std::vector<std::string>{"wide spacing"});
+  EXPECT_EQ(run(scan_lines(0.0095), straight_down(0.0007, 0.003)).kinds(), std::vector<std::string>{});
+}
+
+// A ball that falls through the middle of a cell touches nothing.
+TEST(ContactWatch, ReportsWideSpacingWithoutAContact) {
+  const Noted made = run(flat("0.012"), straight_down(0.006, 0.006));
+  EXPECT_EQ(made.kinds(), (std::vector<std::string>{"no contact", "wide spacing"}));
+  EXPECT_HAS(made.report.notes.back().text, "where the proxy came nearest to them");
+  EXPECT_EQ(run(flat("0.0015"), straight_down(0.04, 0)).kinds(), std::vector<std::string>{"no contact"})
+      << "beside the grid";
+}
+
+// A renderer that holds its proxy up to 1 mm behind the surface loses it only beyond that, see
+// surface_side.h.
+TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
+  PointCloud corners;
+  for (const double x : {-0.006, 0.006})
+    for (const double z : {-0.006, 0.006}) corners.append({x, 0, z});
+  const ContactWatch::Points points = make_search(std::move(corners));
+  RenderOutput out;
+  out.nearest_distance_m = std::numeric_limits<double>::infinity();
+  ContactWatch watch(0.001);
+  const auto notes_at = [&](double distance_m) {
+    watch.add(0, out.proxy_W, out, points, distance_m);
+    return watch.spacing_notes(0.005, scenes::kernels()).size();
+  };
+  EXPECT_EQ(notes_at(0.0001), 0u);
+  EXPECT_EQ(notes_at(-0.0009), 0u);
+  EXPECT_EQ(notes_at(-0.0011), 1u);
+  EXPECT_EQ(notes_at(-0.0009), 0u) << "it is back";
+}
+
+TEST(ContactWatch, AProxyThatSinglePointsDoNotHoldHasNoNoteOnSpacing) {
+  for (const char* name :
+       {"god-object", "density-proxy", "surfels", "implicit-surface", "penalty", "tracked-sheet"})
+    EXPECT_FALSE(run(flat("0.008"), press_from(0.0003, 0.02), name).has("wide spacing")) << name;
+  for (const char* name : {"proxy", "averaged-proxy", "oracle-proxy"})
+    EXPECT_TRUE(run(flat("0.008"), press_from(0.0003, 0.02), name).has("wide spacing")) << name;
+}
+
+TEST(ContactWatch, ASinglePointHasNoSpacing) {
+  const Noted made = run(R"({"name": "points", "points": [[0, 0, 0]]})", straight_down(0.001, 0));
+  EXPECT_EQ(made.kinds(), std::vector<std::string>{});
+}
+
+std::string lift(double velocity_m_per_s, double wait_s, const std::string& more = "") {
+  return R"({"name": "moving-lift", "rows": 41, "columns": 41, "noise_sigma_m": 0, "start_depth_m": 0.03, "rise_s": 0.6, )" +
+         more + R"("start_velocity_m_per_s": )" + std::to_string(velocity_m_per_s) + R"(, "wait_s": )" +
+         std::to_string(wait_s) + "}";
+}
+const char* const kRest = R"({"name": "waypoints", "waypoints": [[0, 0, 0, 0]]})";
+
+// The hand rests over a point of a plane that rises at constant velocity. The fraction of lost proxies over
+// the time at which the motion starts is lost_at_first_touch().
+TEST(ContactWatch, ReportsProxiesThatTheFirstTouchLoses) {
+  constexpr int kPhases = 20;
+  const FirstTouch touch{0.00499, 0.00501, 0, 30};
+  for (const double velocity_m_per_s : {0.13, 0.2, 0.25, 0.4}) {
+    int noted = 0;
+    for (int phase = 0; phase < kPhases; ++phase) {
+      const Noted made = run(lift(velocity_m_per_s, (phase + 0.5) / kPhases / 30), kRest, "proxy", "0.5");
+      noted += made.has("lost at the first touch") ? 1 : 0;
+      EXPECT_EQ(made.has("lost at the first touch"), popped_through(made.trace) == 1) << velocity_m_per_s;
+    }
+    EXPECT_NEAR(noted / double{kPhases}, lost_at_first_touch(touch, velocity_m_per_s), 1.01 / kPhases)
+        << velocity_m_per_s;
+  }
+}
+
+// The acceleration is above r_1 f_c^2 = 4.5 m/s^2, (4.14). It loses the proxy long after the first touch.
+TEST(ContactWatch, ALaterLossIsNoneAtTheFirstTouch) {
+  const Noted made =
+      run(lift(0.1, 0, R"("acceleration_m_per_s2": 20, "acceleration_s": 0.2, )"), kRest, "proxy", "0.9");
+  EXPECT_EQ(popped_through(made.trace), 1);
+  EXPECT_EQ(made.kinds(), std::vector<std::string>{});
+}
+
+// Too wide spacing, not motion, loses this one at its first touch.
+TEST(ContactWatch, ASurfaceAtRestLosesNoProxyAtTheFirstTouch) {
+  EXPECT_EQ(run(flat("0.0075"), press_from(0.0003, 0.02)).kinds(), std::vector<std::string>{"wide spacing"});
+}
+
+}  // namespace
+}  // namespace remote_touch::contact_watch_test

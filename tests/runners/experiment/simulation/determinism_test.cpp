@@ -1,0 +1,125 @@
+// Same configuration, same bits: for any instruction set, neighbour search, order of the points and number of
+// threads.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "analysis/storage/digest.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::determinism_test {
+namespace {
+
+std::string digest_of(const std::string& name, const std::vector<std::string>& overrides, Isa isa) {
+  SimulationOptions options;
+  options.kernels = &kernels_for(isa);
+  options.hash_frames = true;
+  return digest(simulate(Experiment::load(name, overrides), options).columns());
+}
+
+struct Case {
+  const char* experiment;
+  std::vector<std::string> overrides;
+};
+
+const Case kCases[] = {{"fig4.11", {"duration_s=2"}},
+                       {"fig4.12", {}},
+                       {"fig4.12", {"scenario.noise_sigma_m=0.01", "seed=11"}},
+                       {"fig4.14", {"duration_s=1"}},
+                       {"fig4.16", {"duration_s=0.5"}},
+                       {"fig6.3", {}},
+                       {"fig6.3", {"renderer.contact_rule=voxels"}},
+                       {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}},
+                       {"fig7.5", {"duration_s=2.4", "scenario.frame_rate_hz=5"}},
+                       {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}},
+                       {"rocking-plane", {"duration_s=1", "scenario.shape=ripple"}},
+                       {"sliding-ridge", {"duration_s=1", "scenario.shape=sphere", "scenario.tilt_deg=9"}},
+                       {"faulty-lift", {"faults.rolling_shutter_s=0.01", "scenario.truth=moving"}}};
+
+TEST(Determinism, EveryInstructionSetAndNumberOfThreads) {
+  struct Other {
+    Isa isa;
+    int threads;
+  };
+  const int threads_before = omp_get_max_threads();
+  for (const Case& c : kCases) {
+    omp_set_num_threads(1);
+    const std::string reference = digest_of(c.experiment, c.overrides, Isa::x86_64);
+    for (const auto& [isa, threads] : {Other{Isa::x86_64_v3, 2}, Other{Isa::x86_64_v4, 8}}) {
+      omp_set_num_threads(threads);
+      // The digests_across_builds test names the available levels in the build's summary.
+      const Isa used = std::min(isa, best_isa());
+      EXPECT_EQ(digest_of(c.experiment, c.overrides, used), reference)
+          << c.experiment << ", " << kernels_for(used).isa << ", " << threads << " threads";
+    }
+  }
+  omp_set_num_threads(threads_before);
+}
+
+// A press and slide over a noisy cloud, with the points held by one kind of search.
+std::vector<Vec3> slide(const std::shared_ptr<const NeighbourSearch>& points) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame({0, 0, 0, points});
+  std::vector<Vec3> path;
+  for (int tick = 0; tick < 400; ++tick) {
+    const RenderOutput out =
+        renderer.step({Vec3(-0.02 + 1e-4 * tick, tick < 20 ? 0.01 : -0.01, 1e-4)}, 0.001 * tick);
+    path.push_back(out.proxy_W), path.push_back(out.force_N), path.push_back(out.normal_W);
+  }
+  return path;
+}
+
+PointCloud bumpy_cloud() {
+  PointCloud cloud = scenes::flat_grid(60);
+  const PointCloud bumps = scenes::random_cloud(static_cast<int>(cloud.size()), 0.002, 3);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.x[i] += bumps.x[i], cloud.y[i] += bumps.y[i], cloud.z[i] += bumps.z[i];
+  return cloud;
+}
+
+TEST(Determinism, EverySearchGivesTheSameBits) {
+  const PointCloud cloud = bumpy_cloud();
+  const auto reference = slide(std::make_shared<BruteForceSearch>(cloud));
+  EXPECT_EQ(slide(std::make_shared<UniformGridSearch>(cloud, 0.002)), reference);
+  EXPECT_EQ(slide(std::make_shared<UniformGridSearch>(cloud, 0.02)), reference);
+}
+
+TEST(Determinism, EveryOrderOfThePointsGivesTheSameBits) {
+  const PointCloud cloud = bumpy_cloud();
+  const auto reference = slide(std::make_shared<BruteForceSearch>(cloud));
+  std::mt19937 random(1);
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (int trial = 0; trial < 5; ++trial) {
+    for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random() % (i + 1)]);
+    PointCloud shuffled;
+    for (const std::size_t i : order) shuffled.append(cloud.point(i));
+    EXPECT_EQ(slide(std::make_shared<BruteForceSearch>(shuffled)), reference);
+    EXPECT_EQ(slide(std::make_shared<UniformGridSearch>(shuffled, 0.004)), reference);
+  }
+}
+
+// The kept list of neighbours must not show: a renderer that was elsewhere before ends in the same place.
+TEST(Determinism, HistoryOfTheNeighbourListDoesNotShow) {
+  const auto points = std::make_shared<UniformGridSearch>(bumpy_cloud(), 0.004);
+  const auto settle = [&](const Vec3& detour) {
+    ProxyRenderer renderer = scenes::renderer();
+    renderer.on_frame({0, 0, 0, points});
+    renderer.step({Vec3(0, 0.03, 0)}, 0);
+    renderer.step({detour}, 0.001);
+    renderer.step({Vec3(0, 0.03, 0)}, 0.002);
+    RenderOutput out;
+    for (int tick = 3; tick < 20; ++tick) out = renderer.step({Vec3(0, -0.01, 0)}, 0.001 * tick);
+    return out;
+  };
+  const RenderOutput a = settle(Vec3(0.002, 0.03, 0)), b = settle(Vec3(0.031, 0.028, -0.02));
+  EXPECT_EQ(a.proxy_W, b.proxy_W);
+  EXPECT_EQ(a.force_N, b.force_N);
+}
+
+}  // namespace
+}  // namespace remote_touch::determinism_test

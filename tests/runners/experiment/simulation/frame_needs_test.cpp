@@ -1,0 +1,208 @@
+// Every renderer on every kind of cloud: either the run is refused in one line that says what to add, or
+// there is a force. There is no third outcome, such as a tool that feels nothing.
+#include "runners/experiment/catalog/frame_needs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/runners/experiment/simulation/cloud_kinds.h"
+
+namespace remote_touch::frame_needs_test {
+namespace {
+
+using namespace cloud_kinds;
+
+struct Method {
+  const char* renderer;
+  const char* settings;  // "" or ", \"key\": ..."
+  const char* needs;     // "", or a word of the refusal
+  const char* reason;    // why it needs that, or nothing
+};
+
+// Independent of the catalog.
+const Method kMethods[] = {
+    {"proxy", "", "", "a ball among points"},
+    {"tracked-sheet", "", "", "fits its sheet to points in cells"},
+    {"penalty", "", "", "the nearest point pushes"},
+    {"implicit-surface", "", "", "a sum over points"},
+    {"implicit-surface", R"(, "surface": "surfels")", "",
+     "its outside is the side from which the proxy came"},
+    {"surfels", "", "view", "normals of its own, turned towards the sensor"},
+    {"averaged-proxy", "", "view", "averages along the rays of the sensor"},
+    {"density-proxy", "", "", "a ball among points"},
+    {"oracle-proxy", "", "", "a ball among points; without a truth it is told nothing"},
+    {"god-object", "", "organised", "triangles between neighbours in rows and columns"},
+    {"tool", R"(, "tool_mesh": "ball")", "normals", "disks in the planes of the normals"},
+    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "voxels")", "normals", "(6.5) is along the normal"},
+    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "continuous")", "normals", "disks"},
+    {"tracked-tool", R"(, "tool_mesh": "ball")", "normals", "disks"},
+    {"tool-penalty", R"(, "tool_mesh": "ball")", "", "without a normal, the slope of its distance field"},
+    {"tool-penalty", R"(, "tool_mesh": "ball", "force_law": "voxmap")", "", "the normals of the tool"},
+    {"tool-god-object", R"(, "tool_mesh": "ball")", "", "without a normal, the slope of its distance field"},
+    {"sphere-tree", R"(, "tool_mesh": "ball")", "forbidden regions", "it touches nothing else"},
+};
+
+bool meets(const Kind& kind, const std::string& need) {
+  if (need == "organised") return kind.organised;
+  if (need == "normals") return kind.normals;
+  if (need == "view") return kind.view;
+  return need.empty();
+}
+
+std::string renderer(const Method& method) {
+  return R"({"name": ")" + std::string(method.renderer) + "\"" + method.settings + "}";
+}
+
+// Force along `outwards` at the end of the press. If points only push, a deeper hand has passed them by then,
+// and the greatest force of the run is returned.
+double felt_N(const Trace& trace, const Kind& kind, const Method& method) {
+  if (find_entry(renderers(), method.renderer, "renderer").contact_model != ContactModel::nothing)
+    return trace.force_N[trace.length() - 1].dot(kind.outwards);
+  double greatest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    greatest = std::max(greatest, trace.force_N[i].dot(kind.outwards));
+  return greatest;
+}
+
+void expect_force_or_refusal(const Kind& kind, const Method& method, const std::string& rest = "") {
+  SCOPED_TRACE(kind.scenario + " " + renderer(method) + rest);
+  const std::string json = press_on(kind, renderer(method), rest);
+  if (meets(kind, method.needs)) {
+    EXPECT_GT(felt_N(run(json), kind, method), 0.5);
+    return;
+  }
+  const std::string line = refusal([&] { run(json); });
+  EXPECT_HAS(line, std::string(method.needs) == "view" ? "renderer.view = " : "renderer.name = \"");
+  EXPECT_HAS(line, method.needs);
+}
+
+class FrameNeeds : public CloudKinds {};
+
+TEST_F(FrameNeeds, EveryRendererIsInTheTable) {
+  for (const RendererEntry& entry : built_in_catalog().renderers())
+    EXPECT_TRUE(std::any_of(std::begin(kMethods), std::end(kMethods), [&](const Method& method) {
+      return entry.name == method.renderer;
+    })) << entry.name;
+}
+
+TEST_F(FrameNeeds, EveryRendererFeelsAPlateOrIsRefused) {
+  for (const Kind& kind : plates())
+    for (const Method& method : kMethods) expect_force_or_refusal(kind, method);
+}
+
+TEST_F(FrameNeeds, EveryRendererFeelsARecordedCloudOrIsRefused) {
+  for (const Kind& kind : recordings())
+    for (const Method& method : kMethods) expect_force_or_refusal(kind, method);
+}
+
+TEST_F(FrameNeeds, ADepthPipelineGivesNormalsToAnImageOnly) {
+  Kind image = pcd(true, false);
+  image.normals = true;
+  for (const Method& method : kMethods) expect_force_or_refusal(image, method, R"(, "depth_pipeline": {})");
+  EXPECT_HAS(
+      refusal([&] { run(press_on(pcd(false, false), R"({"name": "tool"})", R"(, "depth_pipeline": {})")); }),
+      "needs normals");
+}
+
+TEST_F(FrameNeeds, ATreeOfSpheresFeelsTheRegionsOfEveryCloud) {
+  const auto expect_felt = [](const Kind& kind) {
+    const Method tree{"sphere-tree", R"(, "tool_mesh": "ball")", "", "there are regions"};
+    expect_force_or_refusal(kind, tree, R"(, "fixtures": [{"name": "everywhere", "radius_m": 0.01}])");
+  };
+  for (const Kind& kind : plates()) expect_felt(kind);
+  for (const Kind& kind : recordings()) expect_felt(kind);
+}
+
+TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
+  const auto line = [](const Kind& kind, const char* name) {
+    return refusal([&] { run(press_on(kind, R"({"name": ")" + std::string(name) + "\"}")); });
+  };
+  EXPECT_EQ(line(pcd(true, false), "tool"),
+            "renderer.name = \"tool\": needs normals, and the points of the frames have none: add "
+            "depth_pipeline (--set depth_pipeline={})");
+  EXPECT_HAS(line(plates()[0], "tool"), "add scenario.normals = true");
+  const Kind grid{R"({"name": "flat-grid"})", kDown, Vec3::UnitY()};
+  EXPECT_HAS(line(grid, "tool"), "expected a scenario with normals, such as moving-plane");
+  EXPECT_HAS(line(grid, "sphere-tree"), "add a fixture rule with radius_m above 0");
+  EXPECT_HAS(line(pcd(false, false), "god-object"), "of a PCD file: HEIGHT above 1");
+  EXPECT_HAS(
+      line(pcd(false, false), "surfels"),
+      "renderer.view = [0, -1, 0]: the points of this recording are not an image: expected the direction in "
+      "which its sensor looks, [0, 0, 1]");
+}
+
+// Rules that assign no radius make no regions.
+TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
+  for (const char* rules :
+       {R"([{"name": "everywhere", "radius_m": 0}])", R"([{"name": "everywhere", "radius_m": -1}])"})
+    EXPECT_HAS(refusal([&] {
+                 run(press_on(plates()[0], R"({"name": "sphere-tree", "tool_mesh": "ball"})",
+                              R"(, "fixtures": )" + std::string(rules)));
+               }),
+               "needs forbidden regions");
+}
+
+TEST_F(FrameNeeds, AGivenViewIsEnough) {
+  const Kind cloud = pcd(false, false);
+  for (const char* name : {"surfels", "averaged-proxy"}) {
+    const Method told{name, R"(, "view": [0, 0.1, 1])", "", "the view is told"};
+    expect_force_or_refusal(cloud, told);
+  }
+}
+
+TEST_F(FrameNeeds, FaultsAlongAWrongViewAreRefused) {
+  const std::string faults = R"(, "faults": {"quantisation_m": 0.001)";
+  const Kind cloud = pcd(false, false);
+  EXPECT_HAS(refusal([&] { run(press_on(cloud, R"({"name": "proxy"})", faults + "}")); }),
+             "faults.view_direction = [0, -1, 0]: the points of this recording are not an image");
+  const Method proxy{"proxy", "", "", ""};
+  expect_force_or_refusal(cloud, proxy, faults + R"(, "view_direction": [0, 0, 1]})");
+  expect_force_or_refusal(cloud, proxy, R"(, "faults": {"dropout_probability": 0.1})");
+  expect_force_or_refusal(pcd(true, false), proxy, faults + "}");
+}
+
+// --- from frame to frame ---
+
+TEST_F(FrameNeeds, ALaterFrameOfAnotherKindIsRefused) {
+  write_pcd("mixed/0.pcd", true, true), write_pcd("mixed/1.pcd", false, false);
+  const std::string scenario = R"({"name": "recording", "path": ")" + (folder_ / "mixed").string() + "\"}";
+  const Kind mixed{scenario, kForward, -Vec3::UnitZ()};
+  EXPECT_HAS(refusal([&] { run(press_on(mixed, R"({"name": "proxy"})")); }),
+             "mixed/1.pcd: has points in no order: expected an organised cloud");
+  write_pcd("mixed/1.pcd", true, false);
+  EXPECT_HAS(refusal([&] {
+               run(press_on(mixed, R"({"name": "proxy"})", R"(, "fixtures": [{"name": "hue-range"}])"));
+             }),
+             "frame 1: fixtures.0: hue-range: the frame has no colours");
+  PointCloud unorganised;
+  unorganised.append(Vec3::Zero());
+  Frame later;
+  later.index = 1, later.points = make_search(unorganised);
+  EXPECT_HAS(refusal([&] { RendererNeeds("god-object", {FrameNeed::organised}).check(later); }),
+             "renderer.name = \"god-object\": needs organised points, and those of frame 1 have no rows");
+}
+
+TEST_F(FrameNeeds, APipelineThatLeavesNoNormalIsRefused) {
+  EXPECT_HAS(refusal([&] {
+               run(press_on(pcd(true, false), R"({"name": "tool", "tool_mesh": "ball"})",
+                            R"(, "depth_pipeline": {"normal_radius_m": 0.001})"));
+             }),
+             "no point of frame 0 has one: expected more points within depth_pipeline.normal_radius_m");
+}
+
+TEST_F(FrameNeeds, AFrameWithoutPointsLacksNothing) {
+  const RendererNeeds needs("tool", {FrameNeed::normals, FrameNeed::organised});
+  Frame frame;
+  frame.points = make_search({});
+  needs.check(frame);
+  PointCloud lost;
+  lost.append(Vec3::Constant(std::nan("")), Vec3::Constant(std::nan("")));
+  frame.points = make_search(lost);
+  RendererNeeds("tool", {FrameNeed::normals}).check(frame);
+}
+
+}  // namespace
+}  // namespace remote_touch::frame_needs_test

@@ -1,0 +1,162 @@
+// The notes of a run: each is written for a run that did not do what its experiment describes, and for no
+// other.
+#include "runners/experiment/simulation/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::run_report_test {
+namespace {
+
+// A press into a plane at rest, as JSON with two places to fill in: the scene and the hand.
+RunReport report_of_run(const std::string& scenario, const std::string& trajectory,
+                        const std::string& rest = R"("duration_s": 0.3)") {
+  const std::string text = R"({"scenario": )" + scenario +
+                           R"(, "renderer": {"name": "proxy"}, "trajectory": )" + trajectory + ", " + rest +
+                           "}";
+  RunReport report;
+  SimulationOptions options;
+  options.report = &report;
+  simulate(Experiment::from_json(text, "test"), options);
+  return report;
+}
+
+std::vector<std::string> kinds_of(const RunReport& report) {
+  std::vector<std::string> kinds;
+  for (const Note& note : report.notes) kinds.push_back(note.kind);
+  return kinds;
+}
+using Kinds = std::vector<std::string>;
+
+constexpr const char* kPlane = R"({"name": "flat-grid", "rows": 40, "columns": 40, "spacing_m": 0.0015})";
+constexpr const char* kPress =
+    R"({"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.01})";
+
+TEST(RunReport, AnOrdinaryPressHasNoNotes) {
+  const RunReport report = report_of_run(kPlane, kPress);
+  EXPECT_TRUE(report.notes.empty());
+  EXPECT_TRUE(report.inputs.empty());  // no recording was read
+  EXPECT_EQ(text_of(report), "");
+  EXPECT_NO_THROW(refuse_notes(report));
+}
+
+TEST(RunReport, ReportsAPressThatWasNotReached) {
+  const RunReport report = report_of_run(kPlane, kPress, R"("duration_s": 0.1)");
+  EXPECT_EQ(kinds_of(report), (Kinds{"phase not reached", "no contact"}));
+  EXPECT_EQ(report.notes[0].text, "the run ends at 0.1 s, before the press begins at 0.1 s");
+  EXPECT_HAS(text_of(report), "  note (phase not reached): the run ends at 0.1 s");
+  EXPECT_EQ(refusal([&] { refuse_notes(report); }),
+            "--strict: phase not reached: the run ends at 0.1 s, before the press begins at 0.1 s; "
+            "no contact: no point was touched, and no force was felt")
+      << "all notes";
+}
+
+TEST(RunReport, ReportsAMotionOfTheSceneThatWasNotReached) {
+  const std::string waits = R"({"name": "moving-plane", "start_height_m": 0, "wait_s": 0.4})";
+  EXPECT_EQ(kinds_of(report_of_run(waits, kPress)), Kinds{"phase not reached"});
+  EXPECT_EQ(kinds_of(report_of_run(waits, kPress, R"("duration_s": 0.5)")), Kinds{});
+}
+
+TEST(RunReport, ReportsAPressAfterTheMotion) {
+  const std::string rises =
+      R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 0.2, "rise_height_m": 0.01})";
+  const RunReport report = report_of_run(rises, kPress);
+  EXPECT_EQ(kinds_of(report), Kinds{"after the motion"});
+  EXPECT_HAS(report.notes[0].text,
+             "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s");
+}
+
+TEST(RunReport, ReportsATrajectoryThatDoesNotEnd) {
+  const std::string path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})";
+  EXPECT_EQ(kinds_of(report_of_run(kPlane, path)), Kinds{});
+  EXPECT_EQ(kinds_of(report_of_run(kPlane, path, R"("duration_s": 0.14)")), Kinds{"phase not reached"});
+}
+
+TEST(RunReport, ReportsThatNothingWasTouched) {
+  const std::string above = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, 0.01, 0, 0.3]]})";
+  EXPECT_EQ(kinds_of(report_of_run(kPlane, above)), Kinds{"no contact"});
+}
+
+// The proxy falls through a square of points farther apart than sqrt(2) r_c = 7.07 mm.
+TEST(RunReport, ReportsPointsThatAreTooFarApart) {
+  const auto plane = [](const char* spacing) {
+    return std::string(R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )") + spacing + "}";
+  };
+  EXPECT_EQ(kinds_of(report_of_run(plane("0.0069"), kPress)), Kinds{});
+  const RunReport report = report_of_run(plane("0.0072"), kPress);
+  EXPECT_EQ(kinds_of(report), Kinds{"wide spacing"});
+  // The centre of a square is 7.2 mm / sqrt(2) from its corners.
+  EXPECT_HAS(report.notes[0].text, "a gap of radius 5.09 mm at the first contact");
+  EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
+}
+
+// A rule that never begins, a change, a press of a button, ...: each that the run does not reach is named
+// once.
+TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
+  const std::string still = R"({"name": "waypoints", "waypoints": [[0, 0.003, 0, 0], [0, 0.003, 0, 0.1]]})";
+  const std::string plates = R"({"name": "plates", "plates": [[0, 0, 0, 0.2, 0.2, 0.1, 0, 2, 3],
+      [0, -0.1, 0, 0.2, 0.2, 0, 0, 4, 5], [0, -0.1, 0, 0.2, 0.2, 0.1, 0, 5, 5]]})";
+  const std::string change = R"({"parameter": "renderer.stiffness_N_per_m", "value": 100, "time_s": )";
+  const std::string step = R"({"action": "wait", "not_before_s": 3})";
+  const struct {
+    std::string scenario, rest;
+    std::vector<std::string> begins;
+  } runs[] = {
+      {kPlane,
+       R"("changes": [)" + change + "0.1}, " + change + "5}, " + change + "6}]",
+       {"the change of renderer.stiffness_N_per_m begins at 5 s"}},
+      {kPlane,
+       R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [7, 1], [8, 0]]}])",
+       {"the change of the strength of fixtures.0 begins at 7 s"}},
+      {kPlane, R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [8, 0]]}])", {}},
+      {kPlane,
+       R"("operator": {"presses": [[0.1, 0, 0.1], [3, 1, 0.2]], "grip": [[0, 1], [2, 1], [3, 0]]})",
+       {"the press of button 1 begins at 3 s", "the change of operator.grip begins at 2 s"}},
+      {kPlane, R"("sequence": [{"action": "wait"}, )" + step + "]", {"sequence.1 (wait) begins at 3 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 2})",
+       R"("seed": 1)",
+       {"the vanishing of the surface begins at 2 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 0.2})", R"("seed": 1)", {}},
+      {R"({"name": "moving-shape", "empty_frame_at_s": 2})",
+       R"("seed": 1)",
+       {"the empty frame begins at 2 s"}},
+      {plates, R"("seed": 1)", {"the motion of plate 1 begins at 2 s"}},
+      {R"({"name": "wedge"})",
+       R"("seed": 1)",
+       {"the closing of the walls begins at 1 s", "the opening of the walls begins at 3 s"}},
+      {R"({"name": "wedge", "closed_gap_m": 0.05})", R"("seed": 1)", {}},
+      {R"({"name": "wedge", "close_start_s": 4, "close_end_s": 4, "open_start_s": 4, "open_end_s": 4})",
+       R"("seed": 1)",
+       {}},
+  };
+  for (const auto& run : runs) {
+    const bool has_duration = run.rest.find("duration_s") != std::string::npos;
+    const RunReport report =
+        report_of_run(run.scenario, still, has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest);
+    std::vector<std::string> begins;
+    for (const Note& note : report.notes)
+      if (note.kind == "phase not reached") begins.push_back(note.text.substr(note.text.find("before ") + 7));
+    EXPECT_EQ(begins, run.begins) << run.scenario << run.rest;
+  }
+}
+
+// A motion that never happens is neither missed nor over.
+TEST(RunReport, SaysNothingOfAPlaneThatDoesNotRise) {
+  const std::string rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )";
+  EXPECT_EQ(kinds_of(report_of_run(rests + "5}", kPress)), Kinds{});
+  EXPECT_EQ(kinds_of(report_of_run(rests + "0}", kPress)), Kinds{});
+}
+
+TEST(RunReport, BecomesAttributesOfTheResult) {
+  TextAttributes attributes{{"config", "{}"}};
+  add_report(attributes, {});
+  EXPECT_EQ(attributes.size(), 1u);  // absent where there is nothing to report
+  add_report(attributes, {{"office: 3 frames"}, {{"no contact", "no contact at all"}, {"no frame", "none"}}});
+  EXPECT_EQ(attribute(attributes, "frames_read"), "office: 3 frames");
+  EXPECT_EQ(attribute(attributes, "notes"), "no contact at all\nnone");
+}
+
+}  // namespace
+}  // namespace remote_touch::run_report_test

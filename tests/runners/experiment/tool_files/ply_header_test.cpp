@@ -1,0 +1,62 @@
+// The counts that the header of a PLY file claims are checked against the size of the file before any library
+// reads it.
+#include "runners/experiment/tool_files/ply_header.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::ply_header_test {
+namespace {
+
+std::string header(const std::string& format, const std::string& vertices, const std::string& faces) {
+  return "ply\nformat " + format + " 1.0\nelement vertex " + vertices +
+         "\nproperty float x\nproperty float y\nproperty double z\nelement face " + faces +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+class PlyHeader : public testing::Test {
+ protected:
+  std::string problem(const std::string& bytes) const { return ply_problem(folder_.write("x.ply", bytes)); }
+  TestFolder folder_{"ply_header"};
+};
+
+TEST_F(PlyHeader, PassesIfItIsTrue) {
+  EXPECT_EQ(problem(header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2"), "");
+  const std::string binary(3 * 16 + 1, '\0');  // the face is a list of none
+  EXPECT_EQ(problem(header("binary_little_endian", "3", "1") + binary), "");
+  std::string windows = header("binary_big_endian", "3", "1");
+  for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2)
+    windows.replace(at, 1, "\r\n");
+  EXPECT_EQ(problem(windows + binary), "");
+  EXPECT_EQ(problem("ply\nformat ascii 1.0\ncomment end_header is near\nobj_info x\nend_header\n"), "");
+}
+
+TEST_F(PlyHeader, IsRefusedIfItDoesNotEnd) {
+  const std::string whole = header("ascii", "3", "1");
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length)
+    EXPECT_HAS(problem(whole.substr(0, length)), "its header has no end") << length;
+  EXPECT_HAS(problem("ply\nformat ascii 1.0\nproperty end_header\nend_headers\n"), "its header has no end");
+}
+
+// One byte less than what is claimed, and far less.
+TEST_F(PlyHeader, CountsBeyondTheFileAreRefused) {
+  EXPECT_HAS(problem(header("binary_little_endian", "3", "1") + std::string(3 * 16, '\0')),
+             "its header claims 4 elements, more than its 48 bytes hold");
+  EXPECT_HAS(problem(header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0"), "its header claims 4 elements");
+  for (const char* many : {"300000000", "4294967295", "4294967296", "18446744073709551615"}) {
+    EXPECT_HAS(problem(header("ascii", many, "1") + "0 0 0\n"), "its header claims") << many;
+    EXPECT_HAS(problem(header("ascii", "0", many) + "0 0 0\n"), "its header claims") << many;
+    EXPECT_HAS(problem(header("binary_big_endian", many, many) + "0 0 0\n"), "its header claims") << many;
+  }
+}
+
+TEST_F(PlyHeader, CountsThatAreNoneAreRefused) {
+  for (const char* none : {"-1", "many", "18446744073709551616", "3.5", ""})
+    EXPECT_HAS(problem(header("ascii", none, "1") + "0 0 0\n"), "its header counts ") << none;
+}
+
+}  // namespace
+}  // namespace remote_touch::ply_header_test

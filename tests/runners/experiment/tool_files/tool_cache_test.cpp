@@ -1,0 +1,167 @@
+#include "runners/experiment/tool_files/tool_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/tool_files/tool_loading.h"
+#include "scenarios/recordings/recording_part.h"
+#include "tests/support/meshes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::tool_cache_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kCube =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+void expect_equal(const VoxelTool& a, const VoxelTool& b) {
+  EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
+  EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
+  EXPECT_EQ(a.grid.origin_T, b.grid.origin_T);
+  EXPECT_EQ(a.grid.size_m, b.grid.size_m);
+  EXPECT_EQ(a.grid.cells, b.grid.cells);
+  EXPECT_EQ(a.voxels, b.voxels);
+  EXPECT_EQ(a.distance_m, b.distance_m);
+  EXPECT_EQ(a.volume_m3, b.volume_m3);
+  EXPECT_EQ(a.inertia_m2, b.inertia_m2);
+  EXPECT_EQ(a.reach_m, b.reach_m);
+}
+
+class ToolCacheTest : public testing::Test {
+ protected:
+  ToolCacheTest() {
+    ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1);
+    ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // the user may have set it
+    set_data_folder(folder_.path().string());
+  }
+  ~ToolCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"), set_data_folder({}); }
+
+  std::shared_ptr<const VoxelTool> bar() const { return load_tool(bar_, nullptr); }
+  fs::path only_file() const {
+    const auto names = files_in(folder_ / "cache");
+    EXPECT_EQ(names.size(), 1u);
+    return folder_ / "cache" / (names.empty() ? "none" : names[0]);
+  }
+
+  TestFolder folder_{"tool_cache"};
+  ToolSettings bar_{.mesh = "bar", .voxel_m = 1e-3};
+};
+
+TEST_F(ToolCacheTest, FreshAndCachedAreTheSameBits) {
+  std::string made, again;
+  const auto fresh = load_tool(bar_, &made);
+  const auto before = fs::last_write_time(only_file());
+  const auto cached = load_tool(bar_, &again);
+  expect_equal(*fresh, *cached);
+  EXPECT_EQ(made, again);
+  EXPECT_HAS(made, "80.0 x 20.0 x 10.0 mm");
+  EXPECT_EQ(fs::last_write_time(only_file()), before) << "made anew";
+}
+
+TEST_F(ToolCacheTest, EverySettingHasATool) {
+  ToolSettings larger = bar_, finer = bar_, mended = bar_, other = bar_;
+  larger.size_m = 0.1, finer.voxel_m = 9e-4, mended.repair = true, other.mesh = "slab-10";
+  for (const ToolSettings& s : {bar_, larger, finer, mended, other}) load_tool(s);
+  EXPECT_EQ(files_in(folder_ / "cache").size(), 5u);
+  EXPECT_EQ(load_tool(finer)->grid.size_m, 9e-4);
+}
+
+// Any byte changed, the file cut anywhere, longer, empty, of another tool, or a folder: it is made anew.
+TEST_F(ToolCacheTest, ADamagedFileIsMadeAnew) {
+  const auto fresh = bar();
+  const fs::path file = only_file();
+  const std::string good = bytes_of(file), name = file.filename().string();
+  const std::string key = name.substr(0, name.size() - 5);
+  std::vector<std::string> damaged = {"", "remote-touch-tool/1\n", good + "x", good.substr(1)};
+  for (std::size_t i = 0; i < 12; ++i) {
+    std::string changed = good;
+    changed[i * (good.size() - 1) / 11] ^= 1;
+    damaged.push_back(changed);
+    damaged.push_back(good.substr(0, i * good.size() / 12));
+  }
+  for (const std::string& bytes : damaged) {
+    folder_.write("cache/" + name, bytes);
+    EXPECT_FALSE(read_tool(folder_ / "cache", key)) << bytes.size();
+  }
+  expect_equal(*bar(), *fresh);
+  EXPECT_EQ(bytes_of(file), good);
+  folder_.write("cache/" + std::string(64, '0') + ".tool", good);
+  EXPECT_FALSE(read_tool(folder_ / "cache", std::string(64, '0'))) << "of another key";
+  fs::remove(file), fs::create_directory(file);
+  expect_equal(*bar(), *fresh);
+}
+
+TEST_F(ToolCacheTest, AFolderThatCannotBeUsedIsNoError) {
+  const auto fresh = bar();
+  const fs::path in_the_way = folder_.write("plain", "a file");
+  for (const fs::path& folder : {in_the_way, in_the_way / "below", fs::path("/proc/none")}) {
+    ::setenv("REMOTE_TOUCH_CACHE", folder.c_str(), 1);
+    expect_equal(*bar(), *fresh);
+    EXPECT_FALSE(write_tool(folder, "key", {*fresh, ""}));
+  }
+  EXPECT_FALSE(write_tool({}, "key", {*fresh, ""}));
+  EXPECT_EQ(bytes_of(in_the_way), "a file");
+}
+
+TEST_F(ToolCacheTest, ManyAtOnceGetTheSameAndLeaveOneFile) {
+  const auto fresh = bar();
+  fs::remove_all(folder_ / "cache");
+  std::vector<std::shared_ptr<const VoxelTool>> got(8);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& tool : got) threads.emplace_back([&tool, this] { tool = bar(); });
+  }
+  for (const auto& tool : got) expect_equal(*tool, *fresh);
+  only_file();
+}
+
+TEST_F(ToolCacheTest, AMeshFileIsFoundBelowTheDataAndCountsByItsContent) {
+  folder_.write("meshes/cube.obj", kCube);
+  const ToolSettings cube{.mesh = "meshes/cube.obj", .size_m = 0.02, .voxel_m = 1e-3};
+  EXPECT_NEAR(load_tool(cube)->volume_m3, 8e-6, 1e-12);
+  expect_equal(*load_tool(cube), *load_tool(cube));
+  folder_.write("meshes/cube.obj", "v 0 -1 0" + kCube.substr(7));  // one corner elsewhere
+  EXPECT_GT(std::abs(load_tool(cube)->volume_m3 - 8e-6), 1e-7);
+  EXPECT_EQ(files_in(folder_ / "cache").size(), 2u);
+}
+
+TEST_F(ToolCacheTest, ResultsHoldTheHashOfTheMesh) {
+  EXPECT_TRUE(input_files(bar_).empty());
+  folder_.write("meshes/cube.obj", kCube);
+  const std::vector<RecordingPart> parts = input_files(ToolSettings{.mesh = "meshes/cube.obj"});
+  ASSERT_EQ(parts.size(), 1u);
+  const std::string before = input_hashes(parts);
+  EXPECT_HAS(before, "meshes/cube.obj: 1 file(s), " + std::to_string(kCube.size()) + " bytes, sha256 ");
+  folder_.write("meshes/cube.obj", kCube + "\n");
+  EXPECT_NE(input_hashes(parts), before);
+}
+
+TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
+  EXPECT_HAS(refusal([] { load_tool({.mesh = "none.obj"}); }),
+             "renderer.tool_mesh = none.obj: no such tool: expected ball, bar, block, fork, husky");
+  EXPECT_THROW(load_tool({.mesh = "none.obj"}), MissingRecording);
+  folder_.write("open.obj", kCube.substr(0, kCube.size() - 10));
+  EXPECT_HAS(refusal([] { load_tool({.mesh = "open.obj", .size_m = 0.02}); }),
+             "renderer.tool_mesh = open.obj: not closed: 4 boundary edges");
+  EXPECT_TRUE(load_tool({.mesh = "open.obj", .size_m = 0.02, .voxel_m = 1e-3, .repair = true}));
+  EXPECT_EQ(validate(bar_), "");
+  EXPECT_HAS(validate({.mesh = "wolf"}), "tool_mesh = wolf: expected ball, bar");
+  EXPECT_HAS(validate({.mesh = ""}), "expected ball, bar");
+  EXPECT_HAS(validate({.size_m = 5e-4}), "tool_size_m = 0.000500: expected two voxels");
+}
+
+TEST_F(ToolCacheTest, ParametersReachTheSettings) {
+  ToolSettings settings;
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters(settings)) names.push_back(p.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"tool_mesh", "tool_size_m", "tool_voxel_m", "tool_repair"}));
+}
+
+}  // namespace
+}  // namespace remote_touch::tool_cache_test

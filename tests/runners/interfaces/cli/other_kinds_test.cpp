@@ -1,0 +1,27 @@
+#include "runners/interfaces/cli/other_kinds.h"
+
+#include <gtest/gtest.h>
+
+namespace remote_touch::other_kinds_test {
+namespace {
+
+TEST(OtherKind, NamesTheCommand) {
+  EXPECT_EQ(other_kind("4.12", "run"), "is a figure: expected `remote-touch figure 4.12 -o FOLDER`");
+  EXPECT_EQ(other_kind("fig4.13", "run"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
+  EXPECT_EQ(other_kind("fig4.12", "sweep"), "is an experiment: expected `remote-touch run fig4.12 -o FILE`");
+  EXPECT_EQ(other_kind("fig4.13", "figure"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
+  EXPECT_EQ(other_kind("figlatency", "figure"),
+            "is a figure: expected `remote-touch figure latency -o FOLDER`");
+}
+
+TEST(OtherKind, IsNoneForTheCommandsOwnForFilesAndForNothing) {
+  EXPECT_EQ(other_kind("fig4.12", "run"), "");
+  EXPECT_EQ(other_kind("fig4.13", "sweep"), "");
+  EXPECT_EQ(other_kind("4.13", "figure"), "");
+  EXPECT_EQ(other_kind("/dev/null", "run"), "");
+  EXPECT_EQ(other_kind("nonsense", "run"), "");
+  EXPECT_EQ(other_kind("", "run"), "");
+}
+
+}  // namespace
+}  // namespace remote_touch::other_kinds_test

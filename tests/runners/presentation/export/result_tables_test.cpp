@@ -1,0 +1,115 @@
+#include "runners/presentation/export/result_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::result_tables_test {
+namespace {
+
+TEST(ResultTables, ATraceHasOneTableOfItsColumnsAndTheDurations) {
+  const TestFolder folder("result_tables");
+  const Trace trace = awkward_trace(5);
+  write_trace(folder / "a.h5", trace, kProvenance, {1, 2, 3, 4, 5});
+  const std::vector<Table> tables = result_tables(Hdf5Reader(folder / "a.h5"));
+  ASSERT_EQ(tables.size(), 1u);
+  const std::vector<Column> columns = trace.columns();
+  ASSERT_EQ(tables[0].columns.size(), columns.size() + 1);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    EXPECT_EQ(tables[0].columns[i].name, columns[i].name);
+    EXPECT_TRUE(same_bits(tables[0].columns[i], columns[i])) << columns[i].name;
+  }
+  EXPECT_EQ(tables[0].columns.back().name, "step_duration");
+}
+
+SweepResult two_by_two() {
+  SweepResult sweep;
+  sweep.axes = {{"rule", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"none", "all"}},
+                {"noise_m", "m", "", std::vector<double>{0.5, 0.25}, 1, {}}};
+  sweep.replicates = 2;
+  sweep.measures = {{"depth", "m", "", std::vector<double>{}, 1, {}}};
+  sweep.start(false);
+  for (std::size_t run = 0; run < sweep.run_count(); ++run) {
+    sweep.state[run] = run == 5 ? RunState::failed : RunState::done;
+    std::get<std::vector<double>>(sweep.measures[0].values)[run] =
+        run == 5 ? std::numeric_limits<double>::quiet_NaN() : 10.0 * static_cast<double>(run);
+  }
+  sweep.error[5] = "no \u00e9lan";
+  return sweep;
+}
+
+// A row for each run; the last axis runs fastest, then the replicates.
+TEST(ResultTables, ASweepHasARowForEachRun) {
+  const TestFolder folder("result_tables");
+  write_sweep(folder / "a.h5", two_by_two(), kProvenance);
+  const std::vector<Table> tables = result_tables(Hdf5Reader(folder / "a.h5"));
+  ASSERT_EQ(tables.size(), 1u);
+  std::vector<std::string> names;
+  for (const Column& column : tables[0].columns) names.push_back(column.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"rule", "noise_m", "replicate", "state", "depth", "error"}));
+  const auto integers = [&](std::size_t i) {
+    return std::get<std::vector<std::int32_t>>(tables[0].columns[i].values);
+  };
+  EXPECT_EQ(integers(0), (std::vector<std::int32_t>{0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(tables[0].columns[0].value_names, (std::vector<std::string>{"none", "all"}));
+  EXPECT_EQ(std::get<std::vector<double>>(tables[0].columns[1].values),
+            (std::vector<double>{0.5, 0.5, 0.25, 0.25, 0.5, 0.5, 0.25, 0.25}));
+  EXPECT_EQ(integers(2), (std::vector<std::int32_t>{0, 1, 0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(integers(3)[5], static_cast<std::int32_t>(RunState::failed));
+  EXPECT_EQ(std::get<std::vector<double>>(tables[0].columns[4].values)[7], 70);
+  EXPECT_EQ(std::get<std::vector<std::string>>(tables[0].columns[5].values)[5], "no \u00e9lan");
+}
+
+TEST(ResultTables, NameTheKindsOfNotesOfASweep) {
+  const TestFolder folder("result_tables");
+  SweepResult sweep = two_by_two();
+  sweep.note_kinds = {"no contact", "frames unused"};
+  sweep.notes = {0, 1, 2, 3, 0, 0, 0, 0};
+  write_sweep(folder / "a.h5", sweep, kProvenance);
+  const Table table = result_tables(Hdf5Reader(folder / "a.h5"))[0];
+  const Column& notes = table.columns[table.columns.size() - 2];
+  EXPECT_EQ(notes.name, "notes");
+  EXPECT_EQ(std::get<std::vector<std::string>>(notes.values),
+            (std::vector<std::string>{"", "no contact", "frames unused", "no contact; frames unused", "", "",
+                                      "", ""}));
+}
+
+TEST(ResultTables, AFigureHasItsTables) {
+  const TestFolder folder("result_tables");
+  Figure figure;
+  figure.name = "x";
+  figure.tables.resize(2);
+  figure.tables[0].name = "b", figure.tables[1].name = "a";
+  figure.tables[0].add("u", "m", "", {1, 2});
+  figure.tables[1].columns.push_back({"word", "1", "", std::vector<std::string>{"one", "", "three"}, 1, {}});
+  figure.tables[1].columns.push_back({"vector", "m", "", std::vector<double>(9, 4.0), 3, {}});
+  write_figure(folder / "a.h5", figure, kProvenance);
+  const std::vector<Table> tables = result_tables(Hdf5Reader(folder / "a.h5"));
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].name, "a");
+  ASSERT_EQ(tables[0].columns.size(), 2u);  // dimensions are no columns
+  EXPECT_EQ(tables[0].columns[0].width, 3);
+  EXPECT_EQ(std::get<std::vector<std::string>>(tables[0].columns[1].values),
+            (std::vector<std::string>{"one", "", "three"}));
+  EXPECT_EQ(std::get<std::vector<double>>(tables[1].columns[0].values), (std::vector<double>{1, 2}));
+}
+
+TEST(ResultTables, OtherFilesAreRefused) {
+  const TestFolder folder("result_tables");
+  std::vector<Column> columns = awkward_trace(3).columns();
+  std::get<std::vector<std::uint64_t>>(columns.back().values).pop_back();
+  write_trace(folder / "short.h5", columns, kProvenance, {});
+  EXPECT_HAS(refusal([&] { result_tables(Hdf5Reader(folder / "short.h5")); }), "is not as long as time");
+  Hdf5Writer other;
+  other.attribute("/", "schema", "remote-touch-hashes/2");
+  other.save(folder / "hashes.h5");
+  EXPECT_HAS(refusal([&] { result_tables(Hdf5Reader(folder / "hashes.h5")); }), "expected a trace, a sweep");
+}
+
+}  // namespace
+}  // namespace remote_touch::result_tables_test

@@ -1,0 +1,176 @@
+#include "runners/presentation/view/trace_page.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/presentation/view/page_file.h"
+#include "runners/presentation/view/viewer_files.h"
+#include "tests/runners/presentation/view/read_page.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::trace_page_test {
+namespace {
+
+class TracePageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
+  }
+  Trace store(const std::string& file, const std::string& experiment,
+              std::vector<std::string> overrides = {}) {
+    const Experiment one = Experiment::load(experiment, overrides);
+    const Trace trace = simulate(one);
+    write_trace(folder_ / file, trace, provenance(one.to_json(), "a test", ""), {});
+    return trace;
+  }
+  ViewOptions options() const {
+    ViewOptions options;
+    options.kernels = &scenes::kernels();
+    return options;
+  }
+  TestFolder folder_{"trace_page"};
+};
+
+// Every touching point is on the page, and there are as many of them as the renderer counted.
+void expect_touching_as_counted(const ReadPage& page, const Trace& trace) {
+  std::size_t ticks = 0, touching = 0;
+  for (const Json& frame : page.json["runs"][0]["frames"]) {
+    const auto end = page.numbers<std::uint32_t>(frame["touching_end"]);
+    const auto places = page.numbers<std::uint32_t>(frame["touching"]);
+    const std::size_t points = frame["positions"]["length"].get<std::size_t>() / 3;
+    for (const std::uint32_t place : places) ASSERT_LT(place, points);
+    const int index = frame["index"];
+    const auto first = static_cast<std::size_t>(
+        std::find(trace.frame_index.begin(), trace.frame_index.end(), index) - trace.frame_index.begin());
+    for (std::size_t k = 0; k < end.size(); ++k, ++ticks) {
+      const auto count = static_cast<std::int32_t>(end[k] - (k > 0 ? end[k - 1] : 0));
+      EXPECT_EQ(count, trace.contact_count[first + k]) << "tick " << first + k;
+      touching += static_cast<std::size_t>(count);
+    }
+  }
+  EXPECT_EQ(ticks, trace.length());
+  EXPECT_GT(touching, 100u);
+}
+
+TEST_F(TracePageTest, HasTheColumnsAndWhatTouches) {
+  const Trace trace = store("a.h5", "fig4.12");
+  const ReadPage page(trace_page({folder_ / "a.h5"}, options()).html);
+  EXPECT_EQ(page.numbers<double>(page.column("time")), trace.time_s);
+  EXPECT_EQ(page.numbers<std::int32_t>(page.column("contact_count")), trace.contact_count);
+  const auto force = page.numbers<double>(page.column("force"));
+  ASSERT_EQ(force.size(), 3 * trace.length());
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    EXPECT_EQ(Vec3(force[3 * i], force[3 * i + 1], force[3 * i + 2]), trace.force_N[i]);
+  expect_touching_as_counted(page, trace);
+}
+
+TEST_F(TracePageTest, ForbiddenRegionsTouchToo) {
+  expect_touching_as_counted(
+      ReadPage((store("a.h5", "fig5.6"), trace_page({folder_ / "a.h5"}, options()).html)),
+      simulate(Experiment::load("fig5.6")));
+}
+
+TEST_F(TracePageTest, PointsAreLeftOutUntilThePageIsSmallEnough) {
+  store("a.h5", "fig4.16", {"duration_s=1"});
+  ViewOptions small = options();
+  const std::size_t whole = trace_page({folder_ / "a.h5"}, small).html.size();
+  small.max_bytes = viewer_script().size() + (whole - viewer_script().size()) / 2;
+  const ViewPage page = trace_page({folder_ / "a.h5"}, small);
+  EXPECT_LE(page.html.size(), small.max_bytes);
+  EXPECT_HAS(page.shown, "all near the proxy, of the others some");
+  small.max_bytes = 1000;
+  EXPECT_HAS(refusal([&] { trace_page({folder_ / "a.h5"}, small); }), "expected --max-mb ");
+}
+
+TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyPart) {
+  const Trace a = store("a.h5", "fig4.12"), b = store("b.h5", "fig4.12", {"renderer.r3_m=0.0076"});
+  std::size_t first = 0;
+  while (a.normal[first] == b.normal[first] && a.proxy_position_m[first] == b.proxy_position_m[first] &&
+         a.force_N[first] == b.force_N[first] && a.frame_correction_m[first] == b.frame_correction_m[first])
+    ++first;
+  const ReadPage page(trace_page({folder_ / "a.h5", folder_ / "b.h5"}, options()).html);
+  ASSERT_EQ(page.json["runs"].size(), 2u);
+  Json divergence;
+  for (const Json& event : page.json["runs"][0]["events"])
+    if (event["kind"] == "divergence") divergence = event;
+  ASSERT_TRUE(divergence.is_object());
+  EXPECT_LE(divergence["tick"].get<std::size_t>(), first);
+  EXPECT_GT(divergence["tick"].get<std::size_t>(), 100u);
+}
+
+// Whoever made the result may have put a script into any of its texts.
+TEST_F(TracePageTest, HostileWordsStayWords) {
+  const std::string words = "\"'></script><script>alert(1)</script></title><img src=x onerror=alert(1)><!--";
+  store("plain.h5", "fig4.12", {"duration_s=0.05"});
+  const std::string plain = trace_page({folder_ / "plain.h5"}, options()).html;
+  const Experiment one = Experiment::load("fig4.12", {"duration_s=0.05", "title=" + Json(words).dump()});
+  TextAttributes attributes = provenance(one.to_json(), "a test", "");
+  for (auto& [name, value] : attributes)
+    if (name != "config" && name != "recipe" && name != "input_digests") value = words;
+  write_trace(folder_ / "hostile.h5", simulate(one), attributes, {});
+  const std::string html = trace_page({folder_ / "hostile.h5"}, options()).html;
+  for (const char* tag : {"<script", "</script", "<img", "</title", "<!--"})
+    EXPECT_EQ(count(html, tag), count(plain, tag)) << tag;
+  const Json run = ReadPage(html).json["runs"][0];
+  for (const char* field : {"title", "command", "version"}) EXPECT_EQ(run[field], words) << field;
+  EXPECT_EQ(run["configuration"]["title"], words);
+}
+
+// A program that makes other frames than the one that ran it shows what nobody touched.
+TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
+  const Experiment one = Experiment::load("fig4.12");
+  SimulationOptions with_hashes;
+  with_hashes.hash_frames = true;
+  Trace trace = simulate(one, with_hashes);
+  const auto note = [&] {
+    write_trace(folder_ / "a.h5", trace, provenance(one.to_json(), "a test", ""), {});
+    return ReadPage(trace_page({folder_ / "a.h5"}, options()).html)
+        .json["runs"][0]["note"]
+        .get<std::string>();
+  };
+  EXPECT_EQ(note(), "");
+  for (std::uint64_t& hash : trace.frame_hash) ++hash;
+  EXPECT_HAS(note(), "These are not the frames of the run");
+}
+
+TEST_F(TracePageTest, SaysThatTheContactRadiusChanges) {
+  const auto note = [&](const std::string& parameter, const char* value) {
+    store("a.h5", "fig4.12",
+          {"duration_s=0.1", R"(changes=[{"time_s": 0.05, "parameter": "renderer.)" + parameter +
+                                 R"(", "value": )" + value + "}]"});
+    return ReadPage(trace_page({folder_ / "a.h5"}, options()).html)
+        .json["runs"][0]["note"]
+        .get<std::string>();
+  };
+  EXPECT_HAS(note("r1_m", "0.003"), "The contact radius changes");
+  EXPECT_EQ(note("stiffness_N_per_m", "300"), "");
+}
+
+TEST_F(TracePageTest, RefusesWhatIsNoTrace) {
+  EXPECT_HAS(refusal([&] { trace_page({folder_ / "none.h5"}, options()); }), "none.h5");
+  folder_.write("text.h5", "no HDF5");
+  EXPECT_HAS(refusal([&] { trace_page({folder_ / "text.h5"}, options()); }), "text.h5");
+}
+
+TEST(PageFile, TextInItEndsNoElement) {
+  if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
+  const std::string html = page_file("a < b & c", R"({"title":"</script><b>"})", "");
+  EXPECT_HAS(html, "<title>a &lt; b &amp; c</title>");
+  EXPECT_EQ(Json::parse(between(html, "id=\"view\">", "</script>"))["title"], "</script><b>");
+}
+
+TEST(PageFile, NumbersComeBackFromTheirCompressedForm) {
+  std::string bytes;
+  for (int i = 0; i < 100000; ++i) bytes += static_cast<char>(i % 251 * (i % 251) % 251);
+  for (const std::size_t length : {0u, 1u, 2u, 3u, 1000u, 100000u})
+    EXPECT_EQ(decompressed(compressed(bytes.substr(0, length)), 200000), bytes.substr(0, length));
+}
+
+}  // namespace
+}  // namespace remote_touch::trace_page_test

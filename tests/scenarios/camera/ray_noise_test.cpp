@@ -1,0 +1,150 @@
+// Noise along the rays against its definition: growth with the distance, direction, correlation across the
+// view and in time.
+#include "scenarios/camera/ray_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/sensor_fault_scenes.h"
+
+namespace remote_touch::ray_noise_test {
+namespace {
+
+// Products of pairs over many frames: mean, and its standard deviation.
+struct Correlation {
+  double sum = 0, squares = 0, count = 0;
+  void add(double product) { sum += product, squares += product * product, ++count; }
+  void expect(double expected, const char* what) const {
+    const double mean = sum / count, sd = std::sqrt((squares / count - mean * mean) / count);
+    EXPECT_NEAR(mean, expected, 5 * sd) << what;
+  }
+};
+
+PointCloud two_places(double x, double z, double dx, double dz) {
+  PointCloud places;
+  places.append({x, 0, z}), places.append({x + dx, 0, z + dz});
+  return places;
+}
+
+TEST(RayNoise, UncorrelatedPointsAndFramesHaveTheirOwn) {
+  Correlation square, between_points, between_frames;
+  const PointCloud places = two_places(0, 0, 0, 0);
+  std::vector<double> last;
+  for (int frame = 0; frame < 4000; ++frame) {
+    const std::vector<double> n = standard_noise({0.01, 0, 0}, places, kKey, frame, scenes::kernels());
+    square.add(n[0] * n[0]), between_points.add(n[0] * n[1]);
+    if (frame > 0) between_frames.add(n[0] * last[0]);
+    last = n;
+  }
+  square.expect(1, "variance");
+  between_points.expect(0, "between points");
+  between_frames.expect(0, "between frames");
+}
+
+// Weights of the four nodes around both places, in closed form.
+double expected_correlation(double x, double dx) {
+  const auto weight = [](double at, int node) { return std::max(0.0, 1 - std::abs(at - node)); };
+  double product = 0, a = 0, b = 0;
+  for (int node = -4; node <= 4; ++node) {
+    product += weight(x, node) * weight(x + dx, node);
+    a += weight(x, node) * weight(x, node), b += weight(x + dx, node) * weight(x + dx, node);
+  }
+  return product / std::sqrt(a * b);
+}
+
+TEST(RayNoise, IsCorrelatedAcrossTheViewAsItsLatticeSays) {
+  constexpr double kPitch_m = 0.01;
+  for (const double dx : {0.0, 0.3, 1.0, 1.6, 2.1}) {
+    Correlation square, along_x, along_z;
+    for (int frame = 0; frame < 4000; ++frame) {
+      const std::vector<double> n = standard_noise(
+          {0.01, kPitch_m, 0}, two_places(0.003, -0.007, kPitch_m * dx, 0), kKey, frame, scenes::kernels());
+      const std::vector<double> m = standard_noise(
+          {0.01, kPitch_m, 0}, two_places(-0.007, 0.003, 0, kPitch_m * dx), kKey, frame, scenes::kernels());
+      square.add(n[1] * n[1]), along_x.add(n[0] * n[1]), along_z.add(m[0] * m[1]);
+    }
+    square.expect(1, "variance");
+    along_x.expect(expected_correlation(0.3, dx), "x");
+    along_z.expect(expected_correlation(0.3, dx), "z");
+  }
+}
+
+TEST(RayNoise, RemembersTheFramesBefore) {
+  for (const double memory : {0.5, 0.8}) {
+    Correlation square, next, third;
+    std::vector<double> one, two, three;
+    const PointCloud places = two_places(0, 0, 1, 1);
+    for (int frame = 40; frame < 6000; ++frame) {
+      const std::vector<double> n = standard_noise({0.01, 0, memory}, places, kKey, frame, scenes::kernels());
+      square.add(n[0] * n[0]);
+      if (!one.empty()) next.add(n[0] * one[0]);
+      if (!three.empty()) third.add(n[0] * three[0]);
+      three = two, two = one, one = n;
+    }
+    square.expect(1, "variance");
+    // Correlation of a sum that is cut off after age 16: sum of m^i m^(i + lag), over sum of m^(2 i).
+    const auto expected = [&](int lag) {
+      double product = 0, squares = 0;
+      for (int i = 0; i <= 16; ++i) {
+        squares += std::pow(memory, 2 * i);
+        if (i + lag <= 16) product += std::pow(memory, 2 * i + lag);
+      }
+      return product / squares;
+    };
+    next.expect(expected(1), "successive frames");
+    third.expect(expected(3), "every third frame");
+  }
+}
+
+TEST(RayNoise, APlaceHasTheSameNoiseWhateverElseIsSeen) {
+  PointCloud alone, many = scenes::random_cloud(100, 0.3, 4);
+  alone.append({0.0123, 0, -0.0456});
+  many.append(alone.point(0));
+  many.append(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const RayNoise noise{0.01, 0.005, 0.3};
+  const std::vector<double> a = standard_noise(noise, alone, kKey, 7, scenes::kernels());
+  const std::vector<double> b = standard_noise(noise, many, kKey, 7, scenes::kernels());
+  EXPECT_EQ(a[0], b[100]);
+  EXPECT_TRUE(std::isnan(b[101]));
+}
+
+TEST(SensorFaults, RayNoiseGrowsWithTheSquareOfTheDistanceAndLeavesRaysAlone) {
+  SensorFaults s;
+  s.ray_noise.sigma_m = 0.002, s.view_direction = {0, -3, 0}, s.sensor_distance_m = 2;
+  const auto clean = bare();
+  const FaultySensor sensor = faulty(s);
+  Correlation square;
+  for (const int frame : {0, 20, 39}) {
+    const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      ASSERT_TRUE(after.x[i] == before.x[i] && after.z[i] == before.z[i]);
+      const double distance = 2 - before.y[i];
+      const double noise = (after.y[i] - before.y[i]) / (0.002 * distance * distance);
+      square.add(noise * noise);
+    }
+  }
+  square.expect(1, "variance in units of sigma distance^2");
+  EXPECT_EQ(sensor.frame_count(), std::numeric_limits<int>::max()) << "noise goes on on a surface at rest";
+}
+
+TEST(SensorFaults, RayNoiseOfAnImageIsAlongTheRayOfEachPixel) {
+  SensorFaults s;
+  s.ray_noise.sigma_m = 0.002;
+  const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);
+  const Vec3 eye = before.image->X_WC.translation();
+  Correlation square;
+  for (std::size_t i = 0; i < after.size(); i += 7) {
+    if (!before.is_measured(i)) continue;
+    const Vec3 ray = before.point(i) - eye, displacement = after.point(i) - before.point(i);
+    ASSERT_LT(displacement.cross(ray).norm(), 1e-14);
+    const double noise = displacement.dot(ray.normalized()) / (0.002 * ray.squaredNorm());
+    square.add(noise * noise);
+  }
+  square.expect(1, "variance in units of sigma distance^2");
+}
+
+}  // namespace
+}  // namespace remote_touch::ray_noise_test

@@ -1,0 +1,267 @@
+// Each fault of a sensor that concerns points against its definition, on the bare scenario's own points.
+#include "scenarios/camera/sensor_faults.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/scenes.h"
+#include "tests/support/sensor_fault_scenes.h"
+
+namespace remote_touch::sensor_faults_test {
+namespace {
+
+// --- none ---
+
+TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
+  MovingShape::Settings noisy = rising_plane();
+  noisy.noise_sigma_m = 0.001;
+  SensorFaults off;
+  off.view_direction = {0.3, -0.7, 0.1};
+  const FaultySensor same = faulty(off, bare(noisy)), seen = faulty(off, camera());
+  const auto plane = bare(noisy), scene = camera();
+  EXPECT_EQ(same.frame_count(), plane->frame_count());
+  EXPECT_EQ(seen.frame_count(), scene->frame_count());
+  for (const int frame : {0, 1, 17, 40}) {
+    EXPECT_TRUE(same_points(same.cloud(frame), plane->cloud(frame)));
+    EXPECT_TRUE(same_points(seen.cloud(frame), scene->cloud(frame)));
+    EXPECT_EQ(same.captured_s(frame), plane->captured_s(frame));
+    EXPECT_FALSE(same.arrives_s(frame));
+    const auto same_points = same.points(frame), plane_points = plane->points(frame);
+    const auto &same_type = *same_points, &plane_type = *plane_points;
+    EXPECT_TRUE(typeid(same_type) == typeid(plane_type));
+  }
+}
+
+TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
+  const Experiment plain = Experiment::load("fig4.12", {"duration_s=0.6"});
+  const Experiment with = Experiment::load("fig4.12", {"duration_s=0.6", "faults={}"});
+  SimulationOptions options;
+  options.hash_frames = true;
+  const Trace a = simulate(plain, options), b = simulate(with, options);
+  EXPECT_EQ(a.frame_hash, b.frame_hash);
+  EXPECT_EQ(a.proxy_position_m, b.proxy_position_m);
+  EXPECT_EQ(a.force_N, b.force_N);
+}
+
+// --- places ---
+
+TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
+  SensorFaults s;
+  s.quantisation_m = 0.003, s.view_direction = {1, -2, 2};
+  const Vec3 view_direction = s.view_direction / 3;
+  MovingShape::Settings rough = rising_plane();
+  rough.noise_sigma_m = 0.004;
+  const auto clean = bare(rough);
+  const FaultySensor sensor = faulty(s, bare(rough));
+  for (const int frame : {0, 9}) {
+    const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const double steps = after.point(i).dot(view_direction) / 0.003;
+      ASSERT_NEAR(steps, std::round(steps), 1e-10);
+      const Vec3 displacement = after.point(i) - before.point(i);
+      ASSERT_LE(displacement.norm(), 0.0015 + 1e-15);
+      ASSERT_LT((displacement - displacement.dot(view_direction) * view_direction).norm(), 1e-15);
+    }
+  }
+}
+
+TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
+  SensorFaults s;
+  s.flying_probability = 0.2, s.max_flying_distance_m = 0.03, s.view_direction = {0, 0, 5};
+  const auto clean = bare();
+  const FaultySensor sensor = faulty(s);
+  double flown = 0, all = 0, sum = 0, squares = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      ++all;
+      const double displacement = after.z[i] - before.z[i];
+      ASSERT_TRUE(after.x[i] == before.x[i] && after.y[i] == before.y[i]);
+      ASSERT_LE(std::abs(displacement), 0.03 + 1e-15);
+      if (displacement != 0) ++flown, sum += displacement, squares += displacement * displacement;
+    }
+  }
+  expect_fraction(flown, all, 0.2);
+  // Evenly spread: no mean, and a standard deviation of the half width by sqrt(3).
+  const double sd = 0.03 / std::sqrt(3.0);
+  EXPECT_NEAR(sum / flown, 0, 5 * sd / std::sqrt(flown));
+  EXPECT_NEAR(std::sqrt(squares / flown), sd, 5 * sd / std::sqrt(flown));
+}
+
+TEST(SensorFaults, OutliersLieWithinTheirReach) {
+  SensorFaults s;
+  s.outlier_probability = 0.1, s.max_outlier_distance_m = 0.2, s.flying_probability = 1,
+  s.max_flying_distance_m = 0.001;
+  const auto clean = bare();
+  const FaultySensor sensor = faulty(s);
+  double far = 0, all = 0, furthest = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const double displacement = std::abs(after.y[i] - before.y[i]);
+      ASSERT_LE(displacement, 0.2 + 1e-15);
+      ++all, far += displacement > 0.001 + 1e-15 ? 1 : 0, furthest = std::max(furthest, displacement);
+    }
+  }
+  expect_fraction(far / (1 - 0.001 / 0.2), all, 0.1);
+  EXPECT_GT(furthest, 0.199);
+}
+
+// Points in an image stay on their rays, so that the search by pixels finds them.
+TEST(SensorFaults, PointsOfAnImageMoveAlongTheirRays) {
+  SensorFaults s;
+  s.flying_probability = 0.3, s.max_flying_distance_m = 0.05, s.quantisation_m = 0.01;
+  const FaultySensor sensor = faulty(s, camera());
+  const PointCloud before = camera()->cloud(0), after = sensor.cloud(0);
+  ASSERT_TRUE(after.image);
+  const Vec3 eye = after.image->X_WC.translation();
+  const RigidTransform X_CW = after.image->X_WC.inverse();
+  double moved = 0, all = 0;
+  for (std::size_t i = 0; i < after.size(); i += 7) {
+    ASSERT_EQ(before.is_measured(i), after.is_measured(i));
+    if (!after.is_measured(i)) continue;
+    const double steps = (after.point(i) - eye).norm() / 0.01;
+    ASSERT_NEAR(steps, std::round(steps), 1e-10);
+    const Vec3 p_C = X_CW * after.point(i), q_C = X_CW * before.point(i);
+    ASSERT_LT((p_C / p_C.z() - q_C / q_C.z()).norm(), 1e-14);
+    ++all, moved += (after.point(i) - before.point(i)).norm() > 0.005 + 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(moved / all, 0.25);
+  const auto points = sensor.points(0);
+  GatheredPoints found, expected;
+  for (GatheredPoints* out : {&found, &expected}) out->reserve(after.size(), false, false);
+  for (std::size_t i = 100000; i < after.size(); i += 9973) {
+    if (!after.is_measured(i)) continue;
+    found.clear(), expected.clear();
+    points->gather({after.point(i), 0.02}, scenes::kernels(), found);
+    BruteForceSearch(after).gather({after.point(i), 0.02}, scenes::kernels(), expected);
+    EXPECT_EQ(found.size(), expected.size());
+  }
+}
+
+TEST(SensorFaults, PointsBehindTheCameraAreLost) {
+  SensorFaults s;
+  s.outlier_probability = 1, s.max_outlier_distance_m = 5;
+  const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);
+  const RigidTransform X_CW = after.image->X_WC.inverse();
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (after.is_measured(i)) {
+      ASSERT_GT((X_CW * after.point(i)).z(), 0);
+    }
+  // About half: 5 m either way, of something 0.6 m away.
+  EXPECT_NEAR(static_cast<double>(measured(after)) / static_cast<double>(measured(before)), 0.56, 0.05);
+}
+
+// --- lost points ---
+
+TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
+  SensorFaults s;
+  s.dropout_probability = 0.3;
+  const FaultySensor sensor = faulty(s);
+  double lost = 0, all = 0, twice = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const PointCloud before = bare()->cloud(frame), after = sensor.cloud(frame);
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      ++all;
+      if (after.is_measured(i)) {
+        ASSERT_EQ(after.point(i), before.point(i));
+        continue;
+      }
+      ASSERT_TRUE(std::isnan(after.x[i]) && std::isnan(after.y[i]) && std::isnan(after.z[i]));
+      ++lost, twice += i > 0 && !after.is_measured(i - 1) ? 1 : 0;
+    }
+  }
+  expect_fraction(lost, all, 0.3);
+  expect_fraction(twice, lost, 0.3);  // one tells nothing about the next
+}
+
+// Checks that the missing points are those within the radius of a middle around which all are missing, and no
+// others.
+void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view_direction,
+                        double radius_m) {
+  const auto apart = [&](std::size_t i, std::size_t j) {
+    const Vec3 displacement = before.point(i) - before.point(j);
+    return (displacement - displacement.dot(view_direction) * view_direction).norm();
+  };
+  std::vector<bool> explained(before.size());
+  for (std::size_t middle = 0; middle < before.size(); ++middle) {
+    std::vector<std::size_t> inside;
+    bool whole = true;
+    for (std::size_t i = 0; whole && i < before.size(); ++i) {
+      if (apart(i, middle) > radius_m) continue;
+      whole = !after.is_measured(i);
+      inside.push_back(i);
+    }
+    for (const std::size_t i : inside) explained[i] = explained[i] || whole;
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) ASSERT_EQ(explained[i], !after.is_measured(i)) << i;
+}
+
+TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
+  for (const Vec3& view_direction : {Vec3(0, -1, 0), Vec3(0.6, -0.8, 0)}) {
+    SensorFaults s;
+    s.hole_fraction = 0.25, s.hole_radius_m = 0.007, s.view_direction = view_direction;
+    const FaultySensor sensor = faulty(s);
+    std::vector<PointCloud> frames;
+    for (const int frame : {0, 1, 2}) {
+      const PointCloud before = bare()->cloud(frame);
+      frames.push_back(sensor.cloud(frame));
+      const double lost = 3000 - static_cast<double>(measured(frames.back()));
+      EXPECT_GE(lost, 750);
+      EXPECT_LE(lost, 750 + 3.2 * 0.007 * 0.007 / (0.002 * 0.002) * 1.7);  // the last hole, seen aslant
+      expect_round_holes(before, frames.back(), view_direction, 0.007);
+    }
+    EXPECT_FALSE(same_bits(frames[0].x, frames[1].x)) << "elsewhere in each frame";
+  }
+}
+
+TEST(SensorFaults, HolesInAnImageAreRoundInTheImage) {
+  SensorFaults s;
+  s.hole_fraction = 0.05, s.hole_radius_m = 0.02;
+  const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);
+  const CameraIntrinsics& eye = after.image->camera;
+  const double all = static_cast<double>(measured(before));
+  const double lost = all - static_cast<double>(measured(after));
+  EXPECT_GE(lost, 0.05 * all);
+  // The largest hole is that of the nearest point, about 0.45 m away.
+  EXPECT_LE(lost, 0.05 * all + 3.2 * std::pow(0.02 / 0.45 * eye.fx, 2));
+  // Row by row what is lost has both kinds of neighbours: few borders for so many points.
+  double borders = 0;
+  for (std::size_t i = 1; i < after.size(); ++i)
+    borders +=
+        before.is_measured(i) && before.is_measured(i - 1) && after.is_measured(i) != after.is_measured(i - 1)
+            ? 1
+            : 0;
+  EXPECT_LT(borders, 0.15 * lost);
+}
+
+TEST(SensorFaults, AllPointsCanBeLost) {
+  SensorFaults holes, drops;
+  holes.hole_fraction = 1, drops.dropout_probability = 1;
+  EXPECT_EQ(measured(faulty(holes).cloud(3)), 0u);
+  EXPECT_EQ(measured(faulty(drops).cloud(3)), 0u);
+  EXPECT_EQ(faulty(drops).points(3)->size(), 3000u);
+}
+
+TEST(SensorFaults, LostPointsLoseTheirNormals) {
+  const Experiment experiment = Experiment::from_json(
+      R"({"scenario": {"name": "moving-plane"}, "faults": {"dropout_probability": 0.5},
+          "renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"}})",
+      "plane");
+  const PointCloud cloud = experiment.build_scenario(scenes::kernels())->cloud(0);
+  ASSERT_TRUE(cloud.has_normals());
+  for (std::size_t i = 0; i < cloud.size(); ++i) ASSERT_EQ(cloud.normal(i).allFinite(), cloud.is_measured(i));
+}
+
+}  // namespace
+}  // namespace remote_touch::sensor_faults_test

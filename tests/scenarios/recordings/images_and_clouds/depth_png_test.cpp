@@ -1,0 +1,192 @@
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/geometry/colour.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::depth_png_test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+class DepthPng : public ::testing::Test {
+ protected:
+  const TestFolder folder_{"depth_png_test"};
+};
+
+TEST_F(DepthPng, KeepsEverySampleAndScalesIt) {
+  const std::uint16_t samples[6] = {1, 255, 256, 1000, 32768, 65535};
+  const DepthImage depth =
+      read_depth_png(folder_.write_png("d.png", 3, 2, PNG_FORMAT_LINEAR_Y, samples), 0.0002, kNoLimit);
+  ASSERT_EQ(depth.width, 3);
+  ASSERT_EQ(depth.height, 2);
+  ASSERT_EQ(depth.z_m.size(), 6u);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(depth.z_m[i], samples[i] * 0.0002) << i;
+}
+
+TEST_F(DepthPng, NoMeasurementAndTooFarAreNaN) {
+  const std::uint16_t samples[4] = {0, 2000, 3000, 3001};
+  const DepthImage depth =
+      read_depth_png(folder_.write_png("d.png", 4, 1, PNG_FORMAT_LINEAR_Y, samples), 0.001, 3.0);
+  EXPECT_TRUE(std::isnan(depth.z_m[0]));
+  EXPECT_EQ(depth.z_m[1], 2.0);
+  EXPECT_EQ(depth.z_m[2], 3.0);  // the limit itself is kept
+  EXPECT_TRUE(std::isnan(depth.z_m[3]));
+}
+
+TEST_F(DepthPng, RefusesOtherPixelFormats) {
+  const std::uint8_t grey[1] = {7}, rgb[3] = {1, 2, 3};
+  const std::uint16_t rgb16[3] = {1, 2, 3};
+  const fs::path grey_file = folder_.write_png("grey.png", 1, 1, PNG_FORMAT_GRAY, grey);
+  const std::string text = refusal([&] { read_depth_png(grey_file, 0.001, kNoLimit); });
+  EXPECT_HAS(text, grey_file.string());
+  EXPECT_HAS(text, "8-bit grey: expected 16-bit grey (one channel)");
+  const fs::path rgb_file = folder_.write_png("rgb.png", 1, 1, PNG_FORMAT_RGB, rgb);
+  EXPECT_HAS(refusal([&] { read_depth_png(rgb_file, 0.001, kNoLimit); }), "8-bit RGB");
+  const fs::path rgb16_file = folder_.write_png("rgb16.png", 1, 1, PNG_FORMAT_LINEAR_RGB, rgb16);
+  EXPECT_HAS(refusal([&] { read_depth_png(rgb16_file, 0.001, kNoLimit); }), "16-bit RGB");
+  int width = 0, height = 0;
+  EXPECT_HAS(refusal([&] { read_colour_png(rgb16_file, width, height); }),
+             "16-bit RGB: expected up to 8 bits");
+}
+
+TEST_F(DepthPng, RefusesEveryTruncation) {
+  std::uint16_t samples[64];
+  for (int i = 0; i < 64; ++i) samples[i] = static_cast<std::uint16_t>(i * 997);
+  const std::string bytes = bytes_of(folder_.write_png("d.png", 8, 8, PNG_FORMAT_LINEAR_Y, samples));
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    const fs::path cut = folder_.write("cut.png", bytes.substr(0, length));
+    const std::string text = refusal([&] { read_depth_png(cut, 0.001, kNoLimit); });
+    EXPECT_HAS(text, cut.string() + ": is not a whole PNG file: ") << "cut to " << length;
+  }
+}
+
+TEST_F(DepthPng, RefusesDamagedPixels) {
+  std::uint16_t samples[64] = {1, 2, 3};
+  std::string bytes = bytes_of(folder_.write_png("d.png", 8, 8, PNG_FORMAT_LINEAR_Y, samples));
+  bytes[bytes.find("IDAT") + 8] ^= 0x55;
+  EXPECT_HAS(refusal([&] { read_depth_png(folder_.write("d.png", bytes), 0.001, kNoLimit); }),
+             "not a whole PNG");
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+  return bytes;
+}
+
+// Length, type, data and the CRC over type and data.
+std::string chunk(const std::string& type, const std::string& data) {
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (const char c : type + data) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
+  }
+  return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(~crc);
+}
+
+// 16-bit grey; what follows the header is up to the caller.
+std::string png_header(std::uint32_t width, std::uint32_t height) {
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", big_endian(width) + big_endian(height) + std::string("\x10\0\0\0\0", 5));
+}
+
+TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
+  const std::string rest = chunk("IDAT", "x") + chunk("IEND", "");
+  const fs::path file = folder_.write("d.png", png_header(8000, 8000) + rest);
+  const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+  EXPECT_HAS(text, file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
+}
+
+// 0.8 MB could hold as many zeros; that would take 4 GB in memory.
+TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
+  const std::string rest = chunk("IDAT", std::string(800'000, 'x')) + chunk("IEND", "");
+  for (const auto& [width, height] :
+       {std::pair(20000u, 20000u), std::pair(100000u, 1000u), std::pair(1000u, 100000u)}) {
+    const fs::path file = folder_.write("d.png", png_header(width, height) + rest);
+    const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+    EXPECT_HAS(text, file.string() + ": ");
+    EXPECT_HAS(text, "expected up to");
+  }
+}
+
+TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
+  const std::uint16_t samples[1] = {5};
+  const std::string whole = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
+  const std::size_t after_header = 33, end = whole.size() - 12;
+  for (const char* type : {"tEXt", "zTXt", "iTXt", "iCCP", "sPLT", "eXIf", "PLTE", "IDAT", "abCd"})
+    for (const std::size_t place : {after_header, end})
+      for (const std::uint32_t length : {0x7FFFFFFFu, 0xFFFFFFFFu, 1000u}) {
+        const fs::path file =
+            folder_.write("d.png", whole.substr(0, place) + big_endian(length) + type + whole.substr(place));
+        const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+        EXPECT_HAS(text, std::string("is not a whole PNG file: ") + type + " claims " +
+                             std::to_string(length) + " bytes");
+      }
+}
+
+// Chunks other than the pixels change nothing.
+TEST_F(DepthPng, LeavesOutTexts) {
+  const std::uint16_t samples[1] = {5};
+  std::string bytes = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
+  bytes.insert(33, chunk("tEXt", std::string("Title\0a heart", 13)) + chunk("abCd", "private"));
+  EXPECT_EQ(read_depth_png(folder_.write("d.png", bytes), 0.001, kNoLimit).z_m, std::vector<double>{0.005});
+}
+
+TEST_F(DepthPng, RefusesMissingFilesAndFolders) {
+  const fs::path missing = folder_ / "missing.png";
+  EXPECT_HAS(refusal([&] { read_depth_png(missing, 0.001, kNoLimit); }),
+             missing.string() + ": cannot be read");
+  EXPECT_HAS(refusal([&] { read_depth_png(folder_.path(), 0.001, kNoLimit); }),
+             folder_.path().string() + ": cannot be read");
+}
+
+TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
+  int width = 0, height = 0;
+  const std::vector<std::uint32_t> expected = {0x102030, 0xFFEE00};
+  const std::uint8_t rgb[6] = {0x10, 0x20, 0x30, 0xFF, 0xEE, 0x00};
+  EXPECT_EQ(read_colour_png(folder_.write_png("rgb.png", 2, 1, PNG_FORMAT_RGB, rgb), width, height),
+            expected);
+  EXPECT_EQ(width, 2);
+  EXPECT_EQ(height, 1);
+  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x01, 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
+  EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
+            expected);
+  const std::uint8_t grey[2] = {0x00, 0xA7};
+  const std::vector<std::uint32_t> expected_grey = {0x000000, 0xA7A7A7};
+  EXPECT_EQ(read_colour_png(folder_.write_png("grey.png", 1, 2, PNG_FORMAT_GRAY, grey), width, height),
+            expected_grey);
+  EXPECT_EQ(width, 1);
+  EXPECT_EQ(height, 2);
+  const std::uint8_t indices[2] = {1, 0};
+  const std::uint8_t palette[6] = {0xFF, 0xEE, 0x00, 0x10, 0x20, 0x30};
+  const fs::path file = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, indices, palette, 2);
+  EXPECT_EQ(read_colour_png(file, width, height), expected);
+}
+
+// The formats that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
+TEST_F(DepthPng, ATransparentPixelHasNoColour) {
+  int width = 0, height = 0;
+  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF};
+  const std::vector<std::uint32_t> expected = {kNoColour, 0xFFEE00};
+  EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
+            expected);
+  const std::uint8_t grey[4] = {0x40, 0x00, 0xA7, 0xFF};
+  const std::vector<std::uint32_t> expected_grey = {kNoColour, 0xA7A7A7};
+  EXPECT_EQ(read_colour_png(folder_.write_png("grey.png", 2, 1, PNG_FORMAT_GA, grey), width, height),
+            expected_grey);
+  const std::uint8_t indices[2] = {0, 1};
+  const fs::path palette = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2);
+  EXPECT_EQ(read_colour_png(palette, width, height), expected);
+}
+
+}  // namespace
+}  // namespace remote_touch::depth_png_test
