@@ -48,27 +48,27 @@ std::string outside_text(std::int64_t outside, std::int64_t of, const char* thin
 }
 
 ReportCase::State state_of(Outcome outcome) {
-  using State = ReportCase::State;
+  using Result = ReportCase::State;
   switch (outcome) {
     case Outcome::same:
-      return State::passed;
+      return Result::passed;
     case Outcome::regressed:
-      return State::failed;
+      return Result::failed;
     case Outcome::changed:
-      return State::skipped;
+      return Result::skipped;
     case Outcome::not_comparable:
       break;
   }
-  return State::error;
+  return Result::error;
 }
 
 // An undecided measure is an error only where it leaves the whole undecided.
 ReportCase::State state_of(Judgement judgement, Outcome whole) {
-  using State = ReportCase::State;
-  if (judgement == Judgement::equal || judgement == Judgement::within_margin) return State::passed;
-  if (judgement == Judgement::worse) return State::failed;
-  return judgement == Judgement::undecided && whole == Outcome::not_comparable ? State::error
-                                                                               : State::skipped;
+  using Result = ReportCase::State;
+  if (judgement == Judgement::equal || judgement == Judgement::within_margin) return Result::passed;
+  if (judgement == Judgement::worse) return Result::failed;
+  return judgement == Judgement::undecided && whole == Outcome::not_comparable ? Result::error
+                                                                               : Result::skipped;
 }
 
 ReportCase case_of(const ValueComparison& measure, Outcome whole) {
@@ -93,14 +93,14 @@ std::string count(const ReportSuite& suite, ReportCase::State state) {
 
 ReportSuite suite_of(const ResultComparison& comparison, const std::string& name) {
   ReportSuite suite{name};
-  using State = ReportCase::State;
+  using Result = ReportCase::State;
   if (comparison.columns)
     for (const ColumnComparison& column : comparison.columns->columns) {
       std::string why = column.problem;
       if (!why.empty() && column.outside > 0) why += "; ";
       why += outside_text(static_cast<std::int64_t>(column.outside), static_cast<std::int64_t>(column.rows),
                           "rows", column.max);
-      suite.cases.push_back({column.name, column.is_same() ? State::passed : State::skipped, why});
+      suite.cases.push_back({column.name, column.is_same() ? Result::passed : Result::skipped, why});
     }
   for (const ValueComparison& measure : comparison.measures)
     suite.cases.push_back(case_of(measure, comparison.outcome));
@@ -114,12 +114,12 @@ ReportSuite suite_of(const ResultComparison& comparison, const std::string& name
 }
 
 std::string junit(const std::vector<ReportSuite>& suites) {
-  using State = ReportCase::State;
+  using Result = ReportCase::State;
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
   for (const ReportSuite& suite : suites) {
     xml += "  <testsuite name=\"" + escaped(suite.name) + "\" tests=\"" + std::to_string(suite.cases.size()) +
-           "\" failures=\"" + count(suite, State::failed) + "\" errors=\"" + count(suite, State::error) +
-           "\" skipped=\"" + count(suite, State::skipped) + "\">\n";
+           "\" failures=\"" + count(suite, Result::failed) + "\" errors=\"" + count(suite, Result::error) +
+           "\" skipped=\"" + count(suite, Result::skipped) + "\">\n";
     for (const ReportCase& one : suite.cases) xml += case_xml(suite, one);
     xml += "  </testsuite>\n";
   }
