@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/block_journal.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -30,27 +32,49 @@ std::filesystem::path key_of(const std::filesystem::path& target) {
   return std::filesystem::absolute(target, no_folder).lexically_normal();
 }
 
-ReplacementRule rule_of(const std::filesystem::path& target) {
+std::optional<ReplacementRule> rule_of(const std::filesystem::path& target) {
   const std::lock_guard lock(mutex_of_rules);
   const auto found = rules().find(key_of(target));
-  return found == rules().end() ? nullptr : found->second;
+  return found == rules().end() ? std::nullopt : std::optional(found->second);
+}
+
+// A device holds no data that could be lost.
+bool holds_something(const std::filesystem::path& file) {
+  std::error_code absent;
+  return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
 }
 
 }  // namespace
+
+bool ReplacementRule::allows(const std::filesystem::path& file) const {
+  if (is_journal(file)) return false;
+  return force || !holds_something(file) || is_ours(file);
+}
 
 void set_replacement_rule(const std::filesystem::path& target, ReplacementRule rule) {
   const std::lock_guard lock(mutex_of_rules);
   rules()[key_of(target)] = std::move(rule);
 }
 
+void require_output(const std::filesystem::path& output, const ReplacementRule& rule) {
+  if (is_journal(output))
+    throw InputError(output.string(),
+                     "is an unfinished recording and is never overwritten: expected another file");
+  if (!rule.allows(output))
+    throw InputError(output.string(), "exists already and is not " + rule.kind +
+                                          " of this program: expected another file, or " + rule.force_option);
+  require_writable(output);
+  set_replacement_rule(output, rule);
+}
+
 // Any failure of the first call, such as of a file system that does not know RENAME_NOREPLACE, is decided by
 // the second one.
 int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem::path& target) {
   const std::filesystem::path place = resolved(target);
-  if (const ReplacementRule may_replace = rule_of(target)) {
+  if (const auto rule = rule_of(target)) {
     if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, place.c_str(), RENAME_NOREPLACE) == 0) return 0;
     std::error_code unreachable;
-    if (std::filesystem::exists(std::filesystem::symlink_status(place, unreachable)) && !may_replace(place))
+    if (std::filesystem::exists(std::filesystem::symlink_status(place, unreachable)) && !rule->allows(place))
       return EEXIST;
   }
   return ::rename(temporary.c_str(), place.c_str()) == 0 ? 0 : errno;
@@ -63,10 +87,11 @@ int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem
   const std::string kept = resolved(target).string() + ".kept-" + std::to_string(::getpid());
   if (::rename(temporary.c_str(), kept.c_str()) != 0) return errno;
   flush_folder(kept);
+  const auto rule = rule_of(target);
   throw InputError(target.string(),
                    "was written by another program while this one computed, and is unchanged: "
                    "the result is in " +
-                       kept + ", expected another file, or --force");
+                       kept + ", expected another file, or " + rule.value().force_option);
 }
 
 }  // namespace remote_touch

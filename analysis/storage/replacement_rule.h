@@ -3,16 +3,29 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace remote_touch {
 
-// Returns true if the file at this place may be replaced. It is called only if there is one.
-using ReplacementRule = std::function<bool(const std::filesystem::path& place)>;
+// Decides which existing files an output may replace. A file without content may always be replaced, an
+// unfinished recording never.
+struct ReplacementRule {
+  // Returns true for a file of this program and of the kind that is written. Not called for an empty file.
+  std::function<bool(const std::filesystem::path& file)> is_ours;
+  std::string kind = "a result";  // the name of such a file in messages
+  bool force = false;             // any other file may be replaced too
+  std::string force_option = "--force";
+
+  bool allows(const std::filesystem::path& file) const;
+};
 
 // Sets the rule for a target for the rest of the process, or until the next call. A target without a rule is
-// always replaced. A command checks its output before it computes, and sets the same check as the rule: the
-// file may have been written meanwhile.
+// always replaced.
 void set_replacement_rule(const std::filesystem::path& target, ReplacementRule rule);
+
+// Throws InputError unless the rule allows the output and its folder is writable. Sets the rule, because the
+// file may be written by others while the result is computed.
+void require_output(const std::filesystem::path& output, const ReplacementRule& rule);
 
 // Renames the temporary file to the target, or to what the target links to. Returns 0, or the errno of what
 // failed: EEXIST if the rule keeps the file that is there. Between the rule and the rename another process

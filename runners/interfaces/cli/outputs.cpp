@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/replacement_rule.h"
 #include "core/parameters/input_error.h"
@@ -12,12 +11,6 @@
 namespace remote_touch {
 
 namespace {
-
-// True for a regular file that is not empty. A device holds no data that could be lost.
-bool holds_something(const std::string& file) {
-  std::error_code absent;
-  return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
-}
 
 bool is_one_file(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
@@ -30,30 +23,17 @@ bool is_one_file(const std::string& a, const std::string& b) {
   return place(a) == place(b);
 }
 
-using IsOurs = std::function<bool(const std::string& file)>;
+using IsOurs = std::function<bool(const std::filesystem::path& file)>;
 
-// The same check decides again when the result is finished, because the file may have been written meanwhile.
 void require(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
              const IsOurs& is_ours, const char* kind) {
   for (const auto* all : {&inputs, &line.plugins})
     for (const std::string& input : *all) require_different_file(output, input);
-  if (is_journal(output))
-    throw InputError(output, "is an unfinished recording and is never overwritten: expected another file");
-  const auto may_replace = [is_ours, force = line.force](const std::filesystem::path& file) {
-    if (is_journal(file)) return false;
-    return force || !holds_something(file) || is_ours(file);
-  };
-  if (!may_replace(output))
-    throw InputError(output, std::string("exists already and is not ") + kind +
-                                 " of this program: expected another file, or --force");
-  require_writable(output);
-  set_replacement_rule(output, may_replace);
+  require_output(output, {.is_ours = is_ours, .kind = kind, .force = line.force});
 }
 
 IsOurs begins_with(const std::string& opening) {
-  return [opening](const std::string& file) {
-    return holds_something(file) && opening_of(file, opening.size()) == opening;  // a pipe would wait
-  };
+  return [opening](const std::filesystem::path& file) { return opening_of(file, opening.size()) == opening; };
 }
 
 }  // namespace
@@ -80,9 +60,7 @@ void require_export(const CommandLine& line, const std::string& output,
 }
 
 void replace_only_results(const std::string& output) {
-  set_replacement_rule(output, [](const std::filesystem::path& file) {
-    return !holds_something(file) || has_result_header(file);
-  });
+  set_replacement_rule(output, {.is_ours = has_result_header});
 }
 
 void require_distinct(const std::vector<OutputOption>& outputs) {

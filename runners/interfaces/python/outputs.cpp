@@ -1,9 +1,6 @@
 #include "runners/interfaces/python/outputs.h"
 
-#include <filesystem>
-
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/replacement_rule.h"
 #include "core/parameters/input_error.h"
@@ -17,18 +14,7 @@ OutputFile::OutputFile(const std::string& file, bool force, const std::string& s
   if (file.empty()) return;
   require_different_file(file, subject);
   for (const RecordingPart& part : inputs) require_different_file(file, part.path);
-  if (is_journal(file))
-    throw InputError(file, "is an unfinished recording and is never overwritten: expected another file");
-  const auto may_replace = [force](const std::filesystem::path& place) {
-    std::error_code absent;
-    const bool holds_something =
-        std::filesystem::is_regular_file(place, absent) && std::filesystem::file_size(place, absent) > 0;
-    return !is_journal(place) && (force || !holds_something || has_result_header(place));
-  };
-  if (!may_replace(file))
-    throw InputError(file, "exists already and is not a result: expected another file, or force=True");
-  require_writable(file);
-  set_replacement_rule(file, may_replace);  // it decides again when the result is finished
+  require_output(file, {.is_ours = has_result_header, .force = force, .force_option = "force=True"});
   lock_.emplace(file);
 }
 

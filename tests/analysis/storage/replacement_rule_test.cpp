@@ -20,7 +20,8 @@ class ReplacementRuleTest : public testing::Test {
  protected:
   // The rule of these tests: files that begin with "ours" may be replaced.
   void set_rule(const fs::path& target) const {
-    set_replacement_rule(target, [](const fs::path& place) { return bytes_of(place).starts_with("ours"); });
+    set_replacement_rule(
+        target, {.is_ours = [](const fs::path& file) { return bytes_of(file).starts_with("ours"); }});
   }
   std::string write(const fs::path& target, const std::string& text) const {
     return refusal([&] { write_file_atomically(target, text.data(), text.size()); });
