@@ -82,7 +82,7 @@ def signs(node, text):
     """-x becomes x, !x becomes x."""
     if node.kind == Kind.UNARY_OPERATOR and is_arithmetic(node):
         whole = text.node(node)
-        if whole[0] in "-!" and not whole.startswith("--"):
+        if whole[:1] in ("-", "!") and not whole.startswith("--"):
             yield "sign", whole[1:], "value"
 
 
