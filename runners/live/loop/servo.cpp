@@ -135,12 +135,12 @@ void Servo::one_tick() {
   row_.written = gate_.pass(command_time_s, reading, fault, placement_.to_device(wrench_of(row_.out)),
                             1e-9 * static_cast<double>(begin_ns));
   const DeviceFault refused = links_.device.write(row_.written);
-  row_.gate = gate_.state();
   if (refused) {
     row_.written = {};
     if (!is_released(refused)) gate_.latch(refused);
     links_.device.release();
   }
+  row_.gate = gate_.state();
   note(fault, true);
   if (!is_released(refused)) note(refused, true);
   if (row_.gate == GateState::latched) note(gate_.reason(), false);

@@ -88,10 +88,7 @@ bool LiveChannel::receive(std::string_view bytes) {
   const auto* acknowledged = message ? std::get_if<PageAcknowledgement>(&*message) : nullptr;
   const bool is_allowed =
       message && (acknowledged ? acknowledged->number - acknowledged_ <= sent_ - acknowledged_ : has_hand());
-  if (!is_allowed) {
-    ++refused_;
-    return false;
-  }
+  if (!is_allowed) return false;
   if (acknowledged) {
     acknowledged_ = acknowledged->number;
   } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {

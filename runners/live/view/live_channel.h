@@ -51,8 +51,8 @@ class LiveChannel {
   void tell(std::string text);
   void end(std::string last);
   bool is_over();
-  // Handles a message from the page. Returns false, and counts the message as refused, if it is malformed or
-  // if this page may not send it.
+  // Handles a message from the page. Returns false if it is malformed or if this page may not send
+  // it.
   bool receive(std::string_view bytes);
   // Finds the next message to the page; false if there is none now. Texts are JSON, see view_messages.h. The
   // columns are sent before all other texts; only the text of end() may come earlier.
@@ -61,7 +61,6 @@ class LiveChannel {
     bool is_text = false;
   };
   bool next(Message& message);
-  std::uint64_t refused() const { return refused_; }
 
  private:
   bool next_text(Message& message);
@@ -87,7 +86,6 @@ class LiveChannel {
   bool sent_columns_ = false, was_frame_ = false;  // was_frame_: the last message was a frame
   HandPose hand_;                                  // the newest pose
   std::uint32_t sent_ = 0, acknowledged_ = 0;
-  std::uint64_t refused_ = 0;
 };
 
 }  // namespace remote_touch

@@ -41,12 +41,6 @@ std::string LivePages::ended() const {
   return ended_;
 }
 
-std::uint64_t LivePages::refused() const {
-  std::uint64_t sum = 0;
-  for (const Page& page : pages_) sum += page.channel->refused();
-  return sum;
-}
-
 LivePages::Page* LivePages::with_hand() {
   const auto found =
       std::find_if(pages_.begin(), pages_.end(), [](const Page& page) { return page.channel->has_hand(); });

@@ -34,7 +34,6 @@ class LivePages {
   // counts.
   void end(const std::string& why);
   std::string ended() const;  // the reason; empty while the run goes on
-  std::uint64_t refused() const;
 
   // The server's thread calls these. open() returns the channel for a page, which belongs to the page until
   // close(), or null if is_full(page). page: the name that the page gave itself, at most kMaxName bytes.

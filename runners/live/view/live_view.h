@@ -30,8 +30,6 @@ class LiveView {
   // The run has ended: sends the reason to all pages, and waits at most a second until they have closed. Only
   // the first call counts. The destructor calls it too.
   void end(const std::string& why) { server_->end(why); }
-  // The number of messages from pages that were refused.
-  std::uint64_t refused() const { return pages_.refused(); }
 
  private:
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();

@@ -223,14 +223,12 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
   EXPECT_FALSE(poses_->take());
   EXPECT_FALSE(channel_.receive("hello"));
   EXPECT_FALSE(channel_.receive(acknowledgement(1))) << "nothing was sent";
-  EXPECT_EQ(channel_.refused(), 2u);
   std::string hand("\1\0\0\0\0\0\0\0", 8);
   const double pose[] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
   hand.append(reinterpret_cast<const char*>(pose), sizeof pose);
   EXPECT_TRUE(channel_.receive(hand));
   ASSERT_TRUE(poses_->take());
   EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(channel_.refused(), 2u);
 }
 
 // Numbers and reasons come back as JSON, also to the page that is opened next.
@@ -257,7 +255,6 @@ TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
   now = answer();
   EXPECT_EQ(now["values"][3], 450);
   EXPECT_NE(now["refused"].get<std::string>().find("expected 0 to 10000"), std::string::npos) << now;
-  EXPECT_EQ(channel_.refused(), 0u) << "it was a message";
   channel_.close();
   channel_.open();
   channel_.take(tick(2));

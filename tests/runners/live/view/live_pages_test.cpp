@@ -55,7 +55,6 @@ TEST_F(LivePagesTest, TheFirstPageHasTheHandAndTheOthersWatch) {
   EXPECT_EQ(texts(second), std::vector{kWatches});
   EXPECT_FALSE(pages_.receive(second, hand_at(0.2)));
   EXPECT_FALSE(pages_.receive(second, change_to(450)));
-  EXPECT_EQ(pages_.refused(), 2u);
   EXPECT_FALSE(poses_->take()) << "the hand is the other page's";
   EXPECT_FALSE(controls_->has_changed());
   EXPECT_TRUE(pages_.receive(first, hand_at(0.1)));
