@@ -211,6 +211,8 @@ TEST_F(ServoTest, ARefusedForceDoesNotCountAsWritten) {
   ASSERT_GE(ticks.size(), 3u);
   EXPECT_GT(ticks[1].written.force_N.norm(), 0);
   EXPECT_EQ(ticks[2].written.force_N.norm(), 0);
+  EXPECT_NE(ticks[1].gate, GateState::latched);
+  EXPECT_EQ(ticks[2].gate, GateState::latched);
 }
 
 // The fault is recognised by its text, not by the text's address: an adapter in a library of its own has its
