@@ -264,7 +264,7 @@ double no_force_fraction(const Trace& trace, double contact_radius_m) {
     ++pressed;
     silent += trace.force_N[i].isZero(0) ? 1 : 0;
   }
-  return pressed == 0 ? 0 : static_cast<double>(silent) / static_cast<double>(pressed);
+  return pressed == 0 ? kNoValue : static_cast<double>(silent) / static_cast<double>(pressed);
 }
 
 double mean_steps(const Trace& trace) {

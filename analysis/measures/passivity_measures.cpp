@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "core/geometry/rotation.h"
 
@@ -56,7 +57,7 @@ double max_energy_injected_J(const Trace& trace) {
   double given = 0, max = 0;
   for (std::size_t i = 0; i + 1 < trace.length(); ++i) {
     given += work_J(trace, i);
-    max = std::max(max, given);
+    max = max_or_nan(max, given);
   }
   return max;
 }
@@ -67,7 +68,7 @@ double mean_energy_per_update_J(const Trace& trace) {
 
 double max_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
-  return pieces.empty() ? kNoValue : *std::max_element(pieces.begin(), pieces.end());
+  return max_of(pieces);
 }
 
 }  // namespace remote_touch

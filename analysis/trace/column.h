@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,7 +40,5 @@ struct Table {
 
 // A column of numbers by its name; throws std::out_of_range when the table has none.
 const std::vector<double>& numbers(const Table& table, const std::string& column);
-// NaN if one of them is NaN, or there is none: a claim about it then fails.
-double max_of(std::span<const double> values);
 
 }  // namespace remote_touch

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/contact_point.h"
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 
 namespace remote_touch {
@@ -47,9 +48,7 @@ Table contact_heights(const Trace& trace) {
 
 double peak_to_peak(const Table& table) {
   const auto& values = std::get<std::vector<double>>(table.columns[1].values);
-  if (values.empty()) return std::nan("");
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return *high - *low;
+  return max_of(values) - min_of(values);
 }
 
 // Number of steps from the jump until the proxy is within the contact shell, in a run with one step per tick.

@@ -7,6 +7,7 @@
 
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/pop_through_map.h"
@@ -48,10 +49,10 @@ void add_seed(Lifts& lifts, const SweepResult& result, const Table& map) {
     if (sigma[i] <= 2 + 1e-9) to_2.push_back(survived[i]);
   const Table regions = region_table("regions", map);
   const auto& by_region = numbers(regions, "survived");
-  lifts.survived = std::min(lifts.survived, mean(survived));
-  lifts.survived_to_2 = std::min(lifts.survived_to_2, mean(to_2));
-  lifts.worst_region = std::min(lifts.worst_region, *std::min_element(by_region.begin(), by_region.end()));
-  lifts.well_above = std::min(lifts.well_above, fraction_above(result, 0.5 * kContactRadius_m));
+  lifts.survived = min_or_nan(lifts.survived, mean(survived));
+  lifts.survived_to_2 = min_or_nan(lifts.survived_to_2, mean(to_2));
+  lifts.worst_region = min_or_nan(lifts.worst_region, min_of(by_region));
+  lifts.well_above = min_or_nan(lifts.well_above, fraction_above(result, 0.5 * kContactRadius_m));
 }
 
 // --- noise under a sliding proxy ---
@@ -129,13 +130,13 @@ double max_ratio(const std::vector<Slide>& ours, const std::vector<Slide>& paper
   double max = 0;
   for (std::size_t i = 0; i < ours.size(); ++i)
     if (kSlideNoise[i] >= from && kSlideNoise[i] <= to)
-      max = std::max(max, std::abs(ours[i].*what) / std::abs(paper[i].*what));
+      max = max_or_nan(max, std::abs(ours[i].*what) / std::abs(paper[i].*what));
   return max;
 }
 
 double max_height(const std::vector<Slide>& slides) {
   double max = 0;
-  for (const Slide& s : slides) max = std::max(max, std::abs(s.mean));
+  for (const Slide& s : slides) max = max_or_nan(max, std::abs(s.mean));
   return max;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/contact_point.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/theory/ball_closing.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/figures.h"
@@ -48,7 +49,7 @@ Contact contacts(const Trace& trace, const Oracle& oracle, double from, double t
 
 double max_magnitude(const std::vector<double>& values) {
   double max = values.empty() ? std::nan("") : 0;
-  for (const double v : values) max = std::max(max, std::abs(v));
+  for (const double v : values) max = max_or_nan(max, std::abs(v));
   return max;
 }
 

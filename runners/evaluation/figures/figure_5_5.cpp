@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 
 namespace remote_touch {
@@ -27,10 +28,6 @@ Table distances(const Trace& trace) {
   return table;
 }
 
-double min(const std::vector<double>& values) {
-  return *std::min_element(values.begin(), values.end());
-}
-
 double entrenched_ticks(const Trace& trace) {
   return static_cast<double>(std::count(trace.state.begin(), trace.state.end(),
                                         static_cast<std::int32_t>(ContactState::entrenched)));
@@ -41,7 +38,7 @@ double max_gap_outside(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (trace.hip_position_m[i].norm() > kBoundary_m)
-      max = std::max(max, (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm());
+      max = max_or_nan(max, (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm());
   return max;
 }
 
@@ -52,7 +49,7 @@ double max_force_error(const Trace& trace) {
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const double depth = kFixtureRadius_m - trace.hip_position_m[i].norm();
     if (depth <= 0) continue;
-    max = std::max(max, std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth));
+    max = max_or_nan(max, std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth));
   }
   return max;
 }
@@ -77,7 +74,7 @@ Figure figure_5_5(const FigureContext& context) {
       {"Force", "time (s)", "force (N)", false, {{"distances", "time", "force", CurveStyle::line, ""}}}};
   figure.claims = {
       claim_between("5.5", "smallest distance of the proxy's centre to the point", ">= 0.105",
-                    min(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
+                    min_of(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
       claim_at_most("5.5", "ticks that end with the proxy entrenched", "-", entrenched_ticks(trace), 0,
                     "ticks"),
       claim_at_most("5.5", "distance of the proxy from the HIP while that is outside", "0",
@@ -85,7 +82,7 @@ Figure figure_5_5(const FigureContext& context) {
       claim_at_most("5.5", "force against k_s times the HIP's depth in the region", "-",
                     max_force_error(trace), kStiffness_N_per_m * kShell_5_5_m, "N"),
       set_up(claim_at_most("5.5", "smallest distance of the HIP to the point: it does go inside", "-",
-                           min(numbers(figure.tables[0], "hip")), kBoundary_m, "m")),
+                           min_of(numbers(figure.tables[0], "hip")), kBoundary_m, "m")),
   };
   return figure;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "analysis/measures/contact_point.h"
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -119,7 +120,7 @@ double max_stiffness_error(const Crossing& c) {
     const double x = c.contact_x[i];
     const auto far_from = [&](double place) { return std::abs(x - place) > 0.01; };
     if (far_from(-0.03) && far_from(0) && far_from(0.02))
-      max = std::max(max, std::abs(c.stiffness[i] / assigned_N_per_m(x) - 1));
+      max = max_or_nan(max, std::abs(c.stiffness[i] / assigned_N_per_m(x) - 1));
   }
   return max;
 }

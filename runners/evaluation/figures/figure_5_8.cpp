@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/polynomial_fit.h"
 #include "runners/evaluation/figures/fixture_run.h"
 
@@ -57,7 +58,7 @@ Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     if (!counts(i)) return;
     const double error = of(run, i);
-    squares += error * error, max = std::max(max, std::abs(error)), ++count;
+    squares += error * error, max = max_or_nan(max, std::abs(error)), ++count;
   });
   return {std::sqrt(squares / count), max};  // NaN if no tick counts; a claim on it fails
 }
@@ -94,7 +95,7 @@ double max_speed_m_per_s(const FixtureRun& run) {
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     const double time_s = run.trace.time_s[i];
     const double rise = surface_height_m(run, i, time_s + kApart_s) - surface_height_m(run, i, time_s);
-    max = std::max(max, std::abs(rise) / kApart_s);
+    max = max_or_nan(max, std::abs(rise) / kApart_s);
   });
   return max;
 }
@@ -106,12 +107,10 @@ Summary summary(const FixtureRun& run) {
   s.at_update = deviation(run, from_moving_m, [&](std::size_t i) { return run.trace.frame_update(i); });
   s.moving = deviation(run, from_moving_m, always);
   for (std::size_t i = 0; i < run.trace.length(); ++i) {
-    // Written so that NaN stays and fails.
-    const auto smaller = [](double min, double value) { return value >= min ? min : value; };
     s.min_beyond_fixture_m =
-        smaller(s.min_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
+        min_or_nan(s.min_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
     s.min_slave_beyond_fixture_m =
-        smaller(s.min_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
+        min_or_nan(s.min_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
   }
   s.touching_m = mean_distance_m(run, kInTouch_s, kGrows_s);
   s.held_m = mean_distance_m(run, kGrown_s + kSteady_s, kEnd_s);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/recorded_fixture.h"
 
@@ -76,7 +77,7 @@ double hidden_fraction(const RecordedRun& r) {
 double min_beyond_fixture_m(const RecordedRun& r) {
   double min = std::numeric_limits<double>::infinity();
   for (const FrameOutcome& frame : r.frames)
-    min = std::min(min, frame.nearest_distance_m - r.run.radius_m[frame.tick]);
+    min = min_or_nan(min, frame.nearest_distance_m - r.run.radius_m[frame.tick]);
   return min;
 }
 
@@ -90,14 +91,13 @@ double mean_deviation_m(const RecordedRun& r) {
 
 double min_motion_m(const RecordedRun& r) {
   double min = r.pops.empty() ? kUnknown : std::numeric_limits<double>::infinity();
-  for (const PopThrough& pop : r.pops)
-    min = pop.surface_motion_m >= min ? min : pop.surface_motion_m;  // NaN stays
+  for (const PopThrough& pop : r.pops) min = min_or_nan(min, pop.surface_motion_m);
   return min;
 }
 
 double max_m(const RecordedRun& r, double FrameOutcome::*of) {
   double max = 0;
-  for (const FrameOutcome& frame : r.frames) max = std::max(max, std::abs(frame.*of));
+  for (const FrameOutcome& frame : r.frames) max = max_or_nan(max, std::abs(frame.*of));
   return max;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/numeric/noise.h"
 #include "runners/evaluation/figures/fixture_run.h"
@@ -118,7 +119,7 @@ StepMeasurement measure_step(double sigma_f_m, const Kernels& kernels) {
   for (int v = kBorder_px; v < camera.height - kBorder_px; ++v)
     for (int u = kBorder_px; u < camera.width - kBorder_px; ++u) {
       const auto i = static_cast<std::size_t>(v * camera.width + u);
-      measured.smear_m = std::max(measured.smear_m, std::abs(clean[i] - truth.z_m[i]));
+      measured.smear_m = max_or_nan(measured.smear_m, std::abs(clean[i] - truth.z_m[i]));
       if (std::abs(u - camera.cx) < kEdge_px) continue;
       squares += (noisy[i] - truth.z_m[i]) * (noisy[i] - truth.z_m[i]), ++count;
     }

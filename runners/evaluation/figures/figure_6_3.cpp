@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"
@@ -105,8 +106,7 @@ Table summary_table(const std::vector<BoxRun>& runs) {
     tools.push_back(run.tool), rules.push_back(run.rule);
     rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau_tick(t)), double(max(t.contact_count)),
                     double(max(t.active_constraints)), double(max(t.contact_clusters)),
-                    *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()),
-                    max_force_N(t),
+                    max_of(t.tool_penetration_m), max_force_N(t),
                     double(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1)),
                     ticks_with(t, [&](std::size_t i) { return agrees(t, i) && any_count(t, i); })});
   }
@@ -147,7 +147,7 @@ double max_gap_untouched_m(const Trace& t) {
   double gap = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
     if (t.contact_count[i] == 0)
-      gap = std::max(gap, std::abs(t.hip_position_m[i].y() - t.proxy_position_m[i].y()));
+      gap = max_or_nan(gap, std::abs(t.hip_position_m[i].y() - t.proxy_position_m[i].y()));
   return gap;
 }
 
@@ -206,7 +206,7 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double count = max(runs[r].trace.contact_count);
     counts += (r ? ", " : "") + std::to_string(static_cast<int>(count));
-    if (r > 0) min_rise = std::min(min_rise, count - max(runs[r - 1].trace.contact_count));
+    if (r > 0) min_rise = min_or_nan(min_rise, count - max(runs[r - 1].trace.contact_count));
   }
   figure.claims.push_back(claim_at_least(
       figure.name,
@@ -235,7 +235,7 @@ void add_slot_claim(Figure& figure, const FigureContext& context) {
         Experiment::load("tool-slot", {"scenario.spacing_m=" + std::to_string(mm) + "e-3"}));
   double max_error_deg = 0;
   for (const Trace& trace : context.run(experiments))
-    max_error_deg = std::max(max_error_deg, std::abs(tool_deg(trace, trace.length() - 1) - stops_deg));
+    max_error_deg = max_or_nan(max_error_deg, std::abs(tool_deg(trace, trace.length() - 1) - stops_deg));
   figure.claims.push_back(claim_at_most(
       figure.name,
       "look-ahead: a bar in a slot (tool-slot) stops at 22.62 deg, from its sides alone: maximum "

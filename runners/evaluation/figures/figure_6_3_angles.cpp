@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 
@@ -29,7 +30,7 @@ struct Turning {
     double min = std::numeric_limits<double>::infinity(), max = -min;
     for (std::size_t i = 0; i < commanded_deg.size(); ++i)
       if (commanded_deg[i] >= kBlockedDeg)
-        min = std::min(min, turned_deg[i]), max = std::max(max, turned_deg[i]);
+        min = min_or_nan(min, turned_deg[i]), max = max_or_nan(max, turned_deg[i]);
     return {min, max};
   }
 };
@@ -83,7 +84,7 @@ template <class Value>
 double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Value&& value) {
   double max = -std::numeric_limits<double>::infinity();
   for (const Turning& run : runs)
-    if (rule.empty() || run.rule == rule) max = std::max(max, value(run));
+    if (rule.empty() || run.rule == rule) max = max_or_nan(max, value(run));
   return max;
 }
 
@@ -92,14 +93,14 @@ std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
     double lag_deg = 0;
     for (std::size_t i = 0; i < run.commanded_deg.size(); ++i)
       if (run.commanded_deg[i] <= kFreeDeg)
-        lag_deg = std::max(lag_deg, run.commanded_deg[i] - run.turned_deg[i]);
+        lag_deg = max_or_nan(lag_deg, run.commanded_deg[i] - run.turned_deg[i]);
     return lag_deg;
   };
   const auto history = [](const Turning& run) { return run.stop_deg().second - run.stop_deg().first; };
   const auto stop = [](const Turning& run) { return run.stop_deg().second; };
   const auto minus_stop = [](const Turning& run) { return -run.stop_deg().second; };
-  const auto depth = [](const Turning& run) { return std::ranges::max(run.penetration_m); };
-  const auto exhausted = [](const Turning& run) { return std::ranges::max(run.exhausted); };
+  const auto depth = [](const Turning& run) { return max_of(run.penetration_m); };
+  const auto exhausted = [](const Turning& run) { return max_of(run.exhausted); };
   const std::string figure = "6.3-angles";
   return {
       claim_at_most(figure, "up to 10 deg the tool follows: maximum lag", "-",

@@ -6,6 +6,7 @@
 
 #include "analysis/measures/force_change_measures.h"
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
@@ -160,12 +161,11 @@ double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& ho
   return count / all;
 }
 
-// Among the ticks in which no frame came in; a NaN is larger than anything.
+// Largest penetration of the tool over the ticks without a new frame; NaN if one of them has no value.
 double deepest_m(const Trace& trace) {
   double deepest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (!trace.frame_update(i) && !(trace.tool_penetration_m[i] <= deepest))
-      deepest = trace.tool_penetration_m[i];
+    if (!trace.frame_update(i)) deepest = max_or_nan(deepest, trace.tool_penetration_m[i]);
   return deepest;
 }
 
@@ -222,7 +222,7 @@ Table summary_table(const std::vector<TouchRun>& runs) {
   add("ticks", "1", [](T t) { return static_cast<double>(t.length()); });
   add("most points that touch at once", "1", [&](T t) { return max(t.contact_count); });
   add("most active constraints at once", "1", [&](T t) { return max(t.active_constraints); });
-  add("deepest point at the end of any tick", "m", [&](T t) { return max(t.tool_penetration_m); });
+  add("deepest point at the end of any tick", "m", [&](T t) { return max_of(t.tool_penetration_m); });
   add("ticks that used up their detections", "1", [](T t) {
     return static_cast<double>(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1));
   });

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/hue_masks.h"
 
@@ -93,7 +94,7 @@ MaskNumbers measure_mask(const PointCloud& cloud, const std::vector<char>& picke
   numbers.mean_to_point_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < picked.size(); ++i)
     if (picked[i])
-      numbers.mean_to_point_m = std::min(numbers.mean_to_point_m, (cloud.point(i) - mean).norm());
+      numbers.mean_to_point_m = min_or_nan(numbers.mean_to_point_m, (cloud.point(i) - mean).norm());
   return numbers;
 }
 
@@ -125,7 +126,7 @@ double wander_m(const Scenario& scenario, const FixtureRule& rule) {
   }
   double max = 0;
   for (const Vec3& a : means)
-    for (const Vec3& b : means) max = std::max(max, (a - b).norm());
+    for (const Vec3& b : means) max = max_or_nan(max, (a - b).norm());
   return max;
 }
 
@@ -157,7 +158,7 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
   }
   const auto min = [&](auto&& of) {
     double value = std::numeric_limits<double>::infinity();
-    for (const MaskNumbers& n : numbers) value = std::min(value, of(n));
+    for (const MaskNumbers& n : numbers) value = min_or_nan(value, of(n));
     return value;
   };
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/evaluation/figures/valve_task.h"
@@ -33,14 +34,14 @@ double max_free_force_N(const Trace& t) {
   double max = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
     if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0)
-      max = std::max(max, t.force_N[i].norm());
+      max = max_or_nan(max, t.force_N[i].norm());
   return max;
 }
 
 double max_torque_Nm(const Trace& t, double from_s, double until_s) {
   double max = 0;
   for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
-    max = std::max(max, t.torque_Nm[i].norm());
+    max = max_or_nan(max, t.torque_Nm[i].norm());
   return max;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/evaluation/figures/valve_task.h"
@@ -50,7 +51,7 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
                        t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N"));
   claim(claim_at_most(name, words + "force at the end", "decays", residual_N(t), 0.2, "N"));
   claim(claim_at_most(name, words + "torque about the handle's y and z at the end", "-",
-                      std::max(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
+                      max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
   claim(claim_at_least(name, words + "least distance of the tool's mesh to the true left valve", "-",
                        min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);

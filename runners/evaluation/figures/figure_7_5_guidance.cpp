@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 
@@ -66,16 +67,14 @@ Figure figure_7_5_guidance(const FigureContext& context) {
   const std::string name = "7.5-guidance";
   figure.claims = {
       claim_at_most(name, "distance from the goal at the end, all runs", "-",
-                    std::max(std::ranges::max(six.error_mm), std::ranges::max(five.error_mm)), 2, "mm"),
-      claim_at_most(name, "six motors: angle to the goal at the end", "-", std::ranges::max(six.error_deg),
-                    0.1, "deg"),
+                    max_or_nan(max_of(six.error_mm), max_of(five.error_mm)), 2, "mm"),
+      claim_at_most(name, "six motors: angle to the goal at the end", "-", max_of(six.error_deg), 0.1, "deg"),
       claim_at_least(name, "five motors: angle to the goal at the end, minimum of the runs", "-",
-                     std::ranges::min(five.error_deg), 20, "deg"),
+                     min_of(five.error_deg), 20, "deg"),
       claim_at_most(name, "five motors: how much that angle depends on the stiffness", "-",
-                    std::ranges::max(five.error_deg) - std::ranges::min(five.error_deg), 1, "deg"),
+                    max_of(five.error_deg) - min_of(five.error_deg), 1, "deg"),
       claim_at_least(name, "gap between the tool and the forbidden region, minimum of all ticks", "-",
-                     std::min(std::ranges::min(six.clearance_mm), std::ranges::min(five.clearance_mm)), -0.1,
-                     "mm")};
+                     min_or_nan(min_of(six.clearance_mm), min_of(five.clearance_mm)), -0.1, "mm")};
   return figure;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/statistics/extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
@@ -51,7 +52,7 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
       const Vec3 p_W = cloud.point(k);
       if (!((p_W - t.proxy_position_m[i]).norm() < task.tool->reach_m + min)) continue;
       const Vec3 p_T = t.tool_orientation[i].conjugate() * (p_W - t.proxy_position_m[i]);
-      for (const Vec3& vertex : task.tool->mesh.vertices) min = std::min(min, (vertex - p_T).norm());
+      for (const Vec3& vertex : task.tool->mesh.vertices) min = min_or_nan(min, (vertex - p_T).norm());
     }
   }
   return min;
@@ -64,7 +65,7 @@ double goal_wander_m(const Trace& t) {
   for (std::size_t i = 0; i < t.length(); ++i) {
     if (!t.guidance_active[i]) continue;
     if (!first.allFinite()) first = t.guidance_goal_m[i];
-    wander = std::max(wander, (t.guidance_goal_m[i] - first).norm());
+    wander = max_or_nan(wander, (t.guidance_goal_m[i] - first).norm());
   }
   return wander;
 }

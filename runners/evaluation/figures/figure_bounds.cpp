@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/bound_agreement.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
@@ -133,12 +134,9 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
       claim_at_most("bounds", "noise-free lifts at 4.6 m/s^2 that survived, 64 grid phases",
                     "a < 4.491 (4.14)", phases.survived_high, 0, "fraction"),
       claim_between("bounds", "smallest critical acceleration over the phases, in units of (4.14)",
-                    "1 (4.14)",
-                    *std::min_element(survives.begin(), survives.end()) / critical_acceleration(kLift),
-                    kMinRatio, kMaxRatio, "1"),
+                    "1 (4.14)", min_of(survives) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1"),
       claim_between("bounds", "largest critical acceleration over the phases, in units of (4.14)", "1 (4.14)",
-                    *std::max_element(pops.begin(), pops.end()) / critical_acceleration(kLift), kMinRatio,
-                    kMaxRatio, "1"),
+                    max_of(pops) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1"),
       claim_at_most("bounds", "refitted thickness against (4.23), rms up to 2 r_c", "(4.23)",
                     rms_from_print(thickness), 3e-4, "m"),
       claim_between("bounds", "refitted normal error at 2 r_c, in what the printed digits of (4.24) allow",

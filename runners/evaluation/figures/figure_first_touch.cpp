@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/statistics/extremes.h"
 #include "analysis/theory/first_touch.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
@@ -39,13 +40,13 @@ struct Losses {
   double max_lost_up_to(double limit_m_per_s) const {
     double max = 0;
     for (std::size_t i = 0; i < lost.size(); ++i)
-      if (speed_m_per_s[i] <= limit_m_per_s) max = std::max(max, lost[i]);
+      if (speed_m_per_s[i] <= limit_m_per_s) max = max_or_nan(max, lost[i]);
     return max;
   }
   double min_lost_above(double limit_m_per_s) const {
     double min = 1;
     for (std::size_t i = 0; i < lost.size(); ++i)
-      if (speed_m_per_s[i] > limit_m_per_s) min = std::min(min, lost[i]);
+      if (speed_m_per_s[i] > limit_m_per_s) min = min_or_nan(min, lost[i]);
     return min;
   }
   // Speeds at which the formula lies between 0 and 1.

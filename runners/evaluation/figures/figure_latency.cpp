@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 
 namespace remote_touch {
@@ -27,8 +28,8 @@ Violation violation(const Trace& trace) {
   double min = std::numeric_limits<double>::infinity(), settled = min;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const double distance = trace.slave_distance_m[i];
-    min = std::min(min, distance);
-    if (trace.time_s[i] >= kSettled_s) settled = std::min(settled, distance);
+    min = min_or_nan(min, distance);
+    if (trace.time_s[i] >= kSettled_s) settled = min_or_nan(settled, distance);
   }
   return {kLatencyRadius_m + kContactRadius_m - min, kLatencyRadius_m + kContactRadius_m - settled};
 }
@@ -107,7 +108,7 @@ Table spread_table(const std::string& axis, const std::string& unit, double scal
     double sum = 0, sum_ahead = 0, max = 0;
     for (std::size_t run = cell * replicates; run < (cell + 1) * replicates; ++run) {
       sum += m.plain[run].max_m, sum_ahead += m.ahead[run].settled_m;
-      max = std::max(max, m.plain[run].max_m);
+      max = max_or_nan(max, m.plain[run].max_m);
     }
     place.push_back(scale * m.axis(0)[cell]);
     mean.push_back(1e3 * sum / m.plan.replicates), highest.push_back(1e3 * max);
@@ -191,7 +192,7 @@ double max_error(const Table& map, double limit_mm, Error&& error) {
   const auto& predicted = numbers(map, "predicted");
   double max = 0;
   for (std::size_t i = 0; i < predicted.size(); ++i)
-    if (predicted[i] < limit_mm) max = std::max(max, error(i));
+    if (predicted[i] < limit_mm) max = max_or_nan(max, error(i));
   return max;
 }
 
@@ -207,8 +208,8 @@ double fraction_known(const Table& map) {
 double max_outside(const Table& jitter) {
   double max = 0;
   for (std::size_t i = 0; i < numbers(jitter, "max").size(); ++i)
-    max = std::max({max, numbers(jitter, "max")[i] - numbers(jitter, "all_late")[i],
-                    numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]});
+    max = max_or_nan(max, max_or_nan(numbers(jitter, "max")[i] - numbers(jitter, "all_late")[i],
+                                     numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]));
   return max;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {
@@ -219,10 +220,10 @@ std::vector<Claim> predecessor_claims(const std::vector<Predecessor>& list) {
   double max_apart = 0, least = 1e9, most = 0;
   const Predecessor* fast = nullptr;
   for (const Predecessor& p : list) {
-    max_apart = std::max(max_apart, std::abs(critical_rc_per_s(p) - expected_rc_per_s(p)));
+    max_apart = max_or_nan(max_apart, std::abs(critical_rc_per_s(p) - expected_rc_per_s(p)));
     if (p.steps == kFastSteps && p.step_m > 0.9e-4) fast = &p;
     if (std::abs(expected_rc_per_s(p) - kPrinted_rc_per_s) > 1e-9) continue;
-    least = std::min(least, critical_rc_per_s(p)), most = std::max(most, critical_rc_per_s(p));
+    least = min_or_nan(least, critical_rc_per_s(p)), most = max_or_nan(most, critical_rc_per_s(p));
   }
   // A fixed step of 0.1 mm leaves the proxy that much too low, it sinks 0.11 mm between four points, and the
   // bisection ends 0.16 r_c/s wide; a lag of r_1 in 3.5 s is 0.3 r_c/s more.

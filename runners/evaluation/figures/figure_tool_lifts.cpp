@@ -2,6 +2,7 @@
 // what do thickness, tilt, rotation and noise do to that? Simulated; not in the dissertation.
 #include <algorithm>
 
+#include "analysis/statistics/extremes.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
@@ -123,10 +124,10 @@ std::vector<Claim> lift_claims(const Table& lifts, const Table& tilts, const Tab
       claim_bounded(turns, continuous, continuous, "by the continuous rule at all that was tried"),
       claim_at_least(kLiftFigure,
                      "noise up to 4 mm does not lower the acceleration carried as printed: minimum", "-",
-                     std::ranges::min(printed) - printed.front(), 0, "m/s^2"),
+                     min_of(printed) - printed.front(), 0, "m/s^2"),
       claim_at_least(kLiftFigure,
                      "by the continuous rule, noise up to 2 mm: acceleration that is always carried", "-",
-                     *std::min_element(ours.begin(), ours.end() - 1), 14, "m/s^2")};
+                     min_of(std::span(ours).first(ours.size() - 1)), 14, "m/s^2")};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/proportion.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/pop_through_map.h"
@@ -178,7 +179,7 @@ double max_ratio(const Table& table, const std::string& what) {
   const auto &ours = numbers(table, "tracked" + what), &with = numbers(table, "look_ahead" + what),
              &without = numbers(table, "look_ahead_plain" + what);
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / std::fmin(with[i], without[i]));
+  for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / min_or_nan(with[i], without[i]));
   return max_of(ratios);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/measures/segmentation.h"
+#include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/hue_masks.h"
 #include "scenarios/camera/valve_tank.h"
@@ -133,14 +134,14 @@ double max_rise(const std::vector<Level>& levels, std::size_t k,
                 double (SegmentationScore::*fraction)() const) {
   double rise = 0;
   for (std::size_t i = 1; i < levels.size(); ++i)
-    rise = std::max(rise, (levels[i].score[k].*fraction)() - (levels[i - 1].score[k].*fraction)());
+    rise = max_or_nan(rise, (levels[i].score[k].*fraction)() - (levels[i - 1].score[k].*fraction)());
   return rise;
 }
 
 double min_precision(const std::vector<Level>& levels, std::size_t k) {
   double min = 1;
   for (const Level& level : levels)
-    if (level.score[k].picked() >= kEnoughPicked) min = std::min(min, level.score[k].precision());
+    if (level.score[k].picked() >= kEnoughPicked) min = min_or_nan(min, level.score[k].precision());
   return min;
 }
 

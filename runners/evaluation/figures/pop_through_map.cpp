@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/proportion.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -89,10 +90,7 @@ Claim claim_agrees(const std::string& figure, const std::string& claim, const st
 double max_apart(const Table& table) {
   const std::vector<double>& values = numbers(table, "apart");
   double max = values.empty() ? std::nan("") : 0;  // nothing that was compared is no agreement
-  for (const double apart : values) {
-    if (std::isnan(apart)) return apart;
-    max = std::max(max, std::abs(apart));
-  }
+  for (const double apart : values) max = max_or_nan(max, std::abs(apart));
   return max;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/region_tree.h"
 #include "core/geometry/rotation.h"
@@ -202,9 +203,8 @@ void add_task_claims(Figure& figure, const ValveTask& task) {
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   claim(claim_at_most(figure.name, task.words + ": ticks with a number that is not finite", "-",
                       non_finite_fraction(t), 0, "fraction"));
-  claim(claim_at_most(
-      figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick", "very small",
-      *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()), kSettled_m, "m"));
+  claim(claim_at_most(figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick",
+                      "very small", max_of(t.tool_penetration_m), kSettled_m, "m"));
 }
 
 }  // namespace remote_touch

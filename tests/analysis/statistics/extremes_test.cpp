@@ -1,0 +1,30 @@
+#include "analysis/statistics/extremes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace remote_touch::extremes_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Extremes, AreTheLargestAndTheSmallestValue) {
+  EXPECT_EQ(max_of(std::vector<double>{-3, 2, -7}), 2);
+  EXPECT_EQ(min_of(std::vector<double>{-3, 2, -7}), -7);
+  EXPECT_EQ(max_or_nan(-3, -7), -3);
+  EXPECT_EQ(min_or_nan(-3, -7), -7);
+}
+
+TEST(Extremes, AreNanIfAValueIsNanOrMissing) {
+  EXPECT_TRUE(std::isnan(max_of({})) && std::isnan(min_of({})));
+  for (const std::vector<double>& values :
+       {std::vector<double>{kNan, 1}, {1, kNan}, {1, kNan, 2}, {2, kNan, 1}})
+    EXPECT_TRUE(std::isnan(max_of(values)) && std::isnan(min_of(values)));
+  EXPECT_TRUE(std::isnan(max_or_nan(1, kNan)) && std::isnan(max_or_nan(kNan, 1)));
+  EXPECT_TRUE(std::isnan(min_or_nan(1, kNan)) && std::isnan(min_or_nan(kNan, 1)));
+}
+
+}  // namespace
+}  // namespace remote_touch::extremes_test
