@@ -8,6 +8,8 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
+#include "core/parameters/unit.h"
+#include "runners/experiment/catalog/sections.h"
 
 namespace remote_touch {
 
@@ -114,20 +116,41 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }
 
-std::string unit_of(const std::string& name) {
-  static constexpr std::pair<const char*, const char*> kEndings[] = {
-      {"_m_per_s2", "m/s^2"}, {"_m_per_s", "m/s"}, {"_N_per_m", "N/m"},
-      {"_Ns_per_m", "N s/m"}, {"_hz", "Hz"},       {"_deg", "deg"},
-      {"_px", "px"},          {"_s", "s"},         {"_m", "m"}};
-  for (const auto& [ending, unit] : kEndings)
-    if (name.size() > std::string(ending).size() && name.ends_with(ending)) return unit;
-  return "1";
+bool is_index(const std::string& key) {
+  return key.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// Returns the name of a column of Rows, which has a unit of its own: "ry_deg" for "trajectory.poses.2.4".
+// Empty if the path does not lead to one.
+std::string column_of_rows(const std::vector<std::string>& keys) {
+  const std::size_t n = keys.size();
+  if (n < 4 || !is_index(keys[n - 2]) || !is_index(keys[n - 1]) || keys[n - 1].size() > 2) return {};
+  const auto place = std::stoul(keys[n - 1]);
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (section.key != keys[0]) continue;
+    for (const SectionEntry& entry : section.entries()) {
+      const auto owner = entry.make();
+      for (const Parameter& p : owner->settings())
+        if (const auto* rows = std::get_if<Rows>(&p.value); p.name == keys[n - 3] && rows)
+          return place < rows->columns.size() ? rows->columns[place] : "";
+    }
+  }
+  return {};
+}
+
+// Returns the unit of the parameter; that of an element of a vector ends the vector's name.
+std::string unit_of_path(const std::string& parameter) {
+  const std::vector<std::string> keys = path_keys(parameter);
+  std::string named = column_of_rows(keys);
+  if (named.empty()) named = is_index(keys.back()) && keys.size() > 1 ? keys[keys.size() - 2] : keys.back();
+  const Unit* const unit = unit_of(named);
+  return unit ? unit->text : "1";
 }
 
 }  // namespace
 
 Column SweepAxis::column() const {
-  Column column{name(), unit_of(name()), parameter, {}, 1, {}};
+  Column column{name(), unit_of_path(parameter), parameter, {}, 1, {}};
   if (std::all_of(values.begin(), values.end(), is_double)) {
     std::vector<double> numbers;
     for (const Json& value : values) numbers.push_back(value.get<double>());

@@ -17,7 +17,7 @@ struct SweepAxis {
   std::string definition;    // complete JSON, as in a file
 
   // The dimension scale: numbers, or an enumeration of the values' texts. Its name is the last part of the
-  // path, its unit the one that ends that name.
+  // path, its unit the one that ends the name of the parameter (or of its column, in a list of rows).
   Column column() const;
   std::string name() const { return parameter.substr(parameter.rfind('.') + 1); }
 };

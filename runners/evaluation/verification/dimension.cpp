@@ -12,25 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-struct Unit {
-  const char* ending;
-  Dimension dimension;
-};
-
-// The first that fits counts: "_N_per_m" stands before "_per_m". The last two are words for pure numbers.
-constexpr Unit kUnits[] = {
-    {"_m_per_s2", {1, -2, 0}}, {"_m_per_s", {1, -1, 0}}, {"_N_per_m", {-1, 0, 1}},
-    {"_Ns_per_m", {-1, 1, 1}}, {"_N_per_s", {0, -1, 1}}, {"_deg_per_s", {0, -1, 0}},
-    {"_per_m", {-1, 0, 0}},    {"_per_s", {0, -1, 0}},   {"_m", {1, 0, 0}},
-    {"_s", {0, 1, 0}},         {"_hz", {0, -1, 0}},      {"_Nm", {1, 0, 1}},
-    {"_N", {0, 0, 1}},         {"_Ns", {0, 1, 1}},       {"_kg", {-1, 2, 1}},
-    {"_deg", {0, 0, 0}},       {"_rad", {0, 0, 0}},      {"_px", {0, 0, 0}},
-    {"_fraction", {0, 0, 0}},  {"_ratio", {0, 0, 0}},    {"_probability", {0, 0, 0}},
-};
-
 std::optional<Dimension> known_dimension(const std::string& name) {
-  for (const Unit& unit : kUnits)
-    if (name.ends_with(unit.ending)) return unit.dimension;
+  if (const Unit* const unit = unit_of(name)) return unit->dimension;
   if (name.find('_') == std::string::npos) return Dimension{};
   return std::nullopt;
 }
@@ -86,7 +69,7 @@ double UnitChange::factor(const Dimension& dimension) const {
 Dimension dimension_of(const std::string& name) {
   if (const auto dimension = known_dimension(name)) return *dimension;
   std::string endings;
-  for (const Unit& unit : kUnits) endings += std::string(" ") + unit.ending;
+  for (const Unit& unit : known_units()) endings += std::string(" ") + unit.ending;
   throw InputError(name,
                    "ends in no known unit: expected" + endings + ", or no underscore for a pure number");
 }

@@ -5,16 +5,9 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
+#include "core/parameters/unit.h"
 
 namespace remote_touch {
-
-// Powers of metre, second and newton.
-struct Dimension {
-  int length = 0;
-  int time = 0;
-  int force = 0;
-  bool operator==(const Dimension&) const = default;
-};
 
 // Factors by which every length, time and force is multiplied.
 struct UnitChange {
@@ -27,7 +20,7 @@ struct UnitChange {
 
 // The dimension of a number with that name: "r1_m" is {1, 0, 0}, "damping_Ns_per_m" {-1, 1, 1}, "gamma",
 // which has no underscore, a pure number. Throws InputError, about that name, for an ending that is not in
-// the table in dimension.cpp: a wrong guess would make every check by units worthless.
+// known_units(): a wrong guess would make every check by units worthless.
 Dimension dimension_of(const std::string& name);
 
 // Multiplies every number by its factor, each column of Rows by its own. Choices, texts, switches and

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
+#include "core/parameters/unit.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "tests/support/test_files.h"
@@ -133,13 +134,8 @@ bool carries_unit(const std::string& name) {
                                               "rotational_stiffness_ratio",
                                               "stiffness_ratio",
                                               "neighbours"};
-  static const char* const kUnits[] = {"_probability", "_fraction", "_m",          "_s",          "_hz",
-                                       "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",
-                                       "_Ns_per_m",    "_m_per_s",  "_m_per_s2",   "_N",          "_Nm",
-                                       "_kg",          "_kg_m2",    "_Nm_per_rad", "_Nms_per_rad"};
   if (name == "value") return true;  // of a change: the unit of the parameter that changes
-  return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
-                                             [&](const char* unit) { return name.ends_with(unit); });
+  return kPure.contains(name) || unit_of(name) != nullptr;
 }
 
 TEST(Parameters, NumbersCarryTheirUnit) {
