@@ -50,6 +50,10 @@ class FaultySensor final : public Scenario {
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }
   const Scenario& without_faults() const override { return *scenario_; }
+  std::vector<Phase> phases() const override { return scenario_->phases(); }
+  std::string input() const override { return scenario_->input(); }
+  std::vector<Note> input_notes() const override { return scenario_->input_notes(); }
+  std::optional<RigidTransform> sensor_pose() const override { return scenario_->sensor_pose(); }
   std::optional<double> arrives_s(int frame) const override;
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
     return scenario_->fixtures_off(seen(frame));

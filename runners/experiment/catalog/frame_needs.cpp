@@ -99,7 +99,7 @@ void check_renderer(const ExperimentConfiguration& configuration, const std::vec
 // axes of a camera.
 void check_view(const std::string& path, const Vec3& view, const Vec3& by_default, const Scenario& scenario) {
   constexpr double kMinCosine = 0.5;  // surfaces that face the one direction mostly face the other
-  const std::optional<RigidTransform> sensor = scenario.without_faults().sensor_pose();
+  const std::optional<RigidTransform> sensor = scenario.sensor_pose();
   if (!sensor || view != by_default) return;
   const Vec3 looks_W = sensor->linear().col(2);
   if (view.normalized().dot(looks_W) < kMinCosine)
@@ -113,7 +113,7 @@ void check_view(const std::string& path, const Vec3& view, const Vec3& by_defaul
 // The plane of a target faces the sensor, which is at the origin where there is no image.
 void check_plane(const ExperimentConfiguration& configuration, const Scenario& scenario) {
   if (!configuration.guidance || configuration.guidance->orientation != GuidedOrientation::plane) return;
-  const std::optional<RigidTransform> sensor = scenario.without_faults().sensor_pose();
+  const std::optional<RigidTransform> sensor = scenario.sensor_pose();
   if (!sensor || !sensor->translation().isZero(0))
     throw InputError("guidance.orientation = \"plane\"",
                      "needs to know where the sensor is, and the frames are not images: "

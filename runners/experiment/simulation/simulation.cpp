@@ -170,7 +170,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   }
   if (options.report) {
     const double end_s = static_cast<double>(ticks) / experiment.settings().haptic_rate_hz;
-    *options.report = report_of(scenario->without_faults(), *trajectory, trace, end_s);
+    *options.report = report_of(*scenario, *trajectory, trace, end_s);
     std::vector<Note>& notes = options.report->notes;
     add_missed_phases(experiment.phases(), end_s, notes);
     add_missed_phases(experiment.operator_phases(), end_s, notes);

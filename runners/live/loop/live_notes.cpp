@@ -48,7 +48,7 @@ std::vector<Phase> simulated_phases(const Experiment& experiment, const std::str
   };
   if (!is_simulated(device) && !is_simulated(depth)) return phases;
   const auto scenario = experiment.build_scenario(kernels);
-  if (is_simulated(depth)) add(scenario->without_faults().phases());
+  if (is_simulated(depth)) add(scenario->phases());
   if (is_simulated(device)) {
     add(experiment.build_trajectory(*scenario)->phases());
     add(experiment.operator_phases());

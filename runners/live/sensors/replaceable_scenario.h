@@ -40,9 +40,7 @@ class ReplaceableScenario final : public Scenario {
   int frame_count() const override { return shown_->now()->frame_count(); }
   double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
   bool ends() const override { return shown_->now()->ends(); }
-  std::optional<RigidTransform> sensor_pose() const override {
-    return shown_->now()->without_faults().sensor_pose();
-  }
+  std::optional<RigidTransform> sensor_pose() const override { return shown_->now()->sensor_pose(); }
   std::optional<double> arrives_s(int frame) const override { return shown_->now()->arrives_s(frame); }
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
     return shown_->now()->fixtures_off(frame);

@@ -41,6 +41,32 @@ TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
   }
 }
 
+// A recording that was cut short, seen by a sensor far away.
+class Recorded final : public Scenario {
+ public:
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 1; }
+  std::vector<Phase> phases() const override { return {{"the lift", 1, 2}}; }
+  std::string input() const override { return "one frame"; }
+  std::vector<Note> input_notes() const override { return {{"cut short", "it ends early"}}; }
+  std::optional<RigidTransform> sensor_pose() const override {
+    return RigidTransform(Eigen::Translation3d(0, 5, 0));
+  }
+  std::shared_ptr<const NeighbourSearch> points(int) const override { return make_search({}); }
+  PointCloud cloud(int) const override { return {}; }
+  double signed_distance(const Vec3&, double) const override { return 0; }
+};
+
+TEST(SensorFaults, KeepWhatTheScenarioReports) {
+  const FaultySensor sensor = faulty({}, std::make_unique<Recorded>());
+  ASSERT_EQ(sensor.phases().size(), 1u);
+  EXPECT_EQ(sensor.phases()[0].name, "the lift");
+  EXPECT_EQ(sensor.input(), "one frame");
+  ASSERT_EQ(sensor.input_notes().size(), 1u);
+  EXPECT_EQ(sensor.input_notes()[0].kind, "cut short");
+  EXPECT_EQ(sensor.sensor_pose().value().translation().y(), 5);
+}
+
 TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
   const Experiment plain = Experiment::load("fig4.12", {"duration_s=0.6"});
   const Experiment with = Experiment::load("fig4.12", {"duration_s=0.6", "faults={}"});
