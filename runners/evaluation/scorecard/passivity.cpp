@@ -1,6 +1,7 @@
 #include "runners/evaluation/scorecard/passivity.h"
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -31,19 +32,29 @@ Method with(const Method& method, const char* parameter, const Json& value, cons
 }  // namespace
 
 std::vector<Method> force_laws_of(const Method& method) {
+  std::vector<Method> laws;
+  std::set<std::string> complete_laws;
+  const auto add = [&](Method law) {
+    if (complete_laws.insert(complete(parse_json(law.renderer, law.name)).dump()).second)
+      laws.push_back(std::move(law));
+  };
   const Json own = complete(parse_json(method.renderer, method.name));
-  std::vector<Method> laws = {method};
+  add(method);
   // The velocity term is zero without an estimate, whatever its sign.
   if (own.contains("velocity_force") && own.value("velocity_estimate", true))
-    for (const char* sign : {"plus", "none"})
-      laws.push_back(with(method, "velocity_force", sign, std::string("v_") + sign));
+    for (const char* sign : {"minus", "plus", "none"})
+      add(with(method, "velocity_force", sign, std::string("v_") + sign));
   if (!own.contains("damping_Ns_per_m")) return laws;
-  const std::vector<Method> undamped = laws;
-  for (const Method& law : undamped) laws.push_back(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
+  const std::vector<Method> with_own_damper = laws;
+  for (const Method& law : with_own_damper) {
+    add(with(law, "damping_Ns_per_m", 0.0, "k_d0"));
+    add(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
+  }
   if (!own.contains("damping_sign")) return laws;
-  for (const Method& law : undamped)
-    laws.push_back(
-        with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", "minus", "k_d_minus"));
+  for (const Method& law : with_own_damper)
+    for (const char* sign : {"plus", "minus"})
+      add(with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", sign,
+               std::string("k_d_") + sign));
   return laws;
 }
 

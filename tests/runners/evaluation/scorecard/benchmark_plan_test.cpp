@@ -272,5 +272,20 @@ TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {
     }
 }
 
+// Whatever the method's own law is, it and each other one are there once.
+TEST(ForceLaws, AreTheSameForMethodsThatDifferInTheirLaw) {
+  const Method proxy = chosen_methods({"proxy"}).front();
+  for (const char* const own :
+       {R"({"velocity_force": "plus"})", R"({"velocity_force": "none", "damping_Ns_per_m": 3})",
+        R"({"damping_Ns_per_m": 3, "damping_sign": "minus"})"}) {
+    Json renderer = Json::parse(proxy.renderer);
+    renderer.update(Json::parse(own));
+    const Method changed{"changed", "a changed proxy", renderer.dump()};
+    std::set<std::string> names;
+    for (const Method& law : force_laws_of(changed)) EXPECT_TRUE(names.insert(law.name).second) << law.name;
+    EXPECT_EQ(names.size(), 9u) << own;
+  }
+}
+
 }  // namespace
 }  // namespace remote_touch::benchmark_plan_test
