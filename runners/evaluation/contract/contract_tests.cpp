@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/parameters/input_error.h"
 #include "runners/evaluation/contract/checks.h"
+#include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
 
@@ -54,9 +57,12 @@ void check_settings(Configurable& factory) {
   for (const Parameter& p : factory.settings()) {
     EXPECT_TRUE(names.insert(p.name).second) << "a setting called " << p.name << ": expected another name";
     EXPECT_FALSE(p.help.empty()) << p.name << ": expected a line of help";
-    if (const auto* number = std::get_if<double*>(&p.value)) {
-      EXPECT_TRUE(p.low <= **number && **number <= p.high)
-          << p.name << " = " << **number << ": expected " << p.low << " to " << p.high;
+    Json value = Json::object();
+    write_parameters({p}, value);
+    try {
+      read_parameters(value, {p}, "");
+    } catch (const InputError& error) {
+      ADD_FAILURE() << error.what();
     }
   }
   EXPECT_EQ(factory.validate(), "");

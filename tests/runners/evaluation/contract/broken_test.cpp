@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <memory>
 
 #include "core/search/neighbour_search.h"
 #include "runners/evaluation/contract/checks.h"
@@ -36,6 +37,7 @@ enum class Mistake {
   force_in_free_space,
   counts_its_steps,
   allocates,
+  allocates_aligned,
   soft,
   forgets_no_frame,
   blind,
@@ -55,10 +57,24 @@ double max_stiffness_N_per_m(const SpringSettings& s) {
   return s.stiffness_N_per_m;
 }
 
-template <Mistake kMistake>
+// Defaults outside their ranges.
+struct ManySteps : SpringSettings {
+  int steps = 5;
+};
+Parameters parameters(ManySteps& s) {
+  return {{"steps", &s.steps, 0, 3, "number of steps"}};
+}
+struct LongDirection : SpringSettings {
+  Vec3 direction{0, 2, 0};
+};
+Parameters parameters(LongDirection& s) {
+  return {{"direction", &s.direction, -1, 1, "a direction"}};
+}
+
+template <Mistake kMistake, class SettingsOfIt = SpringSettings>
 class Spring final : public Renderer {
  public:
-  using Settings = SpringSettings;
+  using Settings = SettingsOfIt;
   Spring(const Settings& settings, double, const Kernels&) : settings_(settings) {}
   void on_frame(const Frame& frame) override { index_ = frame.index; }
   RenderOutput step(const DeviceState& device, double) override {
@@ -66,6 +82,7 @@ class Spring final : public Renderer {
     const double depth_m = std::max(0.0, 0.005 - device.position_W.y());
     ++steps_;
     if (kMistake == Mistake::allocates) kept_.assign(static_cast<std::size_t>(steps_), 1.0);
+    if (kMistake == Mistake::allocates_aligned) aligned_ = std::make_unique<Aligned>();
     out.frame_index = index_;
     out.proxy_W = device.position_W;
     if (index_ < 0 && kMistake != Mistake::forgets_no_frame) out.status = RenderStatus::no_frame;
@@ -89,12 +106,16 @@ class Spring final : public Renderer {
   Settings settings_;
   int index_ = -1, steps_ = 0;
   std::vector<double> kept_;
+  struct alignas(64) Aligned {
+    double value = 0;
+  };
+  std::unique_ptr<Aligned> aligned_;
 };
 
-template <Mistake kMistake>
+template <Mistake kMistake, class Settings = SpringSettings>
 Names broken_by() {
-  return broken_rules(renderer_entry<Spring<kMistake>>("spring", DegreesOfFreedom::three,
-                                                       ContactModel::nothing, "a spring above a plane"),
+  return broken_rules(renderer_entry<Spring<kMistake, Settings>>(
+                          "spring", DegreesOfFreedom::three, ContactModel::nothing, "a spring above a plane"),
                       renderer_checks());
 }
 
@@ -110,10 +131,16 @@ TEST(BrokenRenderer, EachMistakeIsFound) {
   EXPECT_TRUE(has(broken_by<Mistake::force_in_free_space>(), "NoForceInFreeSpace"));
   EXPECT_TRUE(has(broken_by<Mistake::counts_its_steps>(), "SameInputSameBits"));
   EXPECT_TRUE(has(broken_by<Mistake::allocates>(), "AStepAllocatesNothing"));
+  EXPECT_TRUE(has(broken_by<Mistake::allocates_aligned>(), "AStepAllocatesNothing"));
   EXPECT_TRUE(has(broken_by<Mistake::soft>(), "IsAsStiffAsItSays"));
   EXPECT_TRUE(has(broken_by<Mistake::forgets_no_frame>(), "WithoutAFrameTheProxyIsTheHip"));
   EXPECT_TRUE(has(broken_by<Mistake::blind>(), "PushesTheHandOutOfTheSurface"));
   EXPECT_TRUE(has(broken_by<Mistake::six>(), "HasAsManyDegreesOfFreedomAsItsEntrySays"));
+}
+
+TEST(BrokenRenderer, DefaultsOfEveryKindAreInTheirRanges) {
+  EXPECT_TRUE(has(broken_by<Mistake::none, ManySteps>(), "ItsDefaultsAreValid"));
+  EXPECT_TRUE(has(broken_by<Mistake::none, LongDirection>(), "ItsDefaultsAreValid"));
 }
 
 // --- scenarios: a flat grid with one mistake ---
