@@ -47,7 +47,7 @@ namespace {
 
 // True for images, meshes of tools and live sessions. A recording of frames is not made from such files.
 bool is_single_file(const fs::path& file) {
-  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5"};
+  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5", ".oni"};
   return std::any_of(kEndings.begin(), kEndings.end(),
                      [&](const char* ending) { return has_ending(file, ending); });
 }

@@ -13,6 +13,7 @@
 #include "runners/live/sensors/realsense_camera.h"
 #include "runners/live/sensors/scenario_camera.h"
 #include "scenarios/recordings/recorded_scene.h"
+#include "scenarios/text_files/file_ending.h"
 
 namespace remote_touch {
 
@@ -109,7 +110,9 @@ std::span<const SensorEntry> sensors() {
 
 std::vector<RecordingPart> sensor_inputs(const std::string& text) {
   const Uri uri = parse_uri("--depth", text);
-  if (!find_scheme(sensors(), "--depth", uri).reads_recording || uri.address.empty()) return {};
+  const bool reads_recording =
+      find_scheme(sensors(), "--depth", uri).reads_recording || has_ending(uri.address, ".oni");
+  if (!reads_recording || uri.address.empty()) return {};
   return {{uri.address}};
 }
 

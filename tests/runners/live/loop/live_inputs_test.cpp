@@ -34,6 +34,8 @@ TEST(LiveInputs, NameTheSourceOfTheDepth) {
     EXPECT_EQ(paths("fd:0", scheme + "seen"), (Paths{"ball.obj", "seen"})) << scheme;
   EXPECT_EQ(paths("fd:0", "sim:"), (Paths{"ball.obj", "scene"}));
   EXPECT_EQ(paths("fd:0", "k4a:0"), Paths{"ball.obj"});
+  EXPECT_EQ(paths("fd:0", "oni:any"), Paths{"ball.obj"});
+  EXPECT_EQ(paths("fd:0", "oni:seen.oni"), (Paths{"ball.obj", "seen.oni"}));
 }
 
 TEST(LiveInputs, NameTheSceneInWhichAHandIsPlanned) {
