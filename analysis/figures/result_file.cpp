@@ -7,14 +7,6 @@
 
 namespace remote_touch {
 
-TextAttributes provenance_of(const TextAttributes& attributes) {
-  TextAttributes kept;
-  for (const auto& [name, value] : attributes)
-    if (name != "schema" && name != "digest" && name != "default" && name != "columns")
-      kept.emplace_back(name, value);
-  return kept;
-}
-
 namespace {
 // Returns the names of the columns in the order of the digest. The file has its datasets in another order.
 std::string names(const std::vector<Column>& columns) {

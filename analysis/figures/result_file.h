@@ -10,9 +10,6 @@
 
 namespace remote_touch {
 
-// The root attributes of a result that describe its provenance: all that its writer does not add itself.
-TextAttributes provenance_of(const TextAttributes& attributes);
-
 // columns: of Trace::columns(). provenance: config, command, version and so on, as root attributes. Adds
 // schema, digest and the names of the columns in order. step_duration_s: wall clock of each tick, stored
 // outside the digest as /timing; empty: not stored. Returns the digest.

@@ -38,6 +38,9 @@ class Hdf5Work {
 
 // The attribute of that name; empty if there is none.
 std::string attribute(const TextAttributes& attributes, const std::string& name);
+// Returns the root attributes of a result that describe its provenance: all except those that the writer of a
+// trace, sweep or figure adds itself.
+TextAttributes provenance_of(const TextAttributes& attributes);
 
 // Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
 // partial file, and equal contents are equal bytes (no time stamps). Not for use from several threads at

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <fstream>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
@@ -22,6 +23,15 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
   for (const auto& [known, value] : attributes)
     if (known == name) return value;
   return {};
+}
+
+TextAttributes provenance_of(const TextAttributes& attributes) {
+  static const std::set<std::string> added = {"schema",  "digest", "plan_digest", "default",
+                                              "columns", "axes",   "measures",    "note_kinds"};
+  TextAttributes kept;
+  for (const auto& one : attributes)
+    if (!added.contains(one.first)) kept.push_back(one);
+  return kept;
 }
 
 namespace {

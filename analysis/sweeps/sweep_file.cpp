@@ -174,13 +174,6 @@ class SweepReader {
   }
 
   std::string text(const std::string& name) const { return attribute(hdf5_.attributes(), name); }
-  TextAttributes provenance() const {
-    TextAttributes kept;
-    for (const auto& [name, value] : hdf5_.attributes())
-      if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures", "note_kinds"}))
-        kept.emplace_back(name, value);
-    return kept;
-  }
   bool has(const std::string& name) const {
     return std::find(datasets_.begin(), datasets_.end(), "/sweep/" + name) != datasets_.end();
   }
@@ -219,9 +212,6 @@ class SweepReader {
   [[noreturn]] void damaged(const std::string& how) const { hdf5_.damaged(how); }
 
  private:
-  static bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  }
   Hdf5Reader hdf5_;
   std::vector<std::string> datasets_;
 };
@@ -258,7 +248,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
   const SweepReader reader(file);
   StoredSweep stored;
   SweepResult& result = stored.result;
-  stored.attributes = reader.provenance();
+  stored.attributes = provenance_of(file.attributes());
   stored.in_progress = reader.has("checksum");
   for (const std::string& name : split_names(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
