@@ -111,7 +111,7 @@ class BinaryRows {
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
       for (const PlyProperty& property : element.properties) {
         std::uint64_t values = 1;
-        if (property.is_list()) values = count(size_of_ply(property.count), element, i);
+        if (property.is_list()) values = count(property.count, element, i);
         const std::uint64_t size = size_of_ply(property.type);
         if (values > (ply_.size() - at_) / size) refuse_end(element, i);
         at_ += values * size;
@@ -126,8 +126,9 @@ class BinaryRows {
   }
 
  private:
-  // Lengths are not negative.
-  std::uint64_t count(std::size_t size, const PlyElement& element, std::uint64_t done) {
+  // Reads the length of a list, of this type. Throws std::runtime_error if it is negative.
+  std::uint64_t count(const std::string& type, const PlyElement& element, std::uint64_t done) {
+    const std::size_t size = size_of_ply(type);
     if (size > ply_.size() - at_) refuse_end(element, done);
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -135,6 +136,9 @@ class BinaryRows {
       value = value << 8 | static_cast<unsigned char>(ply_[at_ + byte]);
     }
     at_ += size;
+    if (!type.starts_with('u') && value >> (8 * size - 1) != 0)
+      throw std::runtime_error("element " + in_quotes(element.name) + " " + std::to_string(done) +
+                               " has a list of negative length");
     return value;
   }
 

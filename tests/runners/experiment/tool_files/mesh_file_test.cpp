@@ -262,6 +262,19 @@ TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
   EXPECT_HAS(error(data), "b.ply: cannot be read (it ends after ");
 }
 
+TEST_F(MeshFileTest, BinaryPlyListsAreNotNegative) {
+  for (const char* const format : {"binary_little_endian", "binary_big_endian"}) {
+    const std::string header = std::string("ply\nformat ") + format +
+                               " 1.0\nelement face 1\nproperty list char uchar vertex_indices\n"
+                               "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                               "end_header\n";
+    EXPECT_HAS(refusal([&] {
+                 read_mesh(folder_.write("b.ply", header + '\xff' + std::string(255 + 3 * 12, '\0')));
+               }),
+               "b.ply: cannot be read (element 'face' 0 has a list of negative length)");
+  }
+}
+
 const std::string kStlText =
     "solid a facet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
     "facet normal nan nan -nan(ind)\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
