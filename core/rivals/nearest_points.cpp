@@ -45,13 +45,17 @@ double NearestPoints::find(const NeighbourSearch& points, const Vec3& p_W, int c
   p_W_ = p_W;
   const auto wanted = static_cast<std::size_t>(count);
   double radius = radius_m_;
-  while (gather(points, radius) < wanted && radius < kMaxRadius_m) radius *= 2;
-  const std::size_t found = near_.size(), last = std::min(wanted, found);
-  if (found == 0) return limit_ = 0;
-  std::nth_element(sorted_.data(), sorted_.data() + (last - 1), sorted_.data() + found);
+  std::size_t inside = gather(points, radius);
+  while (inside < wanted && radius < kMaxRadius_m) {
+    radius = std::min(2 * radius, kMaxRadius_m);
+    inside = gather(points, radius);
+  }
+  if (inside == 0) return limit_ = 0;
+  const std::size_t last = std::min(wanted, inside);
+  std::nth_element(sorted_.data(), sorted_.data() + (last - 1), sorted_.data() + near_.size());
   limit_ = sorted_[last - 1] * kSameDistance;
   const double distance = std::sqrt(sorted_[last - 1]);
-  if (found >= wanted && distance > 0) radius_m_ = std::min(1.5 * distance, kMaxRadius_m);
+  if (inside >= wanted && distance > 0) radius_m_ = std::min(1.5 * distance, kMaxRadius_m);
   return distance;
 }
 

@@ -43,6 +43,21 @@ TEST(NearestPoints, PointsAtTheSameDistanceBelongTogether) {
   EXPECT_EQ(found_by(nearest).size(), 5u) << "the node and its four neighbours";
 }
 
+// Whatever was found before, a point beyond half a metre does not count.
+TEST(NearestPoints, AreThoseWithinHalfAMetre) {
+  PointCloud three;
+  three.append({0, 0, 0}), three.append({0.3, 0, 0}), three.append({0.6, 0, 0});
+  const auto search = make_search(three);
+  for (const double before_m : {0.001, 0.1, 0.2, 0.45}) {
+    PointCloud pair;
+    pair.append({0, 0, 0}), pair.append({before_m, 0, 0});
+    NearestPoints nearest(scenes::kernels());
+    nearest.find(*make_search(pair), Vec3::Zero(), 2);
+    EXPECT_NEAR(nearest.find(*search, Vec3::Zero(), 3), 0.3, 1e-15) << before_m;
+    EXPECT_EQ(found_by(nearest).size(), 2u) << before_m;
+  }
+}
+
 TEST(NearestPoints, AreAllIfThereAreFewPoints) {
   PointCloud two;
   two.append({0, 0, 0}), two.append({0.01, 0, 0});
