@@ -49,8 +49,8 @@ void find_spells(const ColumnSource& trace, const std::string& name, std::int32_
                  std::vector<TraceEvent>& events) {
   const auto column = values_or_none<std::int32_t>(trace, name);
   std::size_t found = 0;
-  for (std::size_t i = 1; i < column.size() && found < kMaxSpells; ++i)
-    if (column[i] == exhausted && column[i - 1] != exhausted) {
+  for (std::size_t i = 0; i < column.size() && found < kMaxSpells; ++i)
+    if (column[i] == exhausted && (i == 0 || column[i - 1] != exhausted)) {
       std::size_t end = i;
       while (end < column.size() && column[end] == exhausted) ++end;
       events.push_back({i, "not converged",
