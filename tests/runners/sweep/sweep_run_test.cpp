@@ -105,7 +105,9 @@ TEST(SweepRuns, OnlyPendingRunsAreDoneAndEachIsReportedOnce) {
 // thread may do any number of runs until the first one has handed it on.
 TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
   const Sweep sweep = quick();
-  for (const auto& [by_signal, threads] : {std::pair{true, 1}, {false, 1}, {true, 2}, {false, 2}}) {
+  for (const auto& end : {std::pair{true, 1}, {false, 1}, {true, 2}, {false, 2}}) {
+    const bool by_signal = end.first;  // no structured binding: clang++ 14 captures none in a lambda
+    const int threads = end.second;
     omp_set_num_threads(threads);
     SweepResult result = sweep.plan();
     std::atomic<bool> stop{false};
