@@ -1,5 +1,7 @@
 #include "core/dissertation/guidance/guidance_spring.h"
 
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+
 namespace remote_touch {
 
 namespace {

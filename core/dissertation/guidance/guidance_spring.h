@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/parameters/parameter.h"
+#include "core/rendering/wrench.h"
 
 namespace remote_touch {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/parameters/parameter.h"
+#include "core/rendering/wrench.h"
 
 namespace remote_touch {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
+#include "core/rendering/wrench.h"
 #include "runners/experiment/hand/held_force_step.h"
 
 namespace remote_touch {

@@ -10,8 +10,8 @@
 
 #include "analysis/storage/hdf5_appender.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/rendering/renderer.h"
+#include "core/rendering/wrench.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {

@@ -1,8 +1,8 @@
 // A device in the world: poses from it, forces to it.
 #pragma once
 
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/rendering/frame.h"
+#include "core/rendering/wrench.h"
 #include "runners/experiment/sessions/live_settings.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/geometry/vector.h"
+#include "core/rendering/wrench.h"
 #include "runners/live/devices/clock.h"
 
 namespace remote_touch {

@@ -3,14 +3,9 @@
 
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/rendering/wrench.h"
 
 namespace remote_touch {
-
-// Force on the hand, and torque about the device's position; world frame.
-struct Wrench {
-  Vec3 force_N = Vec3::Zero();
-  Vec3 torque_Nm = Vec3::Zero();
-};
 
 // A spring between two poses.
 struct WrenchSpring {
