@@ -4,6 +4,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/schema.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
@@ -130,6 +131,11 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
 }
 
 }  // namespace
+
+std::string write_trace(const std::filesystem::path& file, const Trace& trace,
+                        const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
+  return write_trace(file, trace.columns(), provenance, step_duration_s);
+}
 
 std::string write_figure(const std::filesystem::path& file, const Figure& figure,
                          const TextAttributes& provenance) {

@@ -2,9 +2,9 @@
 // one, and when the force ends.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // Height of the rendered surface above the true one, m: the distance from the centre of the proxy to the true
 // surface minus the distance to the nearest point. Mean and standard deviation over the ticks that end in

@@ -3,9 +3,9 @@
 // count too.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // Maximum and root mean square of the change of force at ticks with a new frame, N. NaN if no change counts.
 double max_force_jump_N(const Trace& trace);

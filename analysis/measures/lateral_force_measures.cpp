@@ -5,6 +5,7 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/mean.h"
+#include "analysis/trace/trace.h"
 #include "core/numeric/order_statistic.h"
 
 namespace remote_touch {

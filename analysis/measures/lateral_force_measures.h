@@ -7,9 +7,9 @@
 // such tick.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // |F - (F.n) n| / (F.n), the tangent of the angle between F and n: its mean, and its 95th percentile (95 % of
 // the ticks are below it). Only ticks whose force points out of the surface (F.n > 0) count. A force into the

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "analysis/measures/better.h"
-#include "analysis/trace/trace.h"
 
 namespace remote_touch {
+
+struct Trace;
 
 // 1 when the proxy's centre (with a tool its centre of mass) passed through the true surface and ended behind
 // it, else 0. It is behind if its distance to the surface is less than -Trace::held_depth_m, which is 0 for a

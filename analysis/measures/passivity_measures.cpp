@@ -6,6 +6,7 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 // Otherwise they are those that the renderer commands.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // Work on the hand in the whole run, J. Negative if the hand did more work on the surface.
 double energy_injected_J(const Trace& trace);

@@ -1,6 +1,7 @@
 #include "analysis/measures/perceived_force_measures.h"
 
 #include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

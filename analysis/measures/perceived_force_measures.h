@@ -4,9 +4,9 @@
 // always counts. No person was tested.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // Fraction of the frame updates at which the force changes by more than weber times the force of the tick
 // before. Only updates with a force in at least one of the two ticks count; NaN if there are none. weber: the

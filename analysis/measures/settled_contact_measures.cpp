@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

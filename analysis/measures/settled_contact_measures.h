@@ -9,9 +9,9 @@
 // NaN if no tick settled, if the truth is known in none of them, or if Trace::contact is empty.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 inline constexpr double kSettling_s = 0.1;
 

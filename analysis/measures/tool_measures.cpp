@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {

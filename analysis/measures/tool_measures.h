@@ -2,9 +2,9 @@
 // guidance.
 #pragma once
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 double max_torque_Nm(const Trace& trace);
 // Contacts: points that touch the tool, or pairs of a sphere of the tool and a region; mean and maximum over

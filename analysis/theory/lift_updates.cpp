@@ -1,5 +1,7 @@
 #include "analysis/theory/lift_updates.h"
 
+#include "analysis/trace/trace.h"
+
 namespace remote_touch {
 
 namespace {

@@ -3,10 +3,11 @@
 
 #include <vector>
 
-#include "analysis/trace/trace.h"
 #include "core/geometry/vector.h"
 
 namespace remote_touch {
+
+struct Trace;
 
 // Update j, when frame j replaces frame j - 1. Metres, seconds; heights are along the true normal n.
 struct LiftUpdate {

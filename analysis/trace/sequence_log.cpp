@@ -1,5 +1,7 @@
 #include "analysis/trace/sequence_log.h"
 
+#include "analysis/trace/trace.h"
+
 namespace remote_touch {
 
 namespace {

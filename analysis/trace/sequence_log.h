@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/trace/trace.h"
-
 namespace remote_touch {
+
+struct Trace;
 
 // A step that has begun. Times are those of ticks; NaN for a step that had not ended at the end of the trace.
 struct SequenceEntry {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <new>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/experiment/simulation/simulation.h"

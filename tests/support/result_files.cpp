@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/trace/trace.h"
+
 namespace remote_touch {
 namespace {
 

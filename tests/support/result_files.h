@@ -5,6 +5,7 @@
 #include <string>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

@@ -8,6 +8,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/hash64.h"
+#include "analysis/trace/trace.h"
 
 namespace {
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/contract/checks.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"

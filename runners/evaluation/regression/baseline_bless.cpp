@@ -17,6 +17,7 @@
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/program_run.h"
 #include "runners/evaluation/regression/scratch_folder.h"

@@ -5,6 +5,7 @@
 
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"

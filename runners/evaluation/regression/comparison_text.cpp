@@ -4,6 +4,7 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/catalog.h"
 
 namespace remote_touch {

@@ -7,6 +7,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/measure_comparison.h"
 #include "runners/experiment/catalog/catalog.h"

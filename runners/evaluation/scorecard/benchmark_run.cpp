@@ -1,5 +1,6 @@
 #include "runners/evaluation/scorecard/benchmark_run.h"
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"

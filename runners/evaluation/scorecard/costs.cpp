@@ -6,6 +6,7 @@
 
 #include "analysis/statistics/mean.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/scorecard/json_number.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/hand_state.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/hand/device_motors.h"
 #include "runners/experiment/hand/operator_model.h"

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <set>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/trace/trace.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
+
+struct Trace;
 
 struct RunReport {
   std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"

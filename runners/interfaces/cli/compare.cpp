@@ -6,6 +6,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/deviation_figure.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/comparison_text.h"

@@ -3,6 +3,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/tick_hashes.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"

@@ -7,6 +7,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/comparison_text.h"

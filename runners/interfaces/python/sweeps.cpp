@@ -8,6 +8,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"

@@ -1,5 +1,6 @@
 #include "runners/presentation/export/export_formats.h"
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/export/csv_files.h"

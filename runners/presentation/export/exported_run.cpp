@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/view/frames_again.h"

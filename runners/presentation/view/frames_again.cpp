@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/provenance/input_hashes.h"

@@ -7,6 +7,7 @@
 
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/configuration_difference.h"

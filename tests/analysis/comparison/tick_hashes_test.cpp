@@ -11,6 +11,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/schema.h"
 #include "analysis/trace/hash64.h"
+#include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

@@ -13,6 +13,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch::better_test {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch::contact_measures_test {
 namespace {

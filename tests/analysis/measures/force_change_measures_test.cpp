@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "analysis/trace/trace.h"
+
 namespace remote_touch::force_change_measures_test {
 namespace {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch::lateral_force_measures_test {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch::measures_test {
 namespace {

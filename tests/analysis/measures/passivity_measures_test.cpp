@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch::passivity_measures_test {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch::perceived_force_measures_test {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch::settled_contact_measures_test {
 namespace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch::tool_measures_test {

@@ -15,6 +15,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_in_progress.h"
+#include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

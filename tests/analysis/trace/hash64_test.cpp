@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 

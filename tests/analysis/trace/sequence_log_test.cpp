@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "analysis/trace/trace.h"
+
 namespace remote_touch::sequence_log_test {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 

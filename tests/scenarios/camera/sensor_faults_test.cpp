@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/camera.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"

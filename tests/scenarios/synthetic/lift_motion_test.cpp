@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/synthetic/moving_lift.h"

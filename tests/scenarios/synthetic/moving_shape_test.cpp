@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/press.h"
 #include "runners/experiment/simulation/simulation.h"

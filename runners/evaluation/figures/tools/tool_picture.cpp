@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "analysis/figures/figure.h"
-#include "analysis/trace/trace.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {
+
+struct Trace;
 
 // The tool that an experiment's 6-DOF renderer moves.
 std::shared_ptr<const VoxelTool> tool_of(const Experiment& experiment);

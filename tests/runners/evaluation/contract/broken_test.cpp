@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
 #include "runners/evaluation/contract/checks.h"
 #include "runners/evaluation/contract/flat_scene.h"

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "analysis/storage/digest.h"
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/scorecard/benchmark_choice.h"
 #include "runners/evaluation/scorecard/benchmark_plan.h"
 #include "runners/evaluation/scorecard/passivity.h"

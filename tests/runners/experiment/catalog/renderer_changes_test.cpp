@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/storage/digest.h"
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"

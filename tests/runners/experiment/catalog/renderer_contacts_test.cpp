@@ -9,6 +9,7 @@
 #include <string>
 
 #include "analysis/measures/settled_contact_measures.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"

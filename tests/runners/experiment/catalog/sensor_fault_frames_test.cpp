@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/camera.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/catalog/frame_stream.h"

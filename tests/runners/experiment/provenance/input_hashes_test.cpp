@@ -2,6 +2,7 @@
 // as runners/experiment/provenance/input_hashes.h describes; tests/system/command_line/inputs runs it on real
 // files.
 #include "runners/experiment/provenance/input_hashes.h"
+#include "analysis/trace/trace.h"
 
 #include <gtest/gtest.h>
 

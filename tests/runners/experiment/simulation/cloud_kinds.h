@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 

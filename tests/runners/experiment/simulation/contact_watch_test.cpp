@@ -7,6 +7,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/theory/first_touch.h"
+#include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "analysis/storage/digest.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "tests/runners/experiment/simulation/cloud_kinds.h"
 
 namespace remote_touch::fixture_needs_test {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/trace/trace.h"
 #include "core/dissertation/virtual_fixtures/half_space.h"
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 

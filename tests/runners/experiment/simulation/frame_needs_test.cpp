@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "analysis/trace/trace.h"
 #include "tests/runners/experiment/simulation/cloud_kinds.h"
 
 namespace remote_touch::frame_needs_test {

@@ -8,6 +8,7 @@
 
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 

@@ -7,6 +7,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/measures/settled_contact_measures.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::pop_through_test {

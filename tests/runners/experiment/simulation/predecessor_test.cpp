@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::predecessor_test {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::rivals_lift_test {

@@ -1,6 +1,7 @@
 // The number of ticks of a run.
 #include <gtest/gtest.h>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 

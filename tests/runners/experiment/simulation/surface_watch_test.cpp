@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/camera.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 #include "runners/experiment/simulation/simulation.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/digest.h"
+#include "analysis/trace/trace.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "runners/evaluation/contract/contract_tests.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -6,6 +6,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/viewer_files.h"
