@@ -14,7 +14,7 @@ std::string extent(const Column& column) {
   return std::to_string(column.length()) + " rows of " + std::to_string(column.width);
 }
 
-// Why the columns are not two of the same kind; empty when they are.
+// Returns in words the first mismatch of the two columns; empty if there is none.
 std::string mismatch(const Column& a, const Column& b) {
   if (a.values.index() != b.values.index()) return "another kind of values";
   if (a.width != b.width || a.length() != b.length()) return extent(a) + " against " + extent(b);
@@ -51,7 +51,7 @@ double row_deviation(const Number* a, const Number* b, std::size_t width) {
   return length(width, [&](std::size_t k) { return deviation(a[k], b[k]); });
 }
 
-// Names, texts and fingerprints have none: they are equal or not.
+// False for names, texts and hashes, which are only equal or not.
 bool has_deviations(const Column& column) {
   return std::holds_alternative<std::vector<double>>(column.values) ||
          (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
@@ -90,7 +90,7 @@ double length_of(const Column& column, std::size_t row) {
   });
 }
 
-// A relative tolerance allows nothing where the baseline has no finite length.
+// The relative tolerance allows nothing if the baseline's row has no finite length.
 double allowed(const Column& baseline, std::size_t row, const Tolerance& tolerance) {
   if (tolerance.relative == 0) return tolerance.absolute;
   const double size = length_of(baseline, row);

@@ -10,12 +10,13 @@
 
 namespace remote_touch {
 
-// The deviation of a row, a number or a vector, is the length of its difference, in the column's units; it is
-// inside when it is at most absolute + relative * |the baseline's row|.
+// A row is a number or a vector. Its deviation is the length of the difference, in the column's units. The
+// row is inside the tolerance if the deviation is at most absolute + relative * |row of the baseline|.
 //
-// Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are equal or outside.
-// Different kinds, widths, units, value names or lengths are a problem; the rows that both have are compared
-// all the same. Two columns without rows are the same.
+// Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are outside unless they are
+// equal. Different types, widths, units, value names or lengths are a problem. Columns of different types or
+// widths are not compared further; otherwise the rows that both have are compared nevertheless. Two columns
+// without rows are the same.
 struct ColumnComparison {
   std::string name, units;
   Tolerance tolerance;
@@ -32,8 +33,8 @@ struct ColumnComparison {
 
 ColumnComparison compare_columns(const Column& baseline, const Column& candidate, const Tolerance& tolerance);
 
-// The deviation of every row that both have; NaN where one has a NaN or an infinity and the other does not,
-// and for names, texts and hashes 0 if equal, else 1.
+// Returns the deviation of every row that both have; none if their types or widths differ. NaN if one has a
+// NaN or an infinity and the other does not. For names, texts and hashes it is 0 if they are equal, else 1.
 std::vector<double> deviations(const Column& baseline, const Column& candidate);
 
 }  // namespace remote_touch

@@ -18,7 +18,7 @@ bool ColumnSource::has(const std::string& name) const {
 StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
   hdf5_.require_kind("trace", "a trace of remote-touch run or replay");
   std::istringstream list(attribute(hdf5_.attributes(), "columns"));
-  list.exceptions(std::ios::badbit);  // throws if memory runs out; otherwise that would pass for the end
+  list.exceptions(std::ios::badbit);  // lack of memory throws; else it would look like the end
   for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
 }
 

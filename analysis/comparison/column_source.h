@@ -14,7 +14,7 @@ class ColumnSource {
   virtual ~ColumnSource() = default;
   virtual std::vector<std::string> columns() const = 0;  // names, in the order they are stored and hashed
   virtual Column column(const std::string& name) const = 0;
-  // Rows first .. first + count - 1; pre: they are there.
+  // Rows first .. first + count - 1; pre: they exist.
   virtual Column rows(const std::string& name, std::size_t first, std::size_t count) const = 0;
 
   bool has(const std::string& name) const;

@@ -13,17 +13,17 @@ enum class Judgement {
   within_margin,  // sweeps only: the intervals of the differences lie within the margins
   better,
   worse,
-  changed,   // no direction: the measure has none, a number was or became NaN, or the outcomes differ
-  undecided  // sweeps only: too few runs, or both ways alike
+  changed,   // neither: no direction, a number was or became NaN, equally good, or another outcome
+  undecided  // sweeps only: too few runs, or similar numbers of better and worse runs
 };
 bool is_change(Judgement judgement);  // better, worse or changed
 // "equal", "within_margin", "better", ...
 const char* name_of(Judgement judgement);
 
-// Judges one number: equal, better, worse or changed. A number that was or became NaN has changed.
+// Judges one number: equal, better, worse or changed. A number that was or became NaN is changed.
 Judgement judged(double baseline, double candidate, Better better, const Tolerance& tolerance);
 
-// A measure of one run, before and now.
+// A measure of one run, in the baseline and in the candidate.
 struct ValueComparison {
   std::string name, units;
   Better better = Better::neither;

@@ -1,4 +1,4 @@
-// One measure in the same runs of two sweeps, and what the paired tests say of it.
+// One measure in the same runs of two sweeps, and the results of its paired tests.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace remote_touch {
 
-using Runs = std::vector<std::size_t>;  // rising
+using Runs = std::vector<std::size_t>;  // increasing
 
 struct Pairs {
   const std::vector<double>&baseline, &candidate;
   Tolerance tolerance;
   Better better = Better::neither;
-  bool event = false;                   // then a candidate's value that is neither 0 nor 1 has no partner
+  bool event = false;                   // true: a candidate's value other than 0 and 1 has no partner
   std::vector<bool> same_outcome = {};  // runs of equal outcome; only these get better or worse. Empty: all
 
   bool finite(std::size_t run) const;
@@ -22,10 +22,11 @@ struct Pairs {
   Judgement judged(std::size_t run) const;
 };
 
-// All of MeasureComparison but the names and, where runs went both ways, the judgement.
+// Sets all of MeasureComparison except the name and the units. If runs went both ways, run_by_run is
+// undecided until the paired tests are known.
 MeasureComparison compare_values(const Pairs& pairs, const Runs& runs);
 
-// The tests of a region, not yet adjusted and without a judgement.
+// Computes the tests of a region. Their p values are not yet adjusted, and there is no judgement yet.
 RegionComparison tested(const Pairs& pairs, const Runs& runs);
 
 // pre: adjusted_p is set.

@@ -143,7 +143,7 @@ std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const s
 
 // --- paired tests ---
 
-// Both tests of a measure that is no event are members of the family that is adjusted together.
+// The p values of all tests are adjusted together: one test of each event, and two of each other measure.
 void judge(const PairedRule& rule, SweepComparison& result) {
   std::vector<double> p;
   for (const RegionComparison& c : result.by_region) {
@@ -165,7 +165,8 @@ void judge(const PairedRule& rule, SweepComparison& result) {
   }
 }
 
-// True for the first round of a refined sweep, and for all runs of any other: later rounds depend on results.
+// True for a run of the first round of a refined sweep, and for every run of another sweep. Later rounds
+// depend on results.
 bool is_planned(const SweepResult& sweep, std::size_t run) {
   return sweep.round.empty() || sweep.round[run] == 0;
 }

@@ -1,9 +1,9 @@
 // Comparison of two finished sweeps of the same definition.
 //
-// Noise is keyed by seed, cell and replicate: the same run of both has the same noise, so they are a pair.
-// Where nothing changed, pairs are equal to the last bit. Where something did, single runs near a limit are
-// chaotic: a last bit flips some of them, in either direction alike. So there are two verdicts: an exact one,
-// and one by paired tests, which distinguishes such flips from a systematic change.
+// Noise is keyed by seed, cell and replicate, so a run has the same noise in both sweeps: the two are a pair.
+// If nothing changed, pairs are equal to the last bit. If something changed, runs near a limit are chaotic: a
+// change of the last bit flips some of them, equally often in either direction. Therefore there are two
+// verdicts: an exact one, and one by paired tests, which distinguishes such flips from a systematic change.
 #pragma once
 
 #include <cstdint>
@@ -21,35 +21,38 @@
 
 namespace remote_touch {
 
-// Over the runs that are done in both.
+// Comparison of a measure over the runs that are done in both sweeps.
 struct MeasureComparison {
   std::string name, units;
   Better better = Better::neither;
   Tolerance tolerance;
-  // All finite values of the baseline are 0 or 1 (and those of the candidate, where the baseline has no 1):
-  // the fraction of 1 is a probability.
+  // True if all finite values of the baseline are 0 or 1, and those of the candidate too if the baseline has
+  // no 1. The fraction of ones is then a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
   std::int64_t got_better = 0, got_worse = 0;     // runs outside that got better or worse
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
   std::optional<std::size_t> first_outside = {};  // a run
-  // Run by run: better or worse where all runs outside went that way, or the paired tests show that it
-  // prevails; else undecided. Runs outside with another outcome (see is_outcome()) or a NaN went no way, so
-  // that the few which remain beside many of them decide nothing. Changed where no run went a way.
+  // The judgement run by run. Better or worse: all runs outside went that way, or the paired tests show that
+  // this way prevails. Changed: no run outside went either way. Undecided: all other cases. A run outside
+  // with another outcome (see is_outcome()) or with a NaN goes neither way. A few other runs beside many such
+  // runs therefore decide nothing.
   Judgement run_by_run = Judgement::equal;
 };
 
-// The first run, in the order of the arrays, that is done in one only or has a measure outside.
+// The first run, in the order of the arrays, that is done in one sweep only or has a measure outside the
+// tolerance.
 struct FirstDifference {
   std::size_t run = 0, cell = 0;
   std::vector<std::size_t> place;  // index of the cell on each axis
   int replicate = 0;
-  std::string measure;  // the first outside; empty: done in one only
+  std::string measure;  // the first measure outside; empty: the run is done in one sweep only
   double baseline = 0, candidate = 0;
 };
 
-// A measure in a region, over the runs done in both. Up and down: the candidate's number is larger, smaller,
-// by more than the tolerance. For an event: it happened in the candidate only, in the baseline only.
+// A measure in a region, over the runs done in both. up and down: pairs in which the candidate's number is
+// larger, or smaller, by more than the tolerance. For an event: it happened in the candidate only, or in the
+// baseline only.
 struct RegionComparison {
   std::size_t region = 0, measure = 0;
   std::int64_t runs = 0;
@@ -63,14 +66,15 @@ struct RegionComparison {
   // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
-  // Other measures only: over all pairs, in the measure's unit; and the baseline's standard deviation.
+  // Other measures only: the mean difference of all pairs and the baseline's standard deviation, in the
+  // measure's unit.
   MeanDifference mean = {};
   double baseline_spread = 0;
 
   double sign_p = 1;
   double symmetry_p = 1;               // over the pairs outside; 1 for an event, where it adds nothing
-  double worse_p = 1, mean_worse = 0;  // symmetry test and mean of how much worse they got; not of an event
-  double adjusted_p = 1;  // the smaller of the two, adjusted for all tests of all regions and measures
+  double worse_p = 1, mean_worse = 0;  // test and mean of how much worse pairs got; not for an event
+  double adjusted_p = 1;  // the smaller of sign_p and symmetry_p, adjusted for all tests of the sweep
   // The result of the paired tests, see PairedVerdict.
   Judgement judgement = Judgement::undecided;
 };
@@ -93,22 +97,22 @@ enum class ExactVerdict {
 //
 // A measure in a region is changed if one direction prevails (adjusted p < alpha, whatever the margins) or a
 // number became NaN. Runs that differ in an outcome, see is_outcome(), are neither better nor worse by other
-// measures. The measure is worse if the sign test or the symmetry test, of the runs that got better and
-// worse, alone has p < alpha for worse. Otherwise it is better if one of them has p < alpha for better and no
-// number became NaN.
+// measures. A changed measure is worse if the sign test or the symmetry test of the runs that got better or
+// worse has p < alpha, by itself, for worse. Otherwise it is better if one of these tests has p < alpha for
+// better and no number became NaN.
 //
-// Any pass but equal must be demonstrated, not merely not refuted: over the whole, every measure that differs
-// anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
-// with one flip, and more runs with more flips; 4 runs of which one differs are undecided, 5396 with 30 flips
-// evenly both ways are known to +-0.2 %. It needs no correction for the number of measures, because all of
-// them must pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: this
-// finds a local change that the flips of the whole would hide. The interval of a part shows which differences
-// a pass does not exclude there. Measures that are not events are judged by the fraction of runs that got
-// larger less the fraction that got smaller (about 400 runs if all differ, both ways alike), and by the mean
-// difference in units of the standard deviation of the baseline's runs, so that a few runs that got much
-// worse prevent a pass. Differences within a tolerance do not count. A systematic change, however small, is
-// "changed", and so is a number that became NaN. In a refined sweep only the first round is judged, because
-// the later rounds depend on the results.
+// The verdict within_margin must be demonstrated: over the whole, every measure that differs anywhere must
+// have its intervals within the margins. An event at the default margin needs 190 runs with one flip, and
+// more runs with more flips. 4 runs of which one differs are undecided; 5396 runs with 30 flips, evenly both
+// ways, determine the difference to +-0.2 %. No correction for the number of measures is needed, because all
+// of them must pass. Parts have fewer runs, so an undecided part does not prevent a pass, but a changed part
+// does. This finds a local change that the flips of the whole would hide. The interval of a part shows which
+// differences a pass does not exclude there. Measures that are not events are judged by the fraction of runs
+// that got larger less the fraction that got smaller (about 400 runs if all differ, both ways alike), and by
+// the mean difference in units of the standard deviation of the baseline's runs, so that a few runs that got
+// much worse prevent a pass. Differences within a tolerance do not count. A systematic change, however small,
+// is "changed", and so is a number that became NaN. In a refined sweep only the first round is judged,
+// because the later rounds depend on the results.
 enum class PairedVerdict {
   not_comparable,
   runs_missing,   // some runs of the first round are done in one sweep only
@@ -119,11 +123,12 @@ enum class PairedVerdict {
 };
 
 struct SweepComparison {
-  // Why the two are not comparable, a line each. Then only the notes and the lists of runs below are set.
+  // Reasons why the two are not comparable, one line each. If there are any, only the notes and the lists of
+  // runs are set.
   std::vector<std::string> problems;
-  std::vector<std::string> notes;  // differences without effect on the verdicts, a line each
+  std::vector<std::string> notes;  // differences without effect on the verdicts, one line each
   std::size_t done_in_both = 0;
-  std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, rising
+  std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, increasing
   std::size_t newly_failed = 0;                            // failed in the candidate, among baseline_only
   std::vector<MeasureComparison> measures;                 // measures of the baseline
   std::optional<FirstDifference> first;
@@ -137,17 +142,17 @@ struct SweepComparison {
   }
 };
 
-// Comparable are sweeps of the same axes (name, parameter, unit, and values to the bit), the same number of
-// replicates, and all measures of the baseline in the same order and units; the candidate may have others. At
-// least one run is done in both. Values within their tolerance count as equal in every test. Rounds of
-// refinement and error texts are not compared. pre: the same noise in both (one seed); arrays are over all
-// runs, as read_sweep gives them; tolerances, margin and alpha are not negative.
+// Two sweeps are comparable if they have the same axes (name, parameter, unit, and values to the bit), the
+// same number of replicates, and all measures of the baseline in the same order and units (the candidate may
+// have others), and if at least one run is done in both. Values within their tolerance count as equal in
+// every test. Rounds of refinement and error texts are not compared. pre: the same noise in both (one seed);
+// arrays are over all runs, as read_sweep returns them; tolerances, margin and alpha are not negative.
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
                         const Tolerances& tolerances = {}, const PairedRule& rule = {},
                         const Directions& directions = {});
 
-// The judgement of a measure, run by run or by pairs. By pairs the regions are combined: worse in any region
-// counts first, then changed, then better.
+// The judgement of a measure, run by run or by pairs. The judgement by pairs combines the regions: worse if
+// any region is worse, else changed if any is changed, else better if any is better, else that of the whole.
 Judgement judgement_of(const SweepComparison& sweep, std::size_t measure, bool paired);
 
 }  // namespace remote_touch

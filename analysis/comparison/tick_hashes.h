@@ -1,5 +1,5 @@
-// The running hash of a trace without the trace, to be sent to another machine and find the first tick at
-// which two runs differ. 8 bytes a tick, or less when only every n-th is kept.
+// The running hash of a trace, without the trace. It can be sent to another machine to find the first tick at
+// which two runs differ. It has 8 bytes per tick, or less if only every n-th tick is kept.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@
 namespace remote_touch {
 
 struct TickHashes {
-  std::vector<std::int32_t> tick;   // rising; the last is the trace's last
+  std::vector<std::int32_t> tick;   // increasing; the last is the trace's last
   std::vector<std::uint64_t> hash;  // the running hash at that tick (hash64.h)
 };
 
-// Every n-th tick of a trace, and the last; pre: every > 0.
+// Returns every n-th tick of a trace (n = every), and the last. pre: every > 0.
 TickHashes hashes_of_trace(const StoredTrace& trace, int every);
 
 void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
@@ -30,8 +30,8 @@ inline StoredHashes read_hashes(const std::filesystem::path& file) {
   return read_hashes(Hdf5Reader(file));
 }
 
-// Over the ticks that both have. The runs are equal up to and including tick `same`, and differ from tick
-// `different` on; the ticks between were not stored.
+// Comparison over the ticks that both have. The runs are equal up to and including tick `same`, and differ
+// from tick `different` on. The ticks in between are not stored in both.
 struct HashComparison {
   std::size_t compared = 0;
   std::optional<int> same, different;

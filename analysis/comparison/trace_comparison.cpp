@@ -25,14 +25,14 @@ bool is_input(const std::string& column) {
   return false;
 }
 
-// The tick at which the two runs part, and the rows around it.
+// The tick at which the two runs begin to differ, and the rows around it.
 class PartingTick {
  public:
   PartingTick(const ColumnSource& baseline, const ColumnSource& candidate,
               const std::vector<ColumnComparison>& columns, std::size_t tick)
       : baseline_(baseline), candidate_(candidate), columns_(columns), tick_(tick) {}
 
-  // Returns the situation at that tick, and a line that gives the reason.
+  // Returns the situation at that tick, and one line with its reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
     if (!inputs.empty())
@@ -76,8 +76,8 @@ class PartingTick {
       inputs.emplace_back("signed_distance (the true surface)");
     return inputs;
   }
-  // Returns none if one of the traces has no such column, no row for that tick, or values that are no
-  // integers.
+  // Returns std::nullopt if one of the traces has no such column or no row for that tick, or if the values
+  // are not integers.
   std::optional<std::int32_t> integer(const ColumnSource& trace, const char* column, std::size_t tick) const {
     for (const ColumnComparison& comparison : columns_) {
       if (comparison.name != column || comparison.rows <= tick) continue;

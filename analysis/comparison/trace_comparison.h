@@ -1,4 +1,4 @@
-// Comparison of two traces: what differs, from which tick on, and in what situation it began.
+// Comparison of two traces: what differs, from which tick on, and in which situation it began.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace remote_touch {
 enum class Cause {
   configuration,  // the experiments are not the same
   input,          // the renderer's inputs differ: time, HIP, a frame (points, time of capture), or the truth
-  frame_update,   // inputs are the same, and a frame arrived in this tick, or one run did not take it
+  frame_update,   // inputs are the same, and a frame arrived in this tick, or one run did not use it
   state_transition,  // no frame came, and the proxy's state differs, or changed with this tick
   drift              // none of these: within a steady state
 };
@@ -26,13 +26,13 @@ struct Divergence {
   std::size_t tick = 0;                     // the first with a value outside its tolerance
   double time_s = 0;                        // time of the baseline; 0 if it has none
   std::string quantity;                     // the column, the first in the trace's order
-  double deviation = 0;                     // there, in its units; NaN if one of the values is NaN
+  double deviation = 0;                     // there, in its units; NaN for a NaN or an infinity
   std::size_t first_difference = 0;         // the first tick with any difference, inside or not; at most tick
-  Cause cause = Cause::drift;               // configuration, where the experiments differ; else the situation
+  Cause cause = Cause::drift;               // configuration if the experiments differ, else the situation
   std::string explanation;                  // one line
   Cause situation = Cause::drift;           // situation at first_difference
-  std::string observation;                  // one line: what differs there
-  std::string frame;                        // one line: the frames before and after
+  std::string observation;                  // one line: reason for the situation
+  std::string frame;                        // one line: the baseline's frame there, and its next
   std::size_t first_row = 0;                // number of the first row below: first_difference - 1, or 0
   std::vector<Column> baseline, candidate;  // rows first_row .. first_difference of the common columns
 };
@@ -48,9 +48,9 @@ struct TraceComparison {
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const Tolerances& tolerances);
 
-// configuration: differences between the experiments of both traces, one text each. The running hash is not
-// compared: it follows from the others. A column that only the baseline has is a problem of that column.
-// Holds two columns at a time.
+// Compares two traces and finds their divergence. configuration: differences between the experiments of both
+// traces, one text each. The running hash is not compared, because it follows from the others. A column that
+// only the baseline has is a problem of that column. At most two columns are in memory at a time.
 TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,
                                const Tolerances& tolerances, const std::vector<std::string>& configuration);
 

@@ -38,12 +38,12 @@ struct Panel {
   bool equal_aspect = false;
   std::vector<Curve> curves = {};
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};
-  std::optional<std::pair<double, double>> place = {};  // row and column; absent: one below the other
+  std::optional<std::pair<double, double>> place = {};  // row, column; absent: below the last
   std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
 };
 
-// open: measured, but only on a part of the claim's range. differs: the paper prints something else than what
-// is measured here, and what is measured is as known.
+// open: measured, but only on a part of the claim's range. differs: the paper prints another value than the
+// one measured here, and the measured value is in its known range.
 enum class Verdict { pass, fail, open, differs, not_run };
 const char* verdict_name(Verdict verdict);  // the name in claims.json: "pass", "not run"
 
@@ -56,23 +56,23 @@ struct Claim {
   std::string criterion;  // text, with numbers
   std::string unit;
   Verdict verdict = Verdict::not_run;
-  bool of_map = false;  // about a whole map: not to be judged on a part of it
-  bool set_up = false;  // says only that the run is what it was meant to be: shown apart from the claims
+  bool of_map = false;  // is about a whole map, so a part of the map cannot decide it
+  bool set_up = false;  // checks only that the run was set up as intended; is listed apart from the claims
 };
 
-// measured within [low, high].
+// Passes if measured is within [low, high]. NaN fails.
 Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
                     double high, std::string unit);
-// measured at most, or at least, a value.
+// Pass if measured is at most, or at least, the limit. NaN fails.
 Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
                     std::string unit);
 Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
                      std::string unit);
-// The paper prints another value than what is measured. The range is where this program has it: outside, the
-// claim fails.
+// The paper prints another value than the one measured. The verdict is `differs` if measured is within [low,
+// high], its known range in this program, else `fail`.
 Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
                     double high, std::string unit);
-// A check that the run is what it was meant to be.
+// Marks the claim as a check that the run was set up as intended.
 Claim set_up(Claim check);
 Claim claim_not_run(std::string figure, std::string claim, std::string reason);
 

@@ -12,9 +12,10 @@ namespace remote_touch {
 
 struct Trace;
 
-// columns: of Trace::columns(). provenance: config, command, version and so on, as root attributes. Adds
-// schema, digest and the names of the columns in order. step_duration_s: wall clock of each tick, stored
-// outside the digest as /timing; empty: not stored. Returns the digest.
+// Writes the columns, those of Trace::columns(), and returns their digest. provenance: config, command,
+// version and so on, stored as root attributes. It adds the attributes schema, digest, default and columns
+// (their names in the order of the digest). step_duration_s: wall clock time of each tick, stored outside the
+// digest as /timing; empty: not stored.
 std::string write_trace(const std::filesystem::path& file, const std::vector<Column>& columns,
                         const TextAttributes& provenance, const std::vector<double>& step_duration_s);
 std::string write_trace(const std::filesystem::path& file, const Trace& trace,

@@ -19,7 +19,7 @@ struct ScenePart {
   std::uint32_t colour = 0x808080;  // used if the table has no colours
   double size_m = 0.002;            // diameter of a point
   std::string label = {};           // empty: not in the legend
-  // Only for a solid. Table `triangles` has the numbers of the corners' vertices in columns a, b, c. Row
+  // Only for a solid. Table `triangles` has the vertex numbers of the corners in columns a, b, c. Row
   // pose_row of table `poses` has its position x, y, z and orientation qw, qx, qy, qz.
   std::string triangles = {}, poses = {};
   int pose_row = 0;

@@ -20,7 +20,7 @@ bool is_outcome(const std::string& measure);
 // "smaller is better", "has no direction", ...
 const char* text_of(Better better);
 
-// A value that is smaller if the measure is better, whatever the direction.
+// Returns a value that is smaller if the measure is better. A measure without a direction keeps its value.
 double badness(double value, Better better);
 
 }  // namespace remote_touch

@@ -13,8 +13,8 @@ bool has_force(const Trace& trace, std::size_t i) {
   return !trace.force_N[i].isZero(0);
 }
 
-// Mean of what value(i) gives for the ticks that end in contact and have a known truth; height is that of the
-// rendered surface.
+// Mean of value(height) over the ticks that end in contact and have a known truth. The height is that of the
+// rendered surface above the true one.
 template <class Value>
 double mean_in_contact(const Trace& trace, Value&& value) {
   double sum = 0, count = 0;
@@ -27,7 +27,8 @@ double mean_in_contact(const Trace& trace, Value&& value) {
   return count == 0 ? kNoValue : sum / count;
 }
 
-// The same of the distance itself, for the ticks with a force and a known truth.
+// Mean of value(distance) over the ticks with a force and a known truth. The distance is that of the centre
+// from the true surface.
 template <class Value>
 double mean_with_force(const Trace& trace, Value&& value) {
   double sum = 0, count = 0;

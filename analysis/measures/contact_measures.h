@@ -18,7 +18,7 @@ double mean_distance_m(const Trace& trace);
 double distance_sd_m(const Trace& trace);
 // Distance of the centre to the true surface in the last tick, m, negative behind it; NaN if it is not known.
 double end_distance_m(const Trace& trace);
-// Fraction of the ticks with a force.
+// Fraction of the ticks with a force; 0 for a trace without ticks.
 double force_fraction(const Trace& trace);
 // Time of the last tick with a force, s. NaN if no tick has a force.
 double last_force_time_s(const Trace& trace);

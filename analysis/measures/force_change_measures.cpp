@@ -18,7 +18,8 @@ struct Change {
   double rms_or_none() const { return count == 0 ? kNoValue : std::sqrt(squares / count); }
 };
 
-// Over the ticks that are updates or are not, where this tick or the one before is not zero.
+// Collects the changes at the ticks with a frame update if at_updates, else those at the other ticks. A
+// change counts if the row of this tick or of the one before is not zero.
 Change change(const Trace& trace, const std::vector<Vec3>& rows, bool at_updates) {
   Change found;
   for (std::size_t i = 1; i < rows.size(); ++i) {

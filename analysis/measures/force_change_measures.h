@@ -1,6 +1,6 @@
 // Change of the force on the hand from one tick to the next: at frame updates (jump) and between them
-// (noise). A change counts if at least one of its two ticks has a force, so the begin and the end of a force
-// count too.
+// (noise). A change counts if at least one of its two ticks has a force, so the beginning and the end of a
+// force count too.
 #pragma once
 
 namespace remote_touch {

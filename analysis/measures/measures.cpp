@@ -19,7 +19,7 @@ namespace remote_touch {
 
 namespace {
 
-// Share of the ticks for which the condition on the tick's number holds.
+// Fraction of the ticks i for which holds(i) is true; 0 for a trace without ticks.
 template <class Condition>
 double fraction(const Trace& trace, Condition&& holds) {
   std::size_t count = 0;
@@ -222,13 +222,13 @@ double popped_through(const Trace& trace) {
 double max_penetration_m(const Trace& trace) {
   double deepest = std::numeric_limits<double>::quiet_NaN();
   for (const double distance : trace.signed_distance_m)
-    if (!std::isnan(distance)) deepest = std::fmax(deepest, std::max(0.0, -distance));  // NaN loses
+    if (!std::isnan(distance)) deepest = std::fmax(deepest, std::max(0.0, -distance));  // ignores NaN
   return deepest;
 }
 
 double min_slave_distance_m(const Trace& trace) {
   double min = std::numeric_limits<double>::infinity();
-  for (const double distance : trace.slave_distance_m) min = std::min(min, distance);  // NaN loses
+  for (const double distance : trace.slave_distance_m) min = std::min(min, distance);  // ignores NaN
   return std::isinf(min) ? std::numeric_limits<double>::quiet_NaN() : min;
 }
 
@@ -253,7 +253,7 @@ double rms_surface_error_m(const Trace& trace) {
     ++count;
   }
   if (count == 0)
-    return std::numeric_limits<double>::quiet_NaN();  // not 0 / 0: its sign is the machine's choice
+    return std::numeric_limits<double>::quiet_NaN();  // not 0 / 0, whose sign depends on the machine
   return std::sqrt(squares / static_cast<double>(count));
 }
 

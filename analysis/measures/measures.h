@@ -14,24 +14,24 @@ struct Trace;
 // 1 when the proxy's centre (with a tool its centre of mass) passed through the true surface and ended behind
 // it, else 0. It is behind if its distance to the surface is less than -Trace::held_depth_m, which is 0 for a
 // ball. 0 if it began behind the surface and stayed there. NaN if the truth is not known at the end, or was
-// not known while the proxy got to the back: beside an object it may have gone round the border. See
+// not known while the proxy moved to the back: beside an object it may have gone round the border. See
 // surface_side.h.
 double popped_through(const Trace& trace);
-// Maximum distance of the proxy's centre behind the true surface, m; 0 if it never was. Over the ticks with a
-// known truth; NaN without any.
+// Maximum distance of the proxy's centre behind the true surface, m, over the ticks with a known truth. 0 if
+// it never was behind the surface; NaN if there is no such tick.
 double max_penetration_m(const Trace& trace);
-// The minimum distance of the slave command to the true surface, m, over the ticks with a known truth; NaN
-// without any. With a uniform radius the fixture is violated by r_f + r_c minus this.
+// Minimum distance of the slave command to the true surface, m, over the ticks with a known truth; NaN if
+// there is no such tick. A fixture of uniform radius is violated by r_f + r_c minus this distance.
 double min_slave_distance_m(const Trace& trace);
 // Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface, by more than
-// Trace::held_depth_m; NaN without any.
+// Trace::held_depth_m; NaN if there is no such tick.
 double wrong_side_fraction(const Trace& trace);
 // Error of the rendered surface: rms of the difference between the centre's distance to the true surface and
 // its distance to the nearest point, over the ticks that end in contact and have a known truth, m. NaN if
 // there is no such tick.
 double rms_surface_error_m(const Trace& trace);
-// Force dropouts: fraction without force of the ticks in which the surface holds the proxy back, see
-// pressing().
+// Force dropouts: of the ticks in which the surface holds the proxy back (see pressing()), the fraction
+// without a force. 0 if there is no such tick.
 double no_force_fraction(const Trace& trace, double contact_radius_m);
 // Proxy steps per tick.
 double mean_steps(const Trace& trace);
@@ -51,10 +51,10 @@ enum class MeasuredRuns { all, proxy, contact, tool, guidance, true_normal };
 // A measure that needs only a trace, by name: for summaries and for sweeps.
 struct Measure {
   std::string name;
-  std::string unit;     // "m", "N/s"; of a ratio or a count "1"
+  std::string unit;     // "m", "N/s"; "1" for a ratio or a count
   std::string meaning;  // one line that continues "the measure is the ..."
   MeasuredRuns runs = MeasuredRuns::all;
-  std::function<double(const Trace&)> of;  // NaN where nothing can be said; called from many threads
+  std::function<double(const Trace&)> of;  // NaN if it has no value; called from many threads
   // The direction in which it gets better. It is the last member, so that a program may omit it.
   Better better = Better::neither;
 };
@@ -65,7 +65,7 @@ bool applies(const Measure& measure, const Trace& trace);
 // True if the measure needs Trace::contact or Trace::true_normal, which are not stored as columns.
 bool needs_true_contact(const Measure& measure);
 const char* name_of(MeasuredRuns runs);  // "all runs", "runs without a tool", ...
-// NaN where the measure does not apply.
+// NaN if the measure does not apply.
 double value_of(const Measure& measure, const Trace& trace);
 
 }  // namespace remote_touch

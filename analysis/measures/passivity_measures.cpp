@@ -23,14 +23,14 @@ double work_J(const Trace& trace, std::size_t i) {
          torque_Nm.dot(rotation_vector(trace.hip_orientation[i + 1] * trace.hip_orientation[i].conjugate()));
 }
 
-// The hand feels a wrench in tick i. It feels no command for which the device has no motor.
+// True if the hand feels a wrench in tick i. It feels no command for which the device has no motor.
 bool has_wrench(const Trace& trace, std::size_t i) {
   if (trace.has_hand())
     return !trace.device_force_N[i].isZero(0) || (trace.has_tool() && !trace.device_torque_Nm[i].isZero(0));
   return !trace.force_N[i].isZero(0) || (trace.has_tool() && !trace.torque_Nm[i].isZero(0));
 }
 
-// The work in each piece that begins and ends with an update and in which the hand feels a force or a torque.
+// The work from each frame update to the next one, if the hand feels a force or a torque in between.
 std::vector<double> work_between_updates_J(const Trace& trace) {
   std::vector<double> pieces;
   double work = 0;

@@ -23,7 +23,7 @@ double felt_jump_fraction(const Trace& trace, double weber) {
   return updates == 0 ? kNoValue : felt / updates;
 }
 
-// Every tick lasts as long as the mean one: the last has no successor.
+// The last tick has no successor, so its duration is assumed to be the mean of the others.
 double deadband_packets_per_s(const Trace& trace, double weber) {
   if (trace.length() < 2) return kNoValue;
   const double intervals = static_cast<double>(trace.length() - 1);

@@ -13,8 +13,8 @@ struct Trace;
 // Weber fraction, for example 0.1.
 double felt_jump_fraction(const Trace& trace, double weber);
 // Packets per second of a connection with a perceptual dead-band (IEEE 1918.1.1): the first tick is sent, and
-// then each tick whose force differs from the last one sent by more than weber times that one. NaN with fewer
-// than two ticks.
+// then each tick whose force differs from the last force sent by more than weber times that force. NaN with
+// fewer than two ticks.
 double deadband_packets_per_s(const Trace& trace, double weber);
 
 }  // namespace remote_touch

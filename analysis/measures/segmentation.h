@@ -7,7 +7,8 @@
 
 namespace remote_touch {
 
-// Counts of pixels with depth; those without cannot be points of a fixture and are counted separately.
+// found, missed and wrong count pixels with depth. Pixels of the class without depth cannot be points of a
+// fixture and are counted separately.
 struct SegmentationScore {
   int found = 0;   // pixels of the class that are selected
   int missed = 0;  // pixels of the class that are not selected
@@ -21,14 +22,15 @@ struct SegmentationScore {
   double recall() const;          // selected fraction of the pixels of the class with depth
   double precision() const;       // fraction of the selected pixels that are of the class
   double depth_fraction() const;  // fraction of all pixels of the class that have a depth
-  // Wilson's 95 % intervals of the first two, as if pixels were independent. They reflect the number of
-  // pixels only: a hue at the edge of a range is wrong for a whole surface at once, and the same pixel in
-  // several frames is not several independent pixels.
+  // Wilson's 95 % intervals of recall and precision, as if pixels were independent; [0, 1] if the denominator
+  // is 0. They reflect the number of pixels only: a hue at the edge of a range is wrong for a whole surface
+  // at once, and the same pixel in several frames is not several independent pixels.
   std::pair<double, double> recall_interval() const;
   std::pair<double, double> precision_interval() const;
 };
 
-// All three have an entry for each pixel. Throws std::invalid_argument if their lengths differ.
+// Counts the pixels. All three arguments have one entry for each pixel. Throws std::invalid_argument if their
+// lengths differ.
 SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
                                      const std::vector<char>& has_depth);
 

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// Times are rounded: a settling of 100 ticks is not 101.
+// Tolerance for rounded times: without it a settling of 100 ticks could last 101 ticks.
 constexpr double kSameTime_s = 5e-7;
 
 // Calls act(i) for every settled tick.
@@ -18,7 +18,7 @@ template <class Act>
 void for_each_settled(const Trace& trace, Act&& act) {
   double below_since_s = kNoValue;
   for (std::size_t i = 0; i < trace.contact.size(); ++i) {
-    if (!(trace.contact[i].hip_distance_m < 0)) {  // NaN too: the truth is not known there
+    if (!(trace.contact[i].hip_distance_m < 0)) {  // or NaN: the truth is not known
       below_since_s = kNoValue;
       continue;
     }
@@ -33,7 +33,7 @@ double max_of_heights(const Trace& trace, Value&& value) {
   double max = kNoValue;
   for_each_settled(trace, [&](std::size_t i) {
     const double height = trace.contact[i].height_m;
-    if (!std::isnan(height)) max = std::fmax(max, value(height));  // NaN loses
+    if (!std::isnan(height)) max = std::fmax(max, value(height));  // ignores NaN
   });
   return max;
 }

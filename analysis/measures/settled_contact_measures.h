@@ -3,10 +3,12 @@
 // sides count, and so does every tick, not only the last.
 //
 // Only settled ticks are judged: those in which the HIP has been below the true surface for kSettling_s
-// without a break, so that every renderer must hold it back. Where the hand follows a path, they are the same
-// for every renderer. Settled ticks in which the truth at the contact point is not known are left out.
+// without a break, so that every renderer must hold it back. If the hand follows a prescribed path, they are
+// the same for every renderer. The measures of a distance skip settled ticks in which the truth at the
+// contact point is not known.
 //
-// NaN if no tick settled, if the truth is known in none of them, or if Trace::contact is empty.
+// Every measure is NaN if no tick is settled or if Trace::contact is empty. A measure of a distance is also
+// NaN if no settled tick has a known truth.
 #pragma once
 
 namespace remote_touch {
@@ -15,8 +17,8 @@ struct Trace;
 
 inline constexpr double kSettling_s = 0.1;
 
-// Maximum distance of the contact point from the true surface, m: on either side; below it (0 if it never
-// was); above it (0 if it never was).
+// Maximum distance of the contact point from the true surface, m, on either side of it (max_contact_error_m),
+// below it (max_sink_m, 0 if it never was below) and above it (max_float_m, 0 if it never was above).
 double max_contact_error_m(const Trace& trace);
 double max_sink_m(const Trace& trace);
 double max_float_m(const Trace& trace);

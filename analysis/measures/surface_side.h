@@ -3,12 +3,12 @@
 //
 // The proxy is behind the surface if its signed distance d is less than -held_depth_m, and else in front of
 // it. The held depth (see held_depth_m() in rendered_contact.h) is 0 for a ball, whose centre stays in front.
-// A proxy that rests on the surface itself is a little behind it as often as in front.
+// A proxy that rests on the surface itself is slightly behind it as often as in front of it.
 //
-// A proxy pops through if it gets from the front to the back from one tick to the next, while d is known.
+// A proxy pops through if it moves from the front to the back while d is known in every tick.
 // A proxy that begins behind the surface has not passed through it. If d was unknown in between, the proxy
 // may have gone round a border of the surface, through a hole in the measurement, or through the surface:
-// then it is unknown how it got to the back.
+// then it is not known how it came to the back.
 #pragma once
 
 namespace remote_touch {
@@ -17,7 +17,7 @@ class SurfaceSide {
  public:
   explicit SurfaceSide(double held_depth_m) : held_depth_m_(held_depth_m) {}
 
-  // The next tick; NaN: the distance is unknown. Returns true if the proxy pops through in this tick.
+  // Adds the next tick; NaN: the distance is unknown. Returns true if the proxy pops through in this tick.
   bool add(double signed_distance_m);
   // The result after the last tick: 1 if the proxy is behind the surface and popped through it, 0 if it is in
   // front or has been behind since the first tick. NaN if its distance is unknown, if it is unknown how it

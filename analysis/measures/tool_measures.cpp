@@ -81,7 +81,7 @@ double max_tool_penetration_m(const Trace& trace) {
 double min_clearance_m(const Trace& trace) {
   if (!trace.has_tool()) return kNoValue;
   double found = std::numeric_limits<double>::infinity();
-  for (const double gap_m : trace.nearest_distance_m) found = std::min(found, gap_m);  // NaN loses
+  for (const double gap_m : trace.nearest_distance_m) found = std::min(found, gap_m);  // ignores NaN
   return std::isinf(found) ? kNoValue : found;
 }
 

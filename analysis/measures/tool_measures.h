@@ -1,5 +1,5 @@
-// Measures of runs with a tool (chapters 6 and 7) and with guidance. NaN where a run has no tool, or no
-// guidance.
+// Measures of runs with a tool (chapters 6 and 7) and with guidance. A measure is NaN if the run has no tool,
+// or no guidance.
 #pragma once
 
 namespace remote_touch {
@@ -19,7 +19,7 @@ double max_contact_clusters(const Trace& trace);
 // Depth of the deepest point of the newest frame in the tool, m: maximum over the ticks.
 double max_tool_penetration_m(const Trace& trace);
 // Gap between the tool and the nearest point or region, m, negative inside the tool: minimum over the ticks
-// in which there is one; NaN when there never was.
+// that have a nearest point or region; NaN if there is no such tick.
 double min_clearance_m(const Trace& trace);
 // Collision detections in a tick.
 double mean_detections(const Trace& trace);

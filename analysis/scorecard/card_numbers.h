@@ -25,7 +25,7 @@ struct CardNumbers {
   struct Mean {
     CardPlace place;
     std::string measure, units;
-    MeanDifference value;  // NaN where there is none: no run succeeded, or one run has no interval
+    MeanDifference value;  // NaN if no run succeeded; the interval is NaN also for one run
   };
   std::vector<Count> counts;
   std::vector<Mean> means;
@@ -34,8 +34,8 @@ struct CardNumbers {
 enum class KeptMeasures { judged, all };
 CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept);
 
-// Returns the column of this type, which must be as long as the table's first. Throws std::out_of_range if
-// there is none.
+// Returns the values of the named column. Throws std::out_of_range if the table has no such column, or if it
+// has another type than List or another length than the first column.
 template <class List>
 const List& values_of(const Table& table, const std::string& name) {
   for (const Column& column : table.columns) {
@@ -58,8 +58,8 @@ CardNumbers numbers_in(const Table& counts, const Table& means);
 // - a mean outside the stored Student's interval, widened by a thousandth of the mean (a single run has only
 //   the widening),
 // - a mean that is missing, and a number that is not stored at all.
-// Stored numbers that the new card lacks are not compared. As the seeds are the same, equal programs have
-// equal numbers: no difference is chance.
+// Stored numbers that the new card lacks are not compared. Both cards use the same seeds, so equal programs
+// have equal numbers and no difference is due to chance.
 std::vector<std::string> differences(const CardNumbers& stored, const CardNumbers& now);
 
 }  // namespace remote_touch

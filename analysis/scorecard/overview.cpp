@@ -17,7 +17,8 @@ MeanDifference mean_over_scenes(const std::vector<double>& fractions) {
   return bootstrap_mean({fractions}, kBootstrapKey);
 }
 
-// Others that are better by more than chance; of several the first in the order.
+// Adds a weakness if other methods are better by more than chance. It names the first of them in the order of
+// the ranking.
 void add_significant(const SceneScore& scene, const std::string& what, const std::string& units,
                      const Ranking& ranking, const Scorecard& card, std::size_t own,
                      std::vector<Weakness>& list) {
@@ -32,7 +33,7 @@ void add_significant(const SceneScore& scene, const std::string& what, const std
   if (found.ahead > 0) list.push_back(found);
 }
 
-// Others with a larger fraction, from what fraction(method) gives; the largest of them.
+// Counts the methods c whose fraction(c) is larger than that of `own`, and names the one with the largest.
 template <class Fraction>
 Weakness more_often(const SceneScore& scene, const char* what, const Scorecard& card, std::size_t own,
                     Fraction&& fraction) {

@@ -1,4 +1,5 @@
-// Summary of a scorecard's methods over all scenes, and a list of what a method is behind others in.
+// Summary of a scorecard's methods over all scenes, and a list of everything in which a method is behind
+// others.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@ namespace remote_touch {
 enum class Mark { none, best, worst };
 Mark mark_of(const Ranking& ranking, std::size_t method);
 
-// A scene counts as held if more than this fraction of the runs are successes.
+// A scene counts as held if more than this fraction of its runs with noise are successes.
 inline constexpr double kHeldFraction = 0.9;
 
 // Results of one method over all scenes.
@@ -24,21 +25,22 @@ struct MethodSummary {
 };
 std::vector<MethodSummary> overview(const Scorecard& card);
 
-// The method of this project whose weaknesses are shown first.
+// The method of this project, whose weaknesses behind_table() lists.
 inline constexpr const char* kOwnMethod = "tracked-sheet";
 
 // Something in which a method is behind another one.
 struct Weakness {
   std::string scene, what, units;  // "success", "success without noise", or a measure
-  std::string other;               // the first of those that are ahead of it
+  std::string other;               // the best of the methods that are ahead
   int ahead = 0;                   // number of methods that are ahead
   double own_mean = 0, other_mean = 0;
-  double p = 0;  // corrected for all comparisons of the card; NaN: not tested, as runs without noise
+  double p = 0;  // corrected for all comparisons of the card; NaN: not tested, as without noise
   bool is_significant = false;  // true if the difference is more than chance
 };
-// Returns everything in which others are better than the method by more than chance, then the scenes in which
-// others succeed more often, but not by more than chance, or without noise. Both parts are in the order of
-// the scenes. Empty for a method that the card does not have.
+// Returns first everything in which other methods are better by more than chance. Then follow the scenes in
+// which others succeed more often with noise, but not by more than chance, and those in which others succeed
+// more often without noise. Both parts are in the order of the scenes. Empty for a method that the card does
+// not have.
 std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method);
 
 // Tables of a result: "overview", with a row for each method, and "behind", with a row for each weakness of

@@ -103,7 +103,7 @@ Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool ev
   return result;
 }
 
-// Each pair of methods is one test, though it stands in both directions.
+// Each pair of methods is one test, although against[a][b] and against[b][a] both hold its p value.
 void correct_together(const std::vector<Ranking*>& rankings) {
   std::vector<MethodComparison*> there, back;
   std::vector<double> p;

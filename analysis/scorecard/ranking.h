@@ -22,8 +22,7 @@ PairedValues distinct(const PairedValues& values, const Repeats& repeats);
 
 // Minimum number of pairs for a verdict, and of values of a measure for a rank by it.
 inline constexpr std::int64_t kMinPairs = 12;
-// A difference is more than chance where the p value, corrected for all comparisons of the card, is below
-// this.
+// A difference is more than chance if the p value, corrected for all comparisons of the card, is below this.
 inline constexpr double kSignificance = 0.05;
 
 // Comparison of one method with another, over the pairs in which both have a number.
@@ -36,7 +35,7 @@ struct MethodComparison {
 
 struct Ranking {
   std::vector<std::size_t> order;    // methods, the best first by their own means; unranked ones last
-  std::size_t ranked = 0;            // number of ranked methods: with kMinPairs values; of an event, any
+  std::size_t ranked = 0;            // number of methods with kMinPairs values, or any value of an event
   std::vector<MeanDifference> mean;  // mean of each method, with its interval
   // [a][b]: of method a with b. Empty for a measure that is only reported.
   std::vector<std::vector<MethodComparison>> against = {};
@@ -47,16 +46,15 @@ struct Ranking {
   std::vector<std::size_t> top_group = {};
 };
 
-// event: values are 0 and 1, and two methods are compared by the exact sign test of the pairs that differ;
-// other measures are compared by mean_test() of the differences. A pair counts if both methods have a number:
-// use NaN if a run did not do what is measured. A level at which both methods repeat one run is one pair.
-// near_zero compares magnitudes. repeats: one entry for each method; empty if no method repeats a run.
+// event: true if all values are 0 or 1. Two methods are then compared by the exact sign test of the pairs
+// that differ, else by mean_test() of the differences. A pair counts if both methods have a number: use NaN
+// if a run did not do what is measured. A level at which both methods repeat one run is one pair. near_zero
+// compares magnitudes. repeats: one entry for each method; empty if no method repeats a run.
 Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event,
                 const std::vector<Repeats>& repeats = {});
 
-// Corrects the p values of all these rankings together by Holm's method, and decides anew: then the
-// probability that any "better" among them is chance is at most kSignificance, whichever of them are looked
-// at.
+// Corrects the p values of all these rankings together by Holm's method, and decides anew. The probability
+// that any "better" among them is due to chance is then at most kSignificance.
 void correct_together(const std::vector<Ranking*>& rankings);
 
 }  // namespace remote_touch

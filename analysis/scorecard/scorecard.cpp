@@ -181,7 +181,8 @@ Table success_table(const Scorecard& card, const CardNumbers& numbers) {
   return table;
 }
 
-// 1, 2, ... in the order of each standing, and who stands out: 1 best, -1 worst of all, 0 neither.
+// The place is 1, 2, ... in the order of each ranking. The mark is 1 for the best method, -1 for the worst
+// and 0 for others.
 Table ranking_table(const Scorecard& card) {
   std::vector<std::string> scene, method, measure;
   std::vector<std::int32_t> place, mark, top;
@@ -209,7 +210,8 @@ Table ranking_table(const Scorecard& card) {
   return table;
 }
 
-// A panel of the share of successes over noise; a scene with its own noise has one place.
+// Adds a panel of the fraction of successes over the noise. A scene with its own noise has one point, at 0
+// mm.
 void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
   const SceneScore& s = card.scenes[number];
   Table table{"panel_" + std::to_string(number), s.name};

@@ -14,7 +14,8 @@
 
 namespace remote_touch {
 
-// A fraction of runs with Wilson's interval; runs that are one and the same (Repeats) count once.
+// A fraction of runs with Wilson's interval; runs that are one and the same (Repeats) count once. Without
+// runs the fraction is NaN and the interval is [0, 1].
 struct Proportion {
   int events = 0, runs = 0;
   double fraction = 0, low = 0, high = 1;
@@ -23,19 +24,20 @@ struct Proportion {
 struct JudgedMeasure {
   std::string name, units;
   Better better = Better::neither;
-  // Over all levels with noise; the means have Student's intervals. Judged measures are those of successful
-  // runs, and two methods are compared where both succeeded. Reported ones are those of all runs.
+  // The ranking is over all levels with noise; the means have Student's intervals. A judged measure uses the
+  // successful runs only, and two methods are compared in the pairs in which both succeeded. A measure that
+  // is only reported (Better::neither) uses all runs.
   Ranking ranking = {};
   // Mean of each method at each noise level.
   std::vector<std::vector<MeanDifference>> at_level = {};
 };
 
 // Number of successes of a method by one rule. Runs without noise are not mixed with the others: most of them
-// are one run, which says nothing about chance.
+// repeat one run, which shows nothing about chance.
 struct Successes {
   std::vector<Proportion> at_level;
   Proportion noisy;                      // over all levels with noise, a scene's own included
-  std::optional<Proportion> noise_free;  // none in a scene with its own noise
+  std::optional<Proportion> noise_free;  // absent in a scene with its own noise
 };
 
 struct SceneScore {
@@ -59,8 +61,9 @@ struct SceneRules {
   std::vector<Bound> old_success = {};  // the previous rule; empty without one
 };
 
-// Scores the finished sweeps of all methods in a scene; their one axis is the noise. Comparisons are not yet
-// corrected for the others of a card. Throws std::out_of_range for an unknown measure.
+// Scores the finished sweeps of all methods in a scene; their one axis is the noise. own_noise: the scene has
+// its own noise, which is its only level. Comparisons are not yet corrected for the others of a card. Throws
+// std::out_of_range for an unknown measure.
 SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise);
 
 // Corrects all comparisons of the card together, see correct_together().
@@ -68,8 +71,9 @@ void correct(Scorecard& card);
 
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
-// The tables of the result file: success, measures and standings, with a row for each scene, method, and
-// level or measure; overview and behind, see overview.h; and the curves of every scene's panel.
+// Returns the figure of the result file. Its tables are success, measures and standings, with a row for each
+// scene, method, and level or measure; overview and behind, see overview.h; and the curves of every scene's
+// panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch

@@ -26,7 +26,7 @@ long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds
     for (std::size_t i = 0; i < bounds.size(); ++i) {
       const double value = result.measure(bounds[i].measure)[run];
       if (bounds[i].holds(value)) continue;
-      // No number sorts behind all numbers.
+      // NaN sorts behind all numbers.
       failures.emplace_back(i, std::isnan(value) ? std::numeric_limits<double>::infinity() : value, run);
       break;
     }

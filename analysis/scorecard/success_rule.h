@@ -22,8 +22,8 @@ struct Bound {
 std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds);
 
 // Returns the run that is a typical failure of a cell: the median of its unsuccessful runs, ordered by the
-// first bound that they break and by its measure, with runs that ended in an error last. -1 if no run is
-// unsuccessful.
+// first bound that they break and then by the value of its measure, with runs that ended in an error last. -1
+// if no run is unsuccessful.
 long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds, std::size_t cell);
 
 }  // namespace remote_touch

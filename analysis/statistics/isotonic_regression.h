@@ -5,7 +5,8 @@
 
 namespace remote_touch {
 
-// The decreasing values nearest to the given ones by weighted least squares (pool adjacent violators).
+// Returns the decreasing values nearest to the given ones by weighted least squares (pool adjacent
+// violators). Equal neighbours count as decreasing.
 std::vector<double> isotonic_falling(const std::vector<double>& values, const std::vector<double>& weights);
 
 // Returns the x at which a decreasing curve over increasing x crosses the level, by linear interpolation: the

@@ -11,8 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Whole numbers below a limit. Streams of simulations have their use in the upper bits of the first word;
-// here all bits are set, which no frame has.
+// Random whole numbers below a limit. The streams of simulations encode their purpose in the upper bits of
+// the first word of the counter. Here all of its bits are set, which no stream of a simulation has.
 class Choices {
  public:
   Choices(std::uint64_t key, int draw)

@@ -26,14 +26,15 @@ double root_mean_square(const std::vector<double>& values) {
   return max * std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-// Binomial weights downwards from the middle, where they are largest, in units of the largest: each follows
-// from the one above it. Their sum is half of all, so neither factorials nor powers of 2 are needed.
+// Computes the binomial weights downwards from the middle, where they are largest, in units of the largest
+// weight. Each weight follows from the one before it, so no factorials are needed. `half` is half of the sum
+// of all weights, so no powers of 2 are needed.
 double sign_test(std::int64_t plus, std::int64_t minus) {
   const std::int64_t count = plus + minus, fewer = std::min(plus, minus);
   if (2 * fewer >= count - 1) return 1;
   double weight = 1, half = count % 2 == 0 ? 0.5 : 1, tail = 0;
   for (std::int64_t i = count / 2; i > 0 && weight > 0; --i) {
-    weight *= static_cast<double>(i) / static_cast<double>(count - i + 1);  // now that of i - 1
+    weight *= static_cast<double>(i) / static_cast<double>(count - i + 1);  // now the weight of i - 1
     half += weight;
     if (i - 1 > fewer) continue;
     tail += weight;

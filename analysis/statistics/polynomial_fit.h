@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// sum of c_k x^power_k, powers from 0. Computed by multiplication: the C library's pow may differ in its last
-// bit.
+// Returns the sum of c_k x^power_k. It multiplies instead of calling pow(), whose last bit depends on the C
+// library. pre: powers >= 0.
 double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x);
 
 struct PolynomialFit {

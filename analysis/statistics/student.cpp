@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 struct Moments {
-  double count = 0, mean = 0, variance = 0, third = 0;  // third: mean of the cubes, not of count - 1
+  double count = 0, mean = 0, variance = 0, third = 0;  // third: mean of the cubed deviations
 };
 
 Moments moments_of(const std::vector<double>& values) {
@@ -30,14 +30,15 @@ Moments moments_of(const std::vector<double>& values) {
   return m;
 }
 
-// Hall's transformation, which grows with the mean whatever the skewness.
+// Hall's transformation of t, which increases with the mean whatever the skewness is.
 double hall_t(const Moments& m) {
   const double sd = std::sqrt(m.variance), u = m.mean / sd, skewness = m.third / (m.variance * sd);
   const double y = skewness * u;
   return std::sqrt(m.count) * (u * (1 + y / 3 + y * y / 27) + skewness / (6 * m.count));
 }
 
-// Numbers of each group without NaNs; those alone in theirs together at the front.
+// Returns the numbers of each group without NaNs. The first list has the numbers that are alone in their
+// group, except those of certain groups.
 std::vector<std::vector<double>> with_lone_numbers_together(const std::vector<std::vector<double>>& groups,
                                                             const std::vector<bool>& certain) {
   std::vector<std::vector<double>> known(1);

@@ -15,20 +15,22 @@ double student_quantile(double probability, int degrees);
 
 // Mean over all numbers and its 95 % interval, from the scatter within each group, such as a noise level: the
 // means of groups may differ. Degrees of freedom by F. Satterthwaite (Biometrics Bulletin 2 (1946), 110-114),
-// rounded down. A single number in a group shows no scatter: all single numbers together form one group,
-// except where certain[i] says that group i has none (empty: false for all groups). NaNs are skipped; NaN
-// with too few.
+// rounded down. A number that is alone in its group shows no scatter of its own. All such numbers together
+// form one group (one number alone adds no scatter), except those of a group i with certain[i], whose scatter
+// is known to be 0 (an empty list: false for all groups). NaNs are skipped. The mean is NaN without numbers;
+// the interval is NaN if no group then has two numbers.
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
                             const std::vector<bool>& certain = {});
 
-// Test that the mean of paired differences is 0: the two-sided p of Student's t, of Student's t corrected for
-// skewness (P. Hall, J. R. Stat. Soc. B 54 (1992), 221-228), and the smallest p that an exact sign-flip test
-// could give for so many pairs, 2^(1 - n): the largest of the three. 1 for fewer than two numbers, and where
-// both forms of t disagree about the sign. NaNs are skipped.
+// Tests that the mean of n paired differences is 0. Returns the largest of three p values: the two-sided p of
+// Student's t, that of Student's t corrected for skewness (P. Hall, J. R. Stat. Soc. B 54 (1992), 221-228),
+// and 2^(1 - n), the smallest p that an exact sign-flip test of n pairs can give. Returns 1 if there are
+// fewer than two numbers, if their mean is 0, or if the two forms of t have different signs. NaNs are
+// skipped.
 //
 // Probability of a false p < 0.05 (no true difference): at most 0.05 if a difference is as likely as its
 // opposite, as for two equal methods, however skewed their values are. If the differences themselves are
-// skewed around a mean of 0, it is larger; in brackets that of t alone:
+// skewed around a mean of 0, it is larger. The table has this probability, and in brackets that of t alone:
 //
 //                          12 pairs      20 pairs
 //   exponential            0.06 (0.10)   0.05 (0.08)

@@ -22,12 +22,13 @@ namespace {
 
 constexpr const char* kTemporary = ".partial-";
 
-// /dev/null and /dev/full, which take or refuse everything at once. Any other device may wait for ever.
+// True for /dev/null and /dev/full, which accept or refuse all data at once. Any other device may block for
+// ever.
 bool is_sink(const struct stat& there) {
   return S_ISCHR(there.st_mode) && (there.st_rdev == ::makedev(1, 3) || there.st_rdev == ::makedev(1, 7));
 }
 
-// 0 or the errno of what failed.
+// Returns 0, or the errno of the call that failed.
 int write_and_flush(int file, const char* data, std::size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(file, data, size);
@@ -78,7 +79,8 @@ std::filesystem::path write_temporary(const std::filesystem::path& target, const
   refuse_size(target, error, size);
 }
 
-// One of the files that are replaced together: the new one and a copy of the old one wait beside it.
+// One of the files that are replaced together. The new file and a copy of the old one are beside it until the
+// end.
 class Replacement {
  public:
   explicit Replacement(const NewFile& file) : place_(resolved(file.target)), old_(temporary_of(file.target)) {
@@ -105,7 +107,7 @@ class Replacement {
   Replacement(const Replacement&) = delete;
   Replacement& operator=(const Replacement&) = delete;
 
-  // 0 or the errno of what failed.
+  // Returns 0, or the errno of the call that failed.
   int rename() {
     renamed_ = ::rename(new_.c_str(), place_.c_str()) == 0;
     return renamed_ ? 0 : errno;
@@ -212,7 +214,7 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
 void remove_leftovers(const std::filesystem::path& target) {
   const std::filesystem::path place = resolved(target), folder = folder_of(place);
   const std::string start = place.filename().string() + kTemporary;
-  // Not std::filesystem::directory_iterator: without memory it ends the program.
+  // std::filesystem::directory_iterator is not used: it ends the program if memory runs out.
   const std::unique_ptr<DIR, int (*)(DIR*)> list(::opendir(folder.c_str()), ::closedir);
   while (const dirent* const entry = list ? ::readdir(list.get()) : nullptr)
     if (std::string_view(entry->d_name).starts_with(start)) ::unlink((folder / entry->d_name).c_str());

@@ -70,7 +70,7 @@ std::filesystem::path journal_of(const std::filesystem::path& target) {
 }
 
 bool is_journal(const std::filesystem::path& file) {
-  std::error_code unreachable;  // a pipe would wait
+  std::error_code unreachable;  // reading a pipe would block
   return std::filesystem::is_regular_file(file, unreachable) &&
          opening_of(file, kJournalOpening.size()) == kJournalOpening;
 }
@@ -116,13 +116,13 @@ JournalWriter::~JournalWriter() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-// The file has its name only once its first block is whole: a journal without one would help nobody.
+// The file gets its name only when its first block is whole, because a journal without a block is useless.
 void JournalWriter::create(const JournalBlock& first) {
   const std::filesystem::path temporary = temporary_of(target_);
   descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) refuse(errno);
   try {
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks has none
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // fails on a file system without locks
     write(std::string(kJournalOpening) + bytes_of(first, next_number_++));
     sync();
     give_name(temporary);
@@ -150,7 +150,7 @@ void JournalWriter::refuse(int error) const {
                                          "): expected a writable place with room");
 }
 
-// Cuts off again what was written of a block that finds no room. If that fails, readers leave it out.
+// Removes the written part of a block for which there is no room. If that fails, readers ignore this part.
 void JournalWriter::write(const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);

@@ -64,7 +64,7 @@ class JournalWriter {
 
   const std::filesystem::path target_, file_;
   int descriptor_ = -1;
-  std::uint64_t next_number_ = 0, size_ = 0;  // size_: up to the end of the last whole block
+  std::uint64_t next_number_ = 0, size_ = 0;  // size_: bytes up to the end of the last whole block
 };
 
 // Reads the blocks in order, up to the first one that is not whole: cut off, changed or out of order.

@@ -87,7 +87,7 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
 
 ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory_for_each_byte) {
   constexpr std::size_t kMinMemory = 512u << 20;
-  std::error_code unreachable;  // the reader says why
+  std::error_code unreachable;  // the reader reports the reason
   const std::uintmax_t found = std::filesystem::file_size(file, unreachable);
   const std::size_t size = unreachable ? 0 : static_cast<std::size_t>(found);
   return {kMinMemory + memory_for_each_byte * size, 1 + static_cast<unsigned>(size >> 20)};

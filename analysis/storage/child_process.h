@@ -18,20 +18,20 @@ struct ChildLimits {
 // MiB.
 ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory_for_each_byte);
 
-// Returns what work returns; its changes to memory do not reach this process. Throws std::runtime_error with
-// the message of the exception of work, or with how the process ended.
+// Returns the result of `work`. Its changes to memory do not affect this process. Throws std::runtime_error
+// with the message of the exception of `work`, or with the reason why the child process ended.
 std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work);
 
-// A reader whose whole input is bytes, so that also a process that began earlier can run it.
+// A reader whose only input is a string of bytes, so that a process which was started earlier can run it too.
 using ChildReader = std::string (*)(const std::string& question);
-// Runs a reader in a child process; returns and throws as in_child does.
+// Runs a reader in a child process. Returns and throws like in_child().
 using RunInChild =
     std::function<std::string(const ChildLimits&, ChildReader reader, const std::string& question)>;
 // Runs the reader in a child that begins for this question and ends with its answer.
 std::string in_own_child(const ChildLimits& limits, ChildReader reader, const std::string& question);
 
-// Called in a process that has just begun as a child. Signals then end it, whatever the program does with
-// them, and so do the end of its parent and exceeding the limits.
+// Prepares a child process that has just started. Signals then end it, whatever handlers the program has. The
+// end of its parent and exceeding the limits end it too.
 void become_limited_child(const ChildLimits& limits);
 
 }  // namespace remote_touch

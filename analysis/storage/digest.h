@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// SHA-256 over name, width and little-endian values (texts each with a zero at the end) of each column in
-// order, as 64 hexadecimal digits.
+// SHA-256 over name, width and little-endian values of each column in order, as 64 hexadecimal digits. Names
+// and texts each end with a zero byte. The name of a table precedes its columns.
 std::string digest(const std::vector<Column>& columns);
 std::string digest(const std::vector<Table>& tables);
 

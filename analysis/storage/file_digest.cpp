@@ -34,7 +34,7 @@ struct Superblock {
     std::memcpy(&address, bytes.data() + place, sizeof address);
     return address;
   }
-  // Counted from the HDF5 part on, as in an image that knows nothing of the user block.
+  // Makes an address count from the start of the HDF5 part, as in an image without a user block.
   void move(std::size_t place) {
     const std::uint64_t address = at(place) - kDigestBlockSize;
     std::memcpy(bytes.data() + place, &address, sizeof address);
@@ -81,7 +81,7 @@ std::string opening_of(const std::filesystem::path& file, std::size_t size) {
 }
 
 bool has_result_header(const std::filesystem::path& file) {
-  std::error_code unreachable;  // a pipe would lose what is read of it
+  std::error_code unreachable;  // reading a pipe would remove its data
   if (!std::filesystem::is_regular_file(file, unreachable)) return false;
   return opening_of(file, kResultOpening.size()) == kResultOpening;
 }

@@ -15,15 +15,16 @@ inline constexpr std::string_view kResultOpening =
     "Remote Touch result. HDF5 begins at byte 512; SHA-256 from there on:\n";
 inline constexpr std::size_t kDigestBlockSize = 512;  // the smallest user block there is
 
-// The image of an HDF5 file with the seal before it, as h5jam puts a user block before a file: the library
+// Returns the image of an HDF5 file with the seal in front of it, as h5jam adds a user block. The library
 // finds the start of the HDF5 part and counts offsets from there.
 std::vector<char> with_file_digest(const std::vector<char>& image);
 
-// Seals a finished file in place; it was made with a user block of kDigestBlockSize. Throws
-// std::exception saying why when it cannot be read or written.
+// Seals a finished file in place. Throws std::exception with the reason if it cannot be read or written. pre:
+// the file has a user block of kDigestBlockSize bytes.
 void write_file_digest(const std::filesystem::path& file);
 
-// The first bytes of a file, followed by zeros where it has fewer or cannot be read.
+// Returns the first `size` bytes of a file. The result is filled up with zeros if the file is shorter or
+// cannot be read.
 std::string opening_of(const std::filesystem::path& file, std::size_t size);
 
 // True if a file begins as a finished result does. The rest of the file is not read.

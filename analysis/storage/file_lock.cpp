@@ -34,7 +34,8 @@ bool is_special(const std::filesystem::path& target) {
 FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target).string() + ".lock") {
   require_writable(target);
   if (is_special(target)) return;
-  // Whoever held it may have removed it between our open and our lock: then it is another file's name by now.
+  // The last holder may have removed the file between our open and our lock. The name then belongs to another
+  // file, or to none.
   do {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

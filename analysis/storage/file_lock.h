@@ -1,4 +1,4 @@
-// One process at a time.
+// Locks that let one process at a time write a file, or the files of a folder.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@ namespace remote_touch {
 
 // The right to write a file, held from construction to destruction. The lock is on a file beside it with the
 // ending ".lock", so that the file itself can be replaced and read at any time. A killed process holds no
-// lock, even if its ".lock" file remains. Also removes temporary files of the target that killed processes
-// left. Throws InputError naming the target when another process holds the lock, and as require_writable().
-// No lock is taken for /dev/null, or on a file system without locks.
+// lock, even if its ".lock" file remains. The constructor also removes temporary files of the target that
+// killed processes left. It throws InputError, which names the target, if another process holds the lock, and
+// like require_writable(). No lock is taken for /dev/null, or on a file system without locks.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& target);
@@ -25,8 +25,8 @@ class FileLock {
 };
 
 // The right to write files in a folder, held from construction to destruction; it leaves no file, whatever
-// ends the process. Throws InputError naming the folder when another process holds it. No lock is taken where
-// the folder cannot be opened, or on a file system without locks.
+// ends the process. Throws InputError, which names the folder, if another process holds it. No lock is taken
+// if the folder cannot be opened, or on a file system without locks.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);

@@ -37,7 +37,8 @@ hid_t stored(Hdf5Appender::Number number) {
 
 }  // namespace
 
-// The library does not always say what went wrong; mostly it is the disk.
+// The library does not always report the reason of a failure. The message asks for room, because mostly the
+// disk is full.
 template <class Call>
 void Hdf5Appender::guarded(const Call& call) {
   try {
@@ -182,7 +183,7 @@ std::string deflated_row(const void* values, std::size_t count, std::size_t valu
   const int result = ::compress2(reinterpret_cast<Bytef*>(row.data()), &used,
                                  reinterpret_cast<const Bytef*>(shuffled.data()), static_cast<uLong>(size),
                                  static_cast<int>(kDeflate));
-  if (result != Z_OK) throw std::bad_alloc();  // the buffer is large enough, and the level is one
+  if (result != Z_OK) throw std::bad_alloc();  // buffer and level are valid
   row.resize(used);
   return row;
 }

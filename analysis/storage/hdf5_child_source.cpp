@@ -14,7 +14,7 @@ namespace {
   throw std::runtime_error("its reader sent an incomplete answer");
 }
 
-// The kinds of values in the order of their variant.
+// Unpacks values of the wanted kind, which is an index of the variant Values.
 template <std::size_t kind = 0>
 void unpack_values(Unpacker& unpack, std::size_t wanted, Values& values) {
   if constexpr (kind < std::variant_size_v<Values>) {
@@ -80,7 +80,7 @@ class ChildSource final : public Hdf5Source {
   ChildSource(const std::filesystem::path& file, RunInChild run)
       : file_(file.string()),
         run_(std::move(run)),
-        // Twice the values: as they are read, and packed; some files are compressed a little.
+        // The values are in memory twice, as read and packed, and some files are slightly compressed.
         limits_(limits_to_read(file, 4)),
         summary_(unpacked_summary(ask({}))) {}
 

@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// Overview of a file, which one answer gives.
+// Overview of a file, which the child returns in one answer.
 struct Hdf5Summary {
   TextAttributes attributes;
   std::vector<std::string> datasets;
@@ -18,8 +18,8 @@ struct Hdf5Summary {
 std::string packed(const Hdf5Summary& summary);
 std::string packed(const Column& column);
 
-// Throw std::runtime_error for bytes that packed() cannot have returned: whatever happened to the child, the
-// result can be used.
+// Throw std::runtime_error for bytes that packed() cannot have returned. A result is therefore valid,
+// whatever happened to the child.
 Hdf5Summary unpacked_summary(const std::string& bytes);
 Column unpacked_column(const std::string& bytes);
 

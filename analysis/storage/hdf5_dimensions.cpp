@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// Text by which netCDF recognises a dataset that is no variable. The size follows, formatted as netCDF does.
+// Text by which netCDF recognises a dataset that is no variable. The size follows, formatted as in netCDF.
 constexpr const char* kNoVariable = "This is a netCDF dimension but not a netCDF variable.";
 constexpr const char* kLabels = "names of components";
 
@@ -44,7 +44,7 @@ void add_dimension(hid_t file, const std::string& path, hsize_t size) {
   if (is_there(file, path)) return;
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "%s%10llu", kNoVariable, static_cast<unsigned long long>(size));
-  const Handle dimension = made_scale(file, path, H5T_IEEE_F32BE, size);  // never written: takes no place
+  const Handle dimension = made_scale(file, path, H5T_IEEE_F32BE, size);  // never written: needs no space
   check(H5DSset_scale(dimension, text.data()));
 }
 

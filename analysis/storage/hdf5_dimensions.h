@@ -16,13 +16,13 @@ void add_dimension(hid_t file, const std::string& path, hsize_t size);
 // unless it is there already. Returns its path. pre: width is 3 or 4.
 std::string component_labels(hid_t file, const std::string& group, int width);
 void attach_dimension(hid_t file, const std::string& dataset, const std::string& dimension, unsigned place);
-// True if a dataset only names a dimension, as those of the functions above do: it is no column.
+// True if a dataset only names a dimension, like those that the functions above add. It is not a column.
 bool only_names_a_dimension(hid_t file, const std::string& dataset);
 
-// The enumeration of a column's values, stored in the root as NAME_values. Columns with the same names share
-// it.
+// Returns the enumeration of a column's values, stored in the root as COLUMN_values, or as COLUMN_values2 and
+// so on if that one has other values. Columns of the same name with the same value names share it.
 Handle named_enumeration(hid_t file, const std::string& column, const std::vector<std::string>& value_names);
-// Writes the same names for readers that read an enumeration as numbers: the convention CF of netCDF.
+// Writes the same names, by the CF convention of netCDF, for readers that read an enumeration as numbers.
 void write_flags(hid_t file, const std::string& dataset, const std::vector<std::string>& value_names);
 
 // Type of one byte of a text in a dataset. The dataset's attribute kEncoding states the encoding, because

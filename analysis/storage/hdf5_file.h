@@ -13,8 +13,8 @@
 namespace remote_touch {
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
-// While one exists, the HDF5 library may be at work. It crashes at some calls that find no memory, and at
-// some damaged files.
+// The HDF5 library may be at work as long as an object of this class exists. The library crashes in some
+// calls that find no memory, and on some damaged files.
 class Hdf5Work {
  public:
   Hdf5Work() { ++count_; }
@@ -25,9 +25,10 @@ class Hdf5Work {
   // none. A signal handler may call both.
   static bool is_on() { return count_ > 0; }
   static int messages() { return is_silent_ ? -1 : static_cast<int>(messages_); }
-  // Sets that file descriptor, while the library's own messages are sent elsewhere.
+  // Sets that file descriptor, while the library's own messages are redirected.
   static void set_messages(int descriptor) { messages_ = descriptor; }
-  // Switches the messages off in a child process that reads for its parent: the parent reports how it ended.
+  // Switches the messages off in a child process that reads for its parent, because the parent reports how it
+  // ended.
   static void silence() { is_silent_ = true; }
 
  private:
@@ -36,44 +37,44 @@ class Hdf5Work {
   static inline std::atomic<int> count_ = 0;
 };
 
-// The attribute of that name; empty if there is none.
+// Returns the attribute of that name; empty if there is none.
 std::string attribute(const TextAttributes& attributes, const std::string& name);
 // Returns the root attributes of a result that describe its provenance: all except those that the writer of a
 // trace, sweep or figure adds itself.
 TextAttributes provenance_of(const TextAttributes& attributes);
 
-// Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
-// partial file, and equal contents are equal bytes (no time stamps). Not for use from several threads at
+// Builds the file in memory; save() writes it to the disk. A full disk or a killed program therefore never
+// leaves a partial file. Equal contents are equal bytes (no time stamps). Not for use from several threads at
 // once.
 class Hdf5Writer {
  public:
-  // A finished file is sealed (file_digest.h); one that is to be written in place later cannot be.
+  // A finished file is sealed (file_digest.h). A file that will be written in place later cannot be sealed.
   enum class Finished { yes, no };
   explicit Hdf5Writer(Finished finished = Finished::yes);
   ~Hdf5Writer();
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  void group(const std::string& path);  // its parent exists
+  void group(const std::string& path);  // pre: its parent exists
   // Attributes of a group or dataset that exists; "/" is the root.
   void attribute(const std::string& object, const std::string& name, const std::string& value);
   void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
   void attribute(const std::string& object, const std::string& name, std::int32_t value);
   void attributes(const std::string& object, const TextAttributes& list);
-  // Writes the columns as datasets of a group, with units and long_name. The column called rows becomes the
-  // dimension scale of the rows of all others, and rows of three or four are vectors x, y, z or quaternions
-  // w, x, y, z. rows empty: no column is the scale, and nothing is known of the components.
+  // Writes the columns as datasets of a group, with units and long_name. The column named `rows` becomes the
+  // dimension scale of the rows of all others, and columns of width 3 or 4 are vectors x, y, z or quaternions
+  // w, x, y, z. If `rows` is empty, no column is the scale, and the components are not named.
   void columns(const std::string& group, const std::vector<Column>& columns, const std::string& rows);
-  // A column as an array over axes: names of datasets of the same group that scale() made scales. The last
-  // axis runs fastest. in_place: stored in one piece, to be written in place later; compact: in compressed
-  // chunks if it is long.
+  // Writes a column as an array over axes. The axes are names of datasets of the same group that scale() made
+  // scales. The last axis runs fastest. in_place: stored in one piece, to be written in place later; compact:
+  // in compressed chunks if it is long.
   enum class Storage { compact, in_place };
   void array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
              Storage storage);
   // Makes a dataset the scale of its own dimension.
   void scale(const std::string& path);
   std::size_t size();  // size of the file so far, bytes
-  // Throws InputError naming the file when it cannot be written.
+  // Throws InputError, which names the file, if it cannot be written.
   void save(const std::filesystem::path& target);
 
  private:

@@ -15,7 +15,7 @@ namespace remote_touch {
 
 namespace {
 
-// Room for a line, because there may be no memory for a string.
+// It has a fixed buffer for one line, because there may be no memory for a string.
 struct Refusal {
   bool lacks_memory = false;
   char of_system[128] = "";

@@ -13,7 +13,8 @@ namespace remote_touch {
 // system, if the library reports one; else std::bad_alloc, if it found no memory; else std::runtime_error.
 [[noreturn]] void throw_refusal();
 
-// Errors are exceptions, not printed. To be called before the library is used, in every thread that does.
+// Stops the library from printing errors, because they become exceptions. Every thread must call it before it
+// uses the library.
 void use_hdf5();
 
 // Closes the object that it holds. A negative identifier means that a call of the library failed.
@@ -54,7 +55,7 @@ inline Handle text_type(std::size_t length) {
   return type;
 }
 
-// An attribute of a group or dataset that exists.
+// Writes a text attribute of an existing group or dataset.
 inline void write_text(hid_t file, const std::string& object, const std::string& name,
                        const std::string& value) {
   const Handle type = text_type(value.size());

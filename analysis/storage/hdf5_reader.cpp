@@ -42,7 +42,7 @@ bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) 
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream && errno == ENOMEM) throw std::bad_alloc();
-  stream.exceptions(std::ios::badbit);  // no memory is no missing signature
+  stream.exceptions(std::ios::badbit);  // lack of memory is not a missing signature
   for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
     std::string found(kSignature.size(), '\0');
     stream.seekg(static_cast<std::streamoff>(at));
@@ -61,7 +61,7 @@ bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) 
   throw InputError(file.string(), what + ": expected " + expected);
 }
 
-// Throws InputError unless the file exists and is one that can be opened without waiting.
+// Throws InputError unless the file exists and is a regular file, which can be opened without blocking.
 void require_regular(const std::filesystem::path& file) {
   require_no_journal(file);
   std::error_code unreachable;
@@ -70,7 +70,8 @@ void require_regular(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, unreachable)) refuse(file, "a pipe or a device");
 }
 
-// Throws InputError unless the file is HDF5 and as it was written. True when it is sealed.
+// Throws InputError if the file is not HDF5 or its seal is broken. Returns true if it is sealed, false
+// without a seal.
 bool require_readable(const std::filesystem::path& file) {
   std::error_code unreachable;
   const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
@@ -98,8 +99,8 @@ class Hdf5Reader::HeldFile {
   HeldFile(const HeldFile&) = delete;
   HeldFile& operator=(const HeldFile&) = delete;
 
-  // True if that is still the name of the held file, or if the file could not be opened: it is refused
-  // elsewhere.
+  // True if that is still the name of the held file, or if the file could not be opened (another check
+  // refuses it).
   bool has_name(const std::string& file) const {
     struct stat ours = {}, there = {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &ours) != 0) return true;
@@ -114,7 +115,7 @@ bool Hdf5Reader::is_replaced() const {
   return held_ && !held_->has_name(file_);
 }
 
-// Whatever the library throws is damage.
+// Any exception of the library, except for lack of memory, is reported as damage of the file.
 template <class Read>
 auto Hdf5Reader::guarded(Read&& read) const {
   try {
@@ -160,7 +161,7 @@ Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> conte
   require_version();
 }
 
-// Opens the file. Returns true if it is sealed: the library then reads it in this process, and holds it.
+// Opens the file. Returns true if it is sealed: the library then reads it in this process, and keeps it open.
 bool Hdf5Reader::open(const RunInChild& run) {
   const bool is_sealed = require_readable(file_);
   attributes_ = guarded([&] {
@@ -168,7 +169,8 @@ bool Hdf5Reader::open(const RunInChild& run) {
     return content_->attributes();
   });
   require_version();
-  // The only unsealed file of this program is that of a sweep at work: its runs have checksums of their own.
+  // The only unsealed file of this program is that of a running sweep, whose runs have checksums of their
+  // own.
   if (!is_sealed && attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
     damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
   return is_sealed;

@@ -1,5 +1,5 @@
-// Reads an HDF5 file one column, or some rows of one, at a time, because a file may be larger than memory
-// allows.
+// Reads an HDF5 file one column, or some rows of one, at a time, because a file may be larger than the
+// memory.
 #pragma once
 
 #include <filesystem>
@@ -13,23 +13,25 @@
 
 namespace remote_touch {
 
-// The file's name belongs to another file than the one that was opened, as when a sweep replaces its file at
-// the end: values that were read from both do not fit together. The whole can be read again.
+// Thrown if the file's name now belongs to another file than the one that was opened, for example because a
+// sweep replaced its file at the end. Values that were read from both do not fit together. The new file can
+// be read from its beginning.
 struct ReplacedFile : InputError {
   explicit ReplacedFile(const std::string& file);
 };
 
-// Every member throws InputError naming the file when it is damaged. A file with a valid seal is read in this
-// process; one without, which another program wrote or which is not finished, in a child process with limits
-// for each column: there the HDF5 library may crash or hang. Such a file may be replaced meanwhile: then
-// members throw ReplacedFile.
+// Every member throws InputError, which names the file, if the file is damaged. A file with a valid seal is
+// read in this process. A file without a seal was written by another program or is not finished, and the HDF5
+// library may crash or hang on it. It is therefore read in child processes with limits, one for each query.
+// If such a file is replaced meanwhile, members throw ReplacedFile.
 class Hdf5Reader {
  public:
-  // Throws InputError when the file is missing or not HDF5, when its seal is broken or a finished result of
-  // this program has none, or when its layout is that of another version of this program. run: how the
-  // child processes are run.
+  // Throws InputError if the file is missing or not HDF5, if its seal is broken or a finished result of this
+  // program has none, or if its layout is that of another version of this program. run: starts the child
+  // processes.
   explicit Hdf5Reader(const std::filesystem::path& file, const RunInChild& run = in_own_child);
-  // The content of a sealed file of that name; throws InputError for another version of this program.
+  // Reads `content`, that of a sealed file of that name. Throws InputError for another version of this
+  // program.
   Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> content);
 
   const std::string& file() const { return file_; }
@@ -39,11 +41,11 @@ class Hdf5Reader {
   const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
   std::vector<std::string> datasets() const;                        // paths, sorted
   bool has(const std::string& dataset) const;
-  // An array of more than two dimensions comes as one column.
+  // An array of more than two dimensions is returned as one column of width 1.
   Column column(const std::string& dataset) const;
-  // Rows first .. first + count - 1; pre: they are there.
+  // Rows first .. first + count - 1; pre: they exist.
   Column rows(const std::string& dataset, std::size_t first, std::size_t count) const;
-  // The values of a column of that width, which are of type T.
+  // Returns the values of a column. Throws InputError if they are not of type T or the width is another one.
   template <class T>
   std::vector<T> values(const std::string& dataset, int width = 1) const {
     Column read = column(dataset);
@@ -63,7 +65,7 @@ class Hdf5Reader {
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;
-  std::shared_ptr<const HeldFile> held_;  // while its name is used
+  std::shared_ptr<const HeldFile> held_;  // set if queries open the file by its name
   std::shared_ptr<const Hdf5Source> content_;
   TextAttributes attributes_;
 };

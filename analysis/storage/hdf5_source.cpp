@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// The library cannot be left by an exception.
+// An exception must not pass through the library, so an error code is returned.
 herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) noexcept try {
   if (info->type == H5O_TYPE_DATASET)
     static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
@@ -79,7 +79,7 @@ class LibrarySource final : public Hdf5Source {
     }
     throw std::runtime_error(dataset + " is missing");
   }
-  // One of its groups or itself is surely not there.
+  // True if the dataset or one of its groups is certainly missing.
   bool is_missing(const std::string& dataset) const {
     for (std::size_t end = 0; end < dataset.size();) {
       end = std::min(dataset.find('/', end + 1), dataset.size());

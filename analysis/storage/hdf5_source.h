@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// Members throw std::exception saying what is wrong with the file, without its name.
+// Members throw std::exception with what is wrong with the file, without its name.
 class Hdf5Source {
  public:
   virtual ~Hdf5Source() = default;
@@ -25,11 +25,11 @@ class Hdf5Source {
   virtual std::int64_t offset(const std::string& dataset) const = 0;
 };
 
-// The library crashes, hangs or takes all memory on some damaged files: only for those that are as they were
-// written.
+// Opens a file in this process. pre: the file is as it was written, because the library crashes, hangs or
+// allocates all memory on some damaged files.
 std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file);
 
-// Each answer comes from a child process with limits, which alone calls the library.
+// A child process with limits answers each query. Only that process calls the library.
 std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file,
                                                const RunInChild& run = in_own_child);
 

@@ -30,7 +30,7 @@ hsize_t file_size(hid_t object) {
   return size;
 }
 
-// The text in a place of fixed length.
+// Returns the text in a field of fixed length.
 std::string text_in(const char* place, std::size_t length, H5T_str_t padding) {
   std::string text(place, std::find(place, place + length, '\0'));
   if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
@@ -90,7 +90,7 @@ std::vector<std::string> read_texts(hid_t data, hid_t type, const Selection& wan
 template <class Number>
 std::vector<Number> read_numbers(hid_t data, hid_t type, const Selection& wanted) {
   std::vector<Number> numbers(wanted.count);
-  // Not read as its own type: that may be wider.
+  // It is not read as the type of the dataset, which may be wider than Number.
   check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, numbers.data()));
   return numbers;
 }
@@ -107,7 +107,7 @@ std::vector<std::string> names_of(hid_t enumeration) {
 }
 
 // Unsigned integers of 64 bits are read as hashes. Signed ones are read as doubles, which are exact up to
-// 2^53. So are unsigned ones of 32 bits, because the HDF5 library would cut values above 2^31 - 1.
+// 2^53. So are unsigned ones of 32 bits, because the HDF5 library would clip values above 2^31 - 1.
 Values read_integers(hid_t data, hid_t type, const Selection& wanted) {
   const std::size_t size = H5Tget_size(type);
   const bool has_sign = H5Tget_sign(type) != H5T_SGN_NONE;

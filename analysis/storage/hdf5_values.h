@@ -9,7 +9,8 @@
 
 namespace remote_touch {
 
-// Several texts are joined by ", ". Empty for an attribute that is not a text, or has variable length.
+// Returns the text of an attribute; several texts are joined by ", ". Empty if it is not a text, or has
+// variable length.
 std::string read_text(hid_t attribute);
 // Empty if the object has no such attribute.
 std::string text_attribute(hid_t object, const char* name);
@@ -18,7 +19,8 @@ struct RowRange {
   hsize_t first, count;
 };
 
-// All rows of a dataset, or some. Throws std::exception saying what is wrong with it.
+// Reads all rows of a dataset if `some` is null, else those rows. Throws std::exception with what is wrong
+// with it.
 Column read_dataset(hid_t data, const std::string& name, const RowRange* some);
 
 }  // namespace remote_touch

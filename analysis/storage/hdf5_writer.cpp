@@ -44,7 +44,8 @@ Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes), 
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   check(H5Pset_fapl_core(access, 1 << 20, false));
   const Handle creation = creation_list(H5P_FILE_CREATE);
-  // Brings the root an object header that takes attributes above 64 KiB: a configuration with many waypoints.
+  // Gives the root an object header that can hold attributes above 64 KiB: a configuration with many
+  // waypoints.
   check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));
   file_ = H5Fcreate("remote-touch", H5F_ACC_TRUNC, creation, access);
   if (file_ < 0) throw_refusal();
@@ -114,8 +115,8 @@ void write_values(hid_t dataset, hid_t type, const Column& column) {
 
 }  // namespace
 
-// Texts have one more dimension, that of their characters: the netCDF library crashes at texts of a fixed
-// length, and Octave refuses a file with texts of any length.
+// Texts have one more dimension, that of their characters, because the netCDF library crashes on texts of
+// fixed length, and Octave refuses a file with texts of variable length.
 void Hdf5Writer::dataset(const std::string& path, const Column& column, std::vector<hsize_t> extent,
                          Storage storage) {
   const auto* const texts = std::get_if<std::vector<std::string>>(&column.values);
@@ -152,7 +153,7 @@ void Hdf5Writer::scale(const std::string& path) {
 }
 
 namespace {
-// A name that no column has.
+// Returns a name that no column has.
 std::string name_of_rows(const std::vector<Column>& columns) {
   std::string name = "row";
   const auto is_taken = [&](const Column& column) { return column.name == name; };

@@ -53,8 +53,8 @@ void NewFiles::close() {
   if (error != 0) refuse(files_.back(), error);
 }
 
-// A second name for the file that is replaced, so that at every moment the target is the old one or the new
-// one.
+// Gives the file that is replaced a second name, so that the target is the old or the new file at every
+// moment.
 void NewFiles::keep_old(File& file) {
   std::error_code absent, failure;
   if (!std::filesystem::exists(file.place, absent)) return;

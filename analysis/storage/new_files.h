@@ -8,9 +8,9 @@
 namespace remote_touch {
 
 // The files are written one after the other under temporary names beside their targets, and renamed at the
-// end. Every member throws InputError naming the target if it cannot be written. Then, and if finish() was
-// not called, no new file is left and files that were there are as they were. Only a program that is killed
-// between two renames leaves some new and some old.
+// end. Every member throws InputError, which names the target, if it cannot be written. After that, or
+// without finish(), the destructor removes the new files and restores the old ones. Only a program that is
+// killed between two renames leaves some new and some old.
 class NewFiles {
  public:
   NewFiles() = default;
@@ -29,7 +29,7 @@ class NewFiles {
  private:
   struct File {
     std::filesystem::path target, place, temporary, old = {};
-    bool is_new = false;  // renamed
+    bool is_new = false;  // true after its rename
   };
   void close();
   void keep_old(File& file);

@@ -1,5 +1,5 @@
-// Values one after the other as they are in memory, without names: for another process of this machine, or
-// for files that never leave it.
+// Packs values one after the other, as they are in memory and without names. The bytes are for another
+// process of this machine, or for files that never leave it.
 #pragma once
 
 #include <cstring>
@@ -45,8 +45,8 @@ class MemoryPacker final : public Packer {
   std::string packed_;
 };
 
-// Reads what a Packer wrote, in the same order; the bytes may be others. Once a value is missing, it and all
-// later ones are left unchanged.
+// Reads values in the order in which a Packer wrote them. The bytes may be damaged: the first value that is
+// missing, and all later ones, are left unchanged.
 class Unpacker {
  public:
   Unpacker(const char* begin, const char* end) : at_(begin), end_(end) {}

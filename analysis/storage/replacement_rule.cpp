@@ -67,8 +67,8 @@ void require_output(const std::filesystem::path& output, const ReplacementRule& 
   set_replacement_rule(output, rule);
 }
 
-// Any failure of the first call, such as of a file system that does not know RENAME_NOREPLACE, is decided by
-// the second one.
+// If the first call fails, for example on a file system without RENAME_NOREPLACE, the rule and the second
+// call decide.
 int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem::path& target) {
   const std::filesystem::path place = resolved(target);
   if (const auto rule = rule_of(target)) {
@@ -83,7 +83,7 @@ int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem
 int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem::path& target) {
   const int error = rename_by_rule(temporary, target);
   if (error != EEXIST) return error;
-  // Another name than the temporary one, which the next command with this output would remove.
+  // The result gets another name, because the next command with this output would remove the temporary file.
   const std::string kept = resolved(target).string() + ".kept-" + std::to_string(::getpid());
   if (::rename(temporary.c_str(), kept.c_str()) != 0) return errno;
   flush_folder(kept);

@@ -27,13 +27,13 @@ void set_replacement_rule(const std::filesystem::path& target, ReplacementRule r
 // file may be written by others while the result is computed.
 void require_output(const std::filesystem::path& output, const ReplacementRule& rule);
 
-// Renames the temporary file to the target, or to what the target links to. Returns 0, or the errno of what
-// failed: EEXIST if the rule keeps the file that is there. Between the rule and the rename another process
-// may still replace a file that the rule allows to replace; a file that appears in an empty place is never
-// lost, if the file system supports RENAME_NOREPLACE.
+// Renames the temporary file to the target, or to what the target links to. Returns 0, or the errno of the
+// call that failed: EEXIST if the rule keeps the existing file. If another process replaces an existing file
+// between the check of the rule and the rename, its file is lost. A file that appears where there was none is
+// never lost, if the file system supports RENAME_NOREPLACE.
 int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-// The same for a finished result. If the rule keeps the file that is there, throws InputError, which names
+// Does the same for a finished result. If the rule keeps the existing file, it throws InputError, which names
 // the target, and leaves the result beside it as TARGET.kept-PID.
 int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem::path& target);
 

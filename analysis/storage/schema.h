@@ -1,11 +1,13 @@
-// The layouts of this program's files by name: "remote-touch-trace/2", a root attribute of each.
+// Names of the layouts of this program's files. Each file has its name as a root attribute:
+// "remote-touch-trace/2".
 #pragma once
 
 #include <string>
 
 namespace remote_touch {
 
-// One number for all layouts: raised when a name or the meaning of a value changes in any. Version 0.1 had 1.
+// One number for all layouts. It is raised if a name or the meaning of a value changes in any of them.
+// Version 0.1 had 1.
 inline constexpr int kSchemaVersion = 2;
 inline constexpr const char* kSchemaPrefix = "remote-touch-";
 

@@ -1,5 +1,5 @@
-// Uses the functions of OpenSSL that need no memory. Those that replace them load configurations and tables
-// for each program, 5000 allocations, and crash if one of them finds no memory.
+// Uses deprecated functions of OpenSSL, because they allocate no memory. Their replacements load
+// configurations and tables in each program (5000 allocations), and crash if one allocation fails.
 #define OPENSSL_SUPPRESS_DEPRECATED
 
 #include "analysis/storage/sha256.h"

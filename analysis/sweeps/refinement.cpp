@@ -11,7 +11,7 @@ namespace {
 
 struct Belief {
   bool known = false;      // some run is done
-  bool uncertain = false;  // the interval holds 0.5
+  bool uncertain = false;  // the interval contains 0.5
   bool likely = false;     // more than half of the runs had the event
 };
 
@@ -28,7 +28,8 @@ int asked_for(const SweepResult& result, std::size_t cell) {
   return count;
 }
 
-// Cells half way between neighbours that disagree, at every spacing from the first round's down to 2.
+// Adds the cells half way between this cell and each neighbour if they disagree or one of them is uncertain,
+// at every spacing from the first round's down to 2.
 void add_between(const SweepResult& result, const std::vector<Belief>& beliefs,
                  const std::vector<std::size_t>& strides, std::size_t cell, std::set<std::size_t>& cells) {
   const std::vector<std::size_t> here = result.place(cell);

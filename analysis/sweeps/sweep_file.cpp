@@ -85,8 +85,8 @@ std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
 
 namespace {
 
-// The attributes by name, as they come back when the file is read: whoever wrote it last, it has the same
-// bytes.
+// Writes the attributes sorted by name, as a reader returns them, so that a file which is read and written
+// again has the same bytes.
 void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attributes, Storage storage) {
   std::sort(attributes.begin(), attributes.end());
   hdf5.attribute("/", "schema", schema_name("sweep"));
@@ -177,7 +177,7 @@ class SweepReader {
   bool has(const std::string& name) const {
     return std::find(datasets_.begin(), datasets_.end(), "/sweep/" + name) != datasets_.end();
   }
-  // Each of its values has a name, if any has one.
+  // Returns an axis. Throws InputError if its values have names and one of them has none.
   Column axis(const std::string& name) const {
     Column column = hdf5_.column("/sweep/" + name);
     const auto* numbers = std::get_if<std::vector<std::int32_t>>(&column.values);
@@ -187,7 +187,7 @@ class SweepReader {
         damaged("/sweep/" + name + " has a value without a name");
     return column;
   }
-  // The column of that name, length and kind.
+  // Returns the column of that name. Throws InputError if it has another length or type.
   template <class Value>
   Column column(const std::string& name, std::size_t length) const {
     Column column = hdf5_.column("/sweep/" + name);

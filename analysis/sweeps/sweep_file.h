@@ -20,13 +20,13 @@ std::string digest(const SweepResult& result);
 std::string joined_names(const std::vector<std::string>& names);
 std::vector<std::string> split_names(const std::string& joined);
 
-// The finished file: equal results are equal bytes. attributes: configuration, provenance and shard; schema
-// and digest are added. Returns the digest. Throws InputError when it cannot be written.
+// Writes the finished file and returns its digest. Equal results are equal bytes. attributes: configuration,
+// provenance and shard; schema and digest are added. Throws InputError if the file cannot be written.
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
                         const TextAttributes& attributes);
 
-// The content of a file, finished or in progress. Runs that were written only in part are pending. Throws
-// InputError for a file that is not a sweep, or was changed since it was written.
+// The content of a file, finished or in progress. Runs that were written only in part are pending.
+// read_sweep() throws InputError for a file that is not a sweep, or was changed since it was written.
 struct StoredSweep {
   SweepResult result;
   TextAttributes attributes;  // all but schema, digest, and the names of axes, measures and note kinds
@@ -36,14 +36,15 @@ StoredSweep read_sweep(const Hdf5Reader& file);
 // Reads the file again if a running sweep has replaced it.
 StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
-// The layout while the sweep runs: nothing compressed, so that runs can be written in place, and a checksum
-// of every run in place of the error texts. A run whose checksum is wrong was written only in part.
+// Writes the file as it is while the sweep runs. The arrays that runs change are not compressed, so that runs
+// can be written in place. A checksum of every run replaces the error texts. A run whose checksum is wrong
+// was written only in part.
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes);
 std::int32_t checksum(const SweepResult& result, std::size_t run);
 // Digest of what does not change while the sweep runs: axes, rounds, kinds of notes and attributes.
 std::string plan_digest(const SweepResult& result, TextAttributes attributes);
-// Size of that file, bytes; the finished one is smaller.
+// Size of that file, bytes. The finished one is usually smaller.
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);
 
 }  // namespace remote_touch

@@ -14,8 +14,8 @@ namespace remote_touch {
 // killed program loses no finished run. pre: the caller holds the file's lock (file_lock.h).
 class SweepInProgress {
  public:
-  // already_there: the file is in progress and holds this result; else it is written. Throws InputError when
-  // it cannot be written.
+  // already_there: the file exists, is in progress and holds this result. If false, the file is written.
+  // Throws InputError if it cannot be written.
   SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
                   const TextAttributes& attributes, bool already_there);
   ~SweepInProgress();

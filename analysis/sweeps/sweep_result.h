@@ -14,15 +14,15 @@ enum class RunState : std::int32_t {
   pending = 1,
   done = 2,
   failed = 3,    // `error` has the reason
-  elsewhere = 4  // another shard's
+  elsewhere = 4  // belongs to another shard
 };
 
 // Cells are the nodes of the axes' grid, numbered with the last axis running fastest; every cell has the same
 // number of replicates. A run is one replicate of one cell; all arrays are over runs.
 struct SweepResult {
-  std::vector<Column> axes;  // one row for each value; names instead of numbers as an enumeration
+  std::vector<Column> axes;  // one row for each value; names are an enumeration
   int replicates = 1;
-  std::vector<Column> measures;  // NaN where the run is not done
+  std::vector<Column> measures;  // NaN if the run is not done
   std::vector<RunState> state;
   std::vector<std::int32_t> round;  // round of refinement that added the run; empty without refinement
   std::vector<std::string> error;
@@ -45,11 +45,11 @@ struct SweepResult {
   int replicate_of(std::size_t run) const {
     return static_cast<int>(run % static_cast<std::size_t>(replicates));
   }
-  // The place of a cell on each axis, and back.
+  // Returns the index of a cell on each axis; cell_at() is the inverse.
   std::vector<std::size_t> place(std::size_t cell) const;
   std::size_t cell_at(const std::vector<std::size_t>& place) const;
 
-  std::vector<std::size_t> runs_in(RunState requested) const;         // rising
+  std::vector<std::size_t> runs_in(RunState requested) const;         // increasing
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
 
@@ -66,7 +66,7 @@ std::vector<NoteCount> note_counts(const SweepResult& result);
 struct Tally {
   int events = 0, runs = 0;
 };
-// The event: the measure is above the threshold.
+// The event happens if the measure is above the threshold. A NaN counts as a run without the event.
 Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
             double above = 0.5);
 

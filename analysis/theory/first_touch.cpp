@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// The distance from the proxy's centre to the plane when the nearest points are this far from the centre.
+// Returns the distance from the proxy's centre to the plane if the nearest points are this far from the
+// centre.
 double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
   const double b = touch.nearest_beside_m;
   return std::sqrt(point_distance_m * point_distance_m - b * b);

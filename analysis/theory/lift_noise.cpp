@@ -27,7 +27,7 @@ struct Moments {
   double deviation() const { return std::sqrt(variance()); }
 };
 
-// The true velocity before the update, without acceleration that of the update itself.
+// Error of v_hat_j against v_{j-1}, which is v_j, the velocity of the update itself, without acceleration.
 double velocity_error(const LiftUpdate& update) {
   return update.estimate_m_per_s - update.velocity_m_per_s;
 }

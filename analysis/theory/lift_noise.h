@@ -8,12 +8,14 @@
 
 namespace remote_touch {
 
-// Updates up to this frame are left out: the velocity estimate starts at 0 when the cloud meets the proxy.
+// Updates up to this frame are not used, because the velocity estimate starts at 0 when the cloud meets the
+// proxy.
 struct SettledFrom {
   int frame = 0;
 };
 
-// Over the updates of all lifts of one noise strength in which the proxy was still above the plane.
+// Computes means and scatter over the updates of all lifts of one noise strength before which the proxy was
+// still above the plane.
 NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
                          double frame_rate_hz);
 

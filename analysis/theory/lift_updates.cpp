@@ -10,7 +10,8 @@ double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
   return trace.proxy_position_m[i].dot(normal) - trace.signed_distance_m[i];
 }
 
-// The normal that (4.3) used; where it moved nothing, the one that the tick ended with.
+// Returns the normal that (4.3) used. If (4.3) moved nothing, it is the normal with which the tick before
+// ended.
 Vec3 normal_of_update(const Trace& trace, std::size_t first_tick) {
   const Vec3 frame_correction = trace.frame_correction_m[first_tick];
   return frame_correction.isZero(0) ? trace.normal[first_tick - 1] : Vec3(frame_correction.normalized());

@@ -27,7 +27,8 @@ struct LiftUpdate {
   }
 };
 
-// Every update in the trace after the first frame. pre: signed_distance is that to the newest frame's plane.
+// Returns every update in the trace after the first frame. pre: signed_distance is that to the newest frame's
+// plane.
 std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, double r1_m,
                                      double frame_rate_hz);
 

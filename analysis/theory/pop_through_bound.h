@@ -1,4 +1,4 @@
-// When a lifted cloud passes the proxy: the bounds of 4.4.
+// The bounds of 4.4 on the acceleration with which a cloud can be lifted before it passes the proxy.
 //
 // Definitions: v_hat is the velocity estimate, assumed correct, v_hat_j = v_{j-1} (4.19); n_hat the estimated
 // and n the true normal; h the thickness of the cloud, h = (P - plane).n - r_1; e_n = 1 - n.n_hat (4.22).
@@ -46,13 +46,13 @@ struct NoiseEffect {
 // A bound that accounts for scatter. (4.18) requires a margin above 0 at every update:
 //   G_j = r_1 + h + v_hat_j (1 - e_n) / f_c - v_j / f_c,
 // and h, e_n and v_hat_j scatter. With the mean and variance of G_j at every update, a lift survives with
-// probability prod_j Phi(E G_j / sqrt(Var G_j)). What goes in, all from lifts without acceleration:
+// probability prod_j Phi(E G_j / sqrt(Var G_j)). The inputs, all from lifts without acceleration:
 //
 // - E v_hat_j follows the velocity with a gain g: E v_hat_{j+1} = E v_hat_j + g (v_j - E v_hat_j). g is 1
 //   minus the correlation of the error of v_hat between updates, which is right if that error is
 //   autoregressive of first order.
 // - As in (4.19), v_hat is assumed correct in the mean at constant velocity. In fact noise makes it too high
-//   by velocity_bias, as much as its scatter. The bound does not use that.
+//   by velocity_bias, which is about as large as its scatter. The bound does not use that.
 // - Var G_j = Var G at rest + Var h + ((E v_hat_j)^2 - v_0^2) Var e_n / f_c^2. The second term is the
 //   scatter of the new frame: its points, not the true plane, decide whether the proxy stays above. The
 //   third is the scatter of the normal at higher velocity.

@@ -7,7 +7,7 @@ namespace remote_touch {
 
 namespace {
 
-// Probability that a standard normal number is larger.
+// Probability that a standard normal number is larger than x.
 double above(double x) {
   return 0.5 * std::erfc(x * std::sqrt(0.5));
 }
@@ -28,8 +28,8 @@ UnderPlate under_edge(double slope_rad, double half_m, double turn_rad) {
   return {half_m * std::tan(slope_rad + turn_rad), half_m * std::tan(std::max(0.0, turn_rad - slope_rad))};
 }
 
-// Lowest at the corner of the plate between the first face, which faces +z, and the next, 120 degrees on: its
-// place (half, -half) along (cos 30, -sin 30).
+// The lowest position is the corner (half, -half) of the plate. It is over the face that faces (cos 30, -sin
+// 30), 120 degrees from the face that faces +z.
 UnderPlate under_corner(double slope_rad, double half_m) {
   return {half_m * 0.5 * (1 + std::sqrt(3.0)) * std::tan(slope_rad), 0};
 }
@@ -59,7 +59,7 @@ double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, d
     }
     return 1 - none;
   };
-  // A jump of just the plate's thickness leaves some points in it. A jump beyond all points leaves none.
+  // A jump of only the plate's thickness leaves some points in it. A jump beyond all points leaves none.
   return median(thickness_m, thickness_m + highest->height_m - lowest->height_m + 2 * kReach * sigma_m,
                 any_in_plate);
 }

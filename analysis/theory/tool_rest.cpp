@@ -13,8 +13,8 @@ double turning_stiffness(const EvenSpring& spring) {
 
 }  // namespace
 
-// The derivative of the energy k (h - height)^2 / 2 + k r^2 (phi - angle)^2 / 2 rises between flat and the
-// angle of the hand: bisection.
+// The derivative of the energy k (h - height)^2 / 2 + k r^2 (phi - angle)^2 / 2 increases between flat and
+// the angle of the hand, so bisection finds its zero.
 RestingWrench block_on_line(double a_m, double b_m, const EvenSpring& spring, double height_m,
                             double angle_rad) {
   const double k = spring.stiffness_N_per_m, turning = turning_stiffness(spring);
@@ -35,8 +35,8 @@ RestingWrench block_on_line(double a_m, double b_m, const EvenSpring& spring, do
   return {{0, k * (touching_m(high) - height_m)}, angle_rad < 0 ? -torque_Nm : torque_Nm};
 }
 
-// The middle of the ball may be where it is a radius away from both lines; the nearest such place to the hand
-// is over one line, or over the edge.
+// The middle of the ball must be at least a radius away from both lines. The nearest such position to the
+// hand is over one line, or over the edge.
 RestingWrench ball_in_groove(double radius_m, double slope_rad, const EvenSpring& spring,
                              const Eigen::Vector2d& place_m) {
   const double side = place_m.x() < 0 ? -1 : 1;

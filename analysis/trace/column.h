@@ -8,11 +8,12 @@
 
 namespace remote_touch {
 
-// Numbers; counts and enumerations; hashes; texts.
+// The four kinds of columns: numbers; counts and enumerations; hashes; texts.
 using Values = std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::uint64_t>,
                             std::vector<std::string>>;
 
-// length * width values, row by row; width 3 for a vector. Integers may have names (an enumeration).
+// Has length() * width values, row by row; a vector has width 3. value_names is empty unless the integers are
+// the values of an enumeration: then it has their names, from 0 upwards.
 struct Column {
   std::string name;
   std::string units;  // SI symbol, "1" for a pure number
@@ -38,7 +39,8 @@ struct Table {
   }
 };
 
-// A column of numbers by its name; throws std::out_of_range when the table has none.
+// Returns the column of numbers with this name. Throws std::out_of_range if the table has no such column, and
+// std::bad_variant_access if the column is not of type double.
 const std::vector<double>& numbers(const Table& table, const std::string& column);
 
 }  // namespace remote_touch

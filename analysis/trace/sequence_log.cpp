@@ -20,7 +20,8 @@ std::vector<SequenceEntry> sequence_log(const Trace& t) {
   int step = 0, missed = 0;
   bool running = false;
   for (std::size_t i = 0; i < t.length(); ++i) {
-    // Only the step that ran before this tick can have come to its deadline: others began in this very tick.
+    // Only the step that was running before this tick can have reached its deadline: the others began in this
+    // tick.
     bool late = t.sequence_missed[i] > missed;
     for (; step < t.sequence_step[i]; ++step) {
       if (!running) log.push_back({step, t.time_s[i]});

@@ -8,12 +8,13 @@ namespace remote_touch {
 
 struct Trace;
 
-// A step that has begun. Times are those of ticks; NaN for a step that had not ended at the end of the trace.
+// A step that has begun. Its times are times of ticks. ended_s is NaN if the step had not ended at the end of
+// the trace.
 struct SequenceEntry {
   int step = 0;  // its number in the task
   double began_s = 0;
   double ended_s = std::numeric_limits<double>::quiet_NaN();
-  bool missed = false;  // ended by its deadline
+  bool missed = false;  // true if the deadline ended the step
   // Distance and angle from the tool to the step's goal when the step ended; NaN for a step without a goal.
   // All steps that ended in the same tick have the values of the first of them with a goal.
   double distance_m = std::numeric_limits<double>::quiet_NaN();

@@ -14,12 +14,13 @@ struct Tolerance {
   bool operator==(const Tolerance&) const = default;
 };
 
-// Tolerances by name; "*" is for all names that are not listed. Without either, numbers must be equal.
+// Tolerances by name; "*" applies to all names that are not listed. A name without either has the tolerance
+// 0: its numbers must be equal.
 using Tolerances = std::map<std::string, Tolerance>;
 Tolerance tolerance_of(const Tolerances& tolerances, const std::string& name);
 
-// Numbers are equal as by == (so 0 and -0 are), and NaN equals NaN. NaN or infinity against any other number
-// is outside, whatever the tolerance.
+// Returns true if the deviation is allowed. Numbers that are equal by == are allowed (so 0 and -0 are), and
+// so is NaN for NaN. NaN or infinity against any other number is outside, whatever the tolerance.
 bool within(const Tolerance& tolerance, double baseline, double candidate);
 
 }  // namespace remote_touch

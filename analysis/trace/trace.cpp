@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// All that is known of a tick.
+// The data of a tick that the expressions in trace_columns.h may use.
 struct TraceTick {
   double time_s;
   const DeviceState& device;
@@ -46,7 +46,7 @@ Values flat(const std::vector<Eigen::Quaterniond>& rows) {
   return numbers;
 }
 
-// The inverse of flat(); false for a column of another kind or width. One that is not there has no rows.
+// The inverse of flat(). Returns false if the column has another type or width. A missing column has no rows.
 template <class Number>
 bool read_rows(std::optional<Column> column, std::vector<Number>& rows) {
   if (!column) return true;

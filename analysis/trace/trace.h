@@ -17,8 +17,8 @@ namespace remote_touch {
 struct Trace {
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
-  // Position of the renderer's contact point and of the HIP against the true surface: positive above it, NaN
-  // if the truth is not known.
+  // Signed distances of the renderer's contact point and of the HIP from the true surface: positive above it,
+  // NaN if the truth is not known.
   struct TrueContact {
     double height_m = 0;        // height of the contact point
     double hip_distance_m = 0;  // distance of the HIP
@@ -28,7 +28,7 @@ struct Trace {
     double proxy_distance_m = 0;              // distance of the proxy from the true surface
     double slave_distance_m = 0;              // distance of the slave's command from it
     std::uint64_t frame_hash = 0;             // hash of the newest frame delivered; 0 if it was not computed
-    std::optional<TrueContact> contact = {};  // computed only where a measure asks for it
+    std::optional<TrueContact> contact = {};  // computed only if a measure needs it
     // Unit normal of the true surface at the renderer's contact, towards the free side. NaN if it is not
     // known or nothing is touched. Computed only if a measure needs it.
     std::optional<Vec3> normal = {};
@@ -41,7 +41,7 @@ struct Trace {
   bool has_hand() const { return !intended_position_m.empty(); }
   bool has_contact() const { return !contact.empty(); }
   bool has_true_normal() const { return !true_normal.empty(); }
-  // A new frame came in with tick i.
+  // True if tick i uses another frame than tick i - 1; false for the first tick.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
   // Copies of the columns, with units, in the order in which they are stored and hashed; the last is the
@@ -53,10 +53,11 @@ struct Trace {
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 
-  // Depth behind the true surface at which the surface still holds the position, m; 0 for a ball, whose
-  // centre stays in front. See held_depth_m() in rendered_contact.h. Used by measures alone: not a column.
+  // Depth behind the true surface, m, down to which the proxy still counts as held by the surface. 0 for a
+  // ball, whose centre stays in front. See held_depth_m() in rendered_contact.h. Only measures use it, so it
+  // is not a column.
   double held_depth_m = 0;
-  // Rows for measures alone: no column, because stored traces have none. Empty unless it was computed.
+  // Rows that only measures use. They are not stored as columns. Empty unless they were computed.
   std::vector<TrueContact> contact;
   std::vector<Vec3> true_normal;  // Truth::normal
 };
@@ -79,9 +80,9 @@ struct TraceColumn {
 // Every column that a trace can have, in order.
 const std::vector<TraceColumn>& trace_columns();
 
-// Builds a trace of stored columns, which it requests by name one after the other. `contact` and
-// `true_normal` stay empty, because they are not stored as columns. Returns nothing if a column of its runs
-// is missing, or if a column has another kind, width or length.
+// Builds a trace from stored columns, which it requests by name one after the other. `contact` and
+// `true_normal` stay empty, because they are not stored as columns. Returns std::nullopt if a column that
+// such a run has is missing, or if a column has a wrong type, width or length.
 std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column);
 
 }  // namespace remote_touch

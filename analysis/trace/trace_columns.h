@@ -1,10 +1,11 @@
 // The columns of a trace: one entry each, in the order in which they are stored and hashed. A new column is a
-// new entry. Included several times, each time with another TRACE_COLUMN, therefore without an include guard:
+// new entry. This file is included several times, each time with another TRACE_COLUMN, so it has no include
+// guard. An entry is
 //   TRACE_COLUMN(member of Trace, type of a row, name in files, SI unit, which runs have it, value of a tick,
 //                meaning, names of its values if it is an enumeration)
-// A type is double, std::int32_t, std::uint64_t, Vec3 or Eigen::Quaterniond. Runs: see TracePart. The value
-// is an expression of t, a TraceTick. proxy_or_tool(A, B) means A in a run without and B in a run with a
-// tool.
+// The type of a row is double, std::int32_t, std::uint64_t, Vec3 or Eigen::Quaterniond. TracePart defines
+// which runs have it. The value of a tick is an expression of t, a TraceTick. proxy_or_tool(A, B) means A in
+// a run without a tool and B in a run with a tool.
 TRACE_COLUMN(time_s, double, "time", "s", always, t.time_s, "simulated time")
 TRACE_COLUMN(hip_position_m, Vec3, "hip_position", "m", always, t.device.position_W,
              "haptic interface point, world frame")

@@ -7,10 +7,10 @@
 
 namespace remote_touch {
 
-// Starts empty (its min() is above its max()) and grows by extend().
+// A default box is empty: its min() is above its max(). It grows by extend().
 using BoundingBox = Eigen::AlignedBox3d;
 
-// Around every position of a range; empty for none.
+// Returns the smallest box that contains all positions of a range. It is empty if there are none.
 template <class Positions>
 BoundingBox bounding_box(const Positions& positions) {
   BoundingBox box;

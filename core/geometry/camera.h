@@ -17,14 +17,14 @@ struct DepthImage {
   std::vector<double> z_m;
 };
 
-// The point that pixel (u, v) sees at depth z_m: x = (u - cx) z / fx, y = (v - cy) z / fy.
+// Returns the point that pixel (u, v) sees at depth z_m: x = (u - cx) z / fx, y = (v - cy) z / fy.
 Vec3 unproject(const CameraIntrinsics& camera, double u, double v, double z_m);
 
-// Such as "640 x 480 pixels".
+// Returns the image size as text, such as "640 x 480 pixels".
 std::string size_text(const CameraIntrinsics& camera);
 
-// The organised cloud of a depth image, in the world frame. A hole stays a hole: its point is NaN, never the
-// origin.
+// Returns the organised cloud of a depth image, in the world frame. A pixel without a measurement becomes a
+// NaN point, never the origin.
 PointCloud cloud_from_depth(const DepthImage& depth, const CameraIntrinsics& camera,
                             const RigidTransform& X_WC);
 

@@ -29,8 +29,8 @@ HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb) {
   return colour;
 }
 
-// A channel rises evenly with the hue's distance from the channel's own, from full within 60 degrees to none
-// at 120.
+// Each channel has its own hue: 0, 120 or 240 degrees. Its value is full while the hue is within 60 degrees
+// of its own, and falls linearly to the minimum at 120 degrees.
 std::uint32_t rgb(const HueSaturationLightness& colour) {
   const double half_chroma = colour.saturation * std::min(colour.lightness, 1 - colour.lightness);
   std::uint32_t value = 0;

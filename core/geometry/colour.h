@@ -1,4 +1,4 @@
-// Hue, saturation and lightness of a colour: what colour segmentation uses, 7.3.2.
+// Hue, saturation and lightness of a colour, which the segmentation by colour of 7.3.2 uses.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +8,23 @@ namespace remote_touch {
 // The value in the colour column of a cloud for a point whose colour is unknown.
 inline constexpr std::uint32_t kNoColour = 0xFF000000;
 
-// The colour in a float of 32 bits, by which files and messages of clouds pass on 0xAARRGGBB: with A = 0 or,
-// where colours are opaque, 255, which makes a NaN of many of them. Other bits are a number that is no
-// colour, or the NaN of a point without colour: kNoColour.
+// Converts the bits of a 32-bit float, in which files and messages of clouds store 0xAARRGGBB, to 0xRRGGBB.
+// The alpha value A is 0, or 255 where colours are opaque; many opaque colours are a NaN when they are read
+// as a float. Another alpha value means that the float holds no colour, or is the NaN of a point without a
+// colour: the result is kNoColour.
 std::uint32_t colour_of_float(std::uint32_t bits);
 
-// The double cone (HSL): a grey has saturation 0 and no hue, which is then given as 0.
+// The double cone (HSL). A grey has saturation 0 and no hue; its hue_deg is 0.
 struct HueSaturationLightness {
   double hue_deg = 0;     // 0 red, 120 green, 240 blue; [0, 360)
   double saturation = 0;  // 0 to 1
   double lightness = 0;   // 0 black to 1 white
 };
 
-// rgb = 0xRRGGBB, as the sensor gives it: no gamma or colour profile.
+// rgb is 0xRRGGBB as the sensor reports it, without gamma correction or a colour profile.
 HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb);
-// The nearest colour of 8 bits a channel, 0xRRGGBB. pre: values in the ranges above; a hue of 360 counts as
-// 0.
+// Returns the nearest colour with 8 bits per channel, 0xRRGGBB. pre: the values are in the ranges above; a
+// hue of 360 is allowed and means 0.
 std::uint32_t rgb(const HueSaturationLightness& colour);
 
 }  // namespace remote_touch

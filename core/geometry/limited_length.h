@@ -4,7 +4,7 @@
 
 namespace remote_touch {
 
-// The vector, shortened to max_length if it is longer.
+// Returns the vector, shortened to max_length if it is longer.
 inline Vec3 limited_length(const Vec3& v, double max_length) {
   const double length = v.norm();
   return length > max_length ? Vec3(v * (max_length / length)) : v;

@@ -1,4 +1,4 @@
-// A point cloud in columns, and the image layout that an organised cloud keeps.
+// A point cloud in columns, and the image layout of a cloud that comes from an image.
 #pragma once
 
 #include <cmath>
@@ -35,13 +35,13 @@ struct PointCloud {
   std::vector<double> x, y, z;
   std::vector<double> fixture_radius_m;   // r_f of (5.2), 0 or more; empty: 0, which is chapter 4
   std::vector<double> stiffness_N_per_m;  // k_s of (5.3), 0 to 2^20; empty or NaN: the renderer's own
-  std::vector<std::uint32_t> colour;      // 0xRRGGBB, or kNoColour of colour.h; empty: none has
+  std::vector<std::uint32_t> colour;      // 0xRRGGBB, or kNoColour of colour.h; empty: no point has a colour
   // Unit normals of the surface, towards the side that the sensor sees, 6.2.1; empty: none. NaN in all three
   // where a point has no normal.
   std::vector<double> nx, ny, nz;
   std::optional<ImageLayout> image;  // set when the points are the pixels of one image
-  // Number of columns if the points form a grid, stored row by row like the pixels of an image; 0:
-  // unorganised, it is not known which points are neighbours.
+  // Number of columns if the points form a grid, stored row by row like the pixels of an image. 0 means
+  // unorganised: it is not known which points are neighbours.
   int grid_columns = 0;
 
   std::size_t size() const { return x.size(); }

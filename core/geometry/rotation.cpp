@@ -5,7 +5,8 @@
 namespace remote_touch {
 
 std::pair<double, double> sin_cos(double angle) {
-  // A quarter turn in two parts: the product of the first with an integer below 2^20 is exact.
+  // A quarter turn (pi / 2) is split into two parts. The first part has few bits, so its product with an
+  // integer below 2^20 is exact.
   constexpr double quarter = 1.5707963267341256, rest = 6.0771005065061922e-11;
   const double turns = std::round(angle / (quarter + rest));
   const double x = (angle - turns * quarter) - turns * rest, xx = x * x;

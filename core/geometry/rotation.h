@@ -1,5 +1,5 @@
-// Rotation vectors: the direction is the axis, the length the angle in radians. Computed with +, -, *, / and
-// square roots alone, so that the bits do not depend on which sine the C library picks for a machine.
+// Rotation vectors: the direction is the axis, the length is the angle in radians. The functions use only +,
+// -, *, / and square roots, so that the bits do not depend on which sine the C library selects for a machine.
 #pragma once
 
 #include <utility>
@@ -10,12 +10,12 @@ namespace remote_touch {
 
 inline constexpr double kRadiansPerDegree = 0.017453292519943295;
 
-// Sine and cosine, within 2e-16; pre: |angle| < 1e6.
+// Returns sine and cosine, with errors below 2e-16. pre: |angle| < 1e6.
 std::pair<double, double> sin_cos(double angle);
 
-// A unit quaternion, within rounding.
+// Returns the rotation as a unit quaternion, up to rounding.
 Eigen::Quaterniond rotation(const Vec3& vector);
-// The shortest vector of a rotation, of length 0 to pi.
+// Returns the shortest rotation vector of a rotation; its length is 0 to pi.
 Vec3 rotation_vector(const Eigen::Quaterniond& rotation);
 
 }  // namespace remote_touch

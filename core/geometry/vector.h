@@ -1,5 +1,5 @@
-// Positions, directions and rigid transforms: Eigen in double precision, metres.
-// A name carries its frame: p_W is a position in the world frame W, X_WC takes camera coordinates C to W.
+// Positions, directions and rigid transforms: Eigen in double precision, metres. A name carries its frame:
+// p_W is a position in the world frame W, X_WC transforms camera coordinates C to W.
 #pragma once
 
 #include <Eigen/Core>

@@ -80,23 +80,23 @@ std::uint64_t total(const Bits& v) {
   return across<std::uint64_t>(v, [](std::uint64_t a, std::uint64_t b) { return a + b; });
 }
 
-// Returns the sum of count terms t whose t + M were added up as bit patterns. Within M's binade these are
-// integers that count the grid's steps. So the sum is exact, its order does not matter, and each term is t
-// rounded to the grid.
+// Returns the sum of count terms t, given the sum of the bit patterns of t + M. The bit patterns in M's
+// binade are integers that count steps of the grid. So the sum is exact, its order does not matter, and each
+// term is t rounded to the grid.
 double exact_sum(const Bits& sums, std::size_t count, double grid) {
   const std::uint64_t exponent = bits(grid) & 0x7FF0000000000000u;
   const double step = __builtin_bit_cast(double, exponent - (std::uint64_t{52} << 52));
   return static_cast<double>(static_cast<std::int64_t>(total(sums) - count * bits(grid))) * step;
 }
 
-// (4.2) with t = (r - r1) / (r3 - r1) in [0, 1].
+// Computes the weight (4.2) of t = (r - r1) / (r3 - r1) in [0, 1].
 inline Lanes wendland(Lanes t) {
   const Lanes q = 1.0 - t;
   return (q * q) * (q * q) * (4.0 * t + 1.0);
 }
 
-// Roots are computed seven vectors before they are used: a root and a division in one chain leave the divider
-// idle.
+// Each root is computed seven vectors before it is used, because a root followed at once by a division that
+// depends on it leaves the divider idle.
 constexpr std::size_t kRing = 8, kAhead = 7;
 
 // Computes the nearest point, the normal (4.1) with weights (4.2), and the sums of (5.8).
@@ -127,7 +127,7 @@ ContactQuery query_columns(const PointsView& points, const double p[3], const Pr
     const Lanes r = kRadius ? distance - load(points.radius + i) : distance;
     // If r is r3, t is 1 up to rounding, and psi below 1e-60 is 0 on the grid.
     const Lanes psi = wendland((smaller(larger(r, r1), r3) - r1) * scale);
-    const Lanes w = psi / larger(distance, tiny);  // a point at P itself adds 0 / 1e-150 = 0: skipped
+    const Lanes w = psi / larger(distance, tiny);  // a point at P adds 0 / 1e-150 = 0: it has no effect
     nearest = smaller(r, nearest);
     sx += (Bits)(dx * w + grid), sy += (Bits)(dy * w + grid), sz += (Bits)(dz * w + grid);
     touching -= (Bits)(r <= r2);  // a true lane is -1

@@ -1,5 +1,6 @@
-// The spatial bilateral filter (7.1), (7.2) of 16, 8 or 4 pixels of a row at a time. Depths are summed as
-// differences to the pixel's own, which single precision holds to 1e-7 of themselves.
+// The spatial bilateral filter (7.1), (7.2). It processes 16, 8 or 4 pixels of a row at a time. It sums
+// differences to the depth of the pixel itself, so that the relative error of single precision, 1e-7, applies
+// to them and not to the depths.
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/float_lanes.h"
 #include "core/kernels/level.h"
@@ -16,9 +17,9 @@ inline Point point(const PointPlanes& planes, std::ptrdiff_t at) {
   return {load(planes.x + at), load(planes.y + at), load(planes.z + at)};
 }
 
-// (7.2) of the squared distance in filter units: e^-t with t = s / kFilterExponent, as the 16th power of a
-// cubic that falls to exactly 0 at t = 27.4. Minimax over the weight: within 8e-6 for every t, roundings
-// included.
+// Computes (7.2) from the squared distance s in filter units: e^-t with t = s / kFilterExponent, approximated
+// by the 16th power of a cubic that falls to exactly 0 at t = 27.4. The cubic is the minimax fit of the
+// weight: the error is below 8e-6 for every t, rounding included.
 inline Floats gaussian(Floats s) {
   constexpr float kEnd = 0.9083625722727604f, kCentre = 0.4332450600460519f, kLift = 0.9131807121233679f;
   const Floats y = smaller(s, Floats{} + kEnd), from_centre = y - kCentre;

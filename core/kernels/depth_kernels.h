@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// Points in the camera frame, in a unit of length that suits their use. A pixel without a point has kNowhere
-// as z: so far away that its weight for every other point is 0.
+// Points in the camera frame, in a unit of length that each kernel defines. A pixel without a point has z =
+// kNowhere. This is so far away that the weight of the pixel for every other point is 0.
 struct PointPlanes {
   float* x;
   float* y;
@@ -20,8 +20,9 @@ struct PointPlanes {
 inline constexpr float kNowhere = 1e12f;
 
 // The plane that was fitted to the window of each pixel: 1 / z = a i + b j + c at i columns and j rows from
-// the pixel. error: weighted mean square of the distances of the window's points from the plane, divided by
-// their depth. All are NaN where there is no plane. Null pointers: not wanted.
+// the pixel. error: weighted mean square of the relative errors; the relative error of a point is its
+// distance from the plane along its ray, divided by the depth of the plane there. All four are NaN if there
+// is no plane. Null pointers: the planes are not requested.
 struct FitPlanes {
   float* a = nullptr;
   float* b = nullptr;
@@ -40,16 +41,16 @@ struct PixelRays {
 struct RowBand {
   int first, last;
   int width;
-  int half;        // the window is 2 half + 1 pixels wide
-  float* weights;  // scratch of weight_buffer_size(width, half) values
-  int step = 1;    // only every step-th column and row of the window, from its centre; divides half
+  int half;        // the window is 2 half + 1 pixels wide and high
+  float* weights;  // work buffer of weight_buffer_size(width, half) values
+  int step = 1;    // uses every step-th column and row of the window, from its centre; a divisor of half
 };
 
 inline constexpr int kMaxLanes = 16;
 
 // The weight of a pair of points is symmetric: it is computed at the upper point and kept for the lower one.
-// For pairs j rows apart, the weights of j + 1 rows are kept, each row with half more columns on either side.
-// A window of step 1 needs the most.
+// The weights of pairs that are j rows apart are kept for j + 1 rows, each row with `half` more columns on
+// either side. A window with step 1 needs the largest buffer.
 constexpr std::ptrdiff_t weight_stride(int width, int half) {
   return (width + 4 * half + 2 * kMaxLanes) / kMaxLanes * kMaxLanes;
 }
@@ -57,8 +58,8 @@ constexpr std::size_t weight_buffer_size(int width, int half) {
   return static_cast<std::size_t>(half * (half + 3) / 2 * (2 * half + 1) * weight_stride(width, half));
 }
 
-// One row of a depth image: its rays, its depths in metres, and the filter's changes to them (null: no
-// filter).
+// One row of a depth image: its rays, its depths in metres, and the changes of the depths by the filter
+// (null: no filter).
 struct PixelRow {
   int width;
   const double* ray_x;  // the same as in PixelRays, in double
@@ -81,10 +82,10 @@ struct CloudRow {
   std::uint8_t* valid;  // 1 if there is a point, else 0
 };
 
-// A point and two neighbours form a plane only if the middle eigenvalue of their covariance is above this
-// fraction of the sum of all three: a strip a hundredth as wide as long has no normal. The fit of the inverse
-// depth compares the product of both eigenvalues of the pixels' covariance with this fraction of their
-// squared sum.
+// The points of a window form a plane only if the middle eigenvalue of their covariance is above this
+// fraction of the sum of all three. So a strip whose width is a hundredth of its length has no normal. The
+// fit of the inverse depth compares the determinant of the covariance of the pixels with this fraction of its
+// squared trace.
 inline constexpr float kThinnest = 1e-4f;
 
 // The unit of squared distances in (7.2) is sigma_f^2 / (kFilterExponent / 2).
@@ -93,26 +94,26 @@ inline constexpr double kFilterExponent = 0.033102384734499175;
 struct DepthKernels {
   // Computes the points of one row in the camera frame, multiplied by scale.
   void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
-  // (7.1), (7.2): writes the filter's change of the z of every pixel. Lengths are in units of
-  // sigma_f / sqrt(kFilterExponent / 2).
+  // Writes the change of the z of every pixel by the filter (7.1), (7.2). Lengths are in units of sigma_f /
+  // sqrt(kFilterExponent / 2).
   void (*filter_depth)(const RowBand&, const PointPlanes& points, float* change);
-  // Writes unit normals towards the sensor, NaN where there is no plane. Lengths are in units of the radius;
-  // step is (1 / fx, 1 / fy).
+  // Writes unit normals towards the sensor; they are NaN if there is no plane. Lengths are in units of the
+  // radius; step is (1 / fx, 1 / fy).
   void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
                         const PointPlanes& normals);
-  // Writes the same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q. The fits have
-  // the stride of the normals.
+  // Writes unit normals from a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q. The fits
+  // have the same stride as the normals.
   void (*inverse_depth_normals)(const RowBand&, const PointPlanes& points, const PixelRays&,
                                 const float step[2], const PointPlanes& normals, const FitPlanes& fits);
   // Selects the normals of one row. The candidates of each pixel are its own fit and those of the 8 pixels
-  // `shift` columns or rows away. The one with the smallest error is used; the squared distance of the
-  // pixel's own point from the plane, divided by its depth, is added to the error. Another fit than its own
-  // is used only if its error is less than a quarter of the own one. z: depths of the points, of the stride
-  // of the normals. The planes of normals and fits extend by `shift` columns and rows on every side, and by
-  // kMaxLanes more columns.
+  // that are `shift` columns or rows away. The error of such a pixel's fit is increased by the squared
+  // relative error of the own point, and the fit with the smallest error is used. A fit other than the own
+  // one is used only if its error is less than a quarter of the own error. z: depths of the points, with the
+  // stride of the normals. The planes of normals and fits extend by `shift` columns and rows on every side,
+  // and by kMaxLanes more columns.
   void (*sharp_normals)(int width, int shift, const float* z, const PointPlanes& normals,
                         const FitPlanes& fits, const PointPlanes& sharp);
-  // Writes one row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points
+  // Write one row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points
   // that the normals belong to.
   void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);
   void (*normals_to_cloud)(int width, const float* z, const PointPlanes& normals, const double X_WC[12],

@@ -1,4 +1,5 @@
-// Rows of pixels into planes and out of them into a cloud. Plain loops: every pixel by itself.
+// Converts rows of pixels to planes of points, and these to rows of a cloud. The loops are plain, because
+// every pixel is independent of the others.
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/level.h"
 
@@ -6,7 +7,7 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// A depth in metres that is one: not NaN, not infinite, in front of the camera.
+// Returns true if the depth is a measurement: in front of the camera, below kMaxDepth_m and not NaN.
 inline bool measured(double z_m) {
   return (z_m > 0) & (z_m < kMaxDepth_m);
 }
@@ -50,7 +51,8 @@ void points_to_cloud(const PixelRow& row, const double X_WC[12], const CloudRow&
   (row.change ? place_points<true> : place_points<false>)(row, X_WC, out);
 }
 
-// The normals' length is 1 to single precision; one of Newton's steps makes it so to double.
+// The normals have unit length in single precision. One step of Newton's method gives them unit length in
+// double precision.
 void normals_to_cloud(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
                       const CloudRow& out) {
   const double* const X = X_WC;

@@ -1,5 +1,5 @@
-// Vectors of double precision for the tool's kernels: a lane is a disk, so that their number does not change
-// any result.
+// Vectors of double precision for the kernels of the tool. Each lane processes one disk, so the number of
+// lanes does not change any result.
 #pragma once
 
 #include <immintrin.h>
@@ -7,7 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// A copy for every file: code that is compiled for a newer machine must not be linked in for an older one.
+// The unnamed namespace gives each file its own copy: code that is compiled for a newer machine must not be
+// linked into a program for an older one.
 namespace remote_touch {
 namespace {
 
@@ -75,11 +76,12 @@ inline Doubles as_doubles(Counts a) {
 }
 #endif
 
-// A divisor that is used several times. With fused multiplication and addition the quotient is computed from
-// the rounded reciprocal. It is the same as that of a division, bit for bit, in a third of its time: after
-// the first step it is within one unit in the last place of the exact one, so that the next remainder is
-// exact, and the second step rounds to the nearest (Markstein 1990). pre: finite numbers, apart from lanes
-// that are not used; no quotient or remainder that is subnormal.
+// A divisor that is used several times. The quotient is computed from the rounded reciprocal if there is
+// fused multiplication and addition. It is the same as that of a division, bit for bit, in a third of the
+// time: after the first step it is within one unit in the last place of the exact quotient, so that the next
+// remainder is exact, and the second step rounds to the nearest (Markstein 1990). pre: the divisor is
+// positive; the numbers are finite, apart from lanes that are not used; no quotient or remainder is
+// subnormal.
 struct Divisor {
   Doubles value;
 #if defined(__FMA__)
@@ -103,7 +105,7 @@ inline Doubles operator/(Doubles a, const Divisor& by) {
   const Doubles rough = a * by.reciprocal;
   const Doubles near = fused(fused(-by.value, rough, a), by.reciprocal, rough);
   const Doubles quotient = fused(fused(-by.value, near, a), by.reciprocal, near);
-  return a == 0 ? a : quotient;  // keeps the sign of the zero
+  return a == 0 ? a : quotient;  // keeps the sign of a zero
 }
 #else
 inline Doubles operator/(Doubles a, const Divisor& by) {
@@ -122,13 +124,13 @@ inline double least(Doubles a) {
   return min;
 }
 
-// Writes the flagged lanes of vectors one after the other.
+// Stores the flagged lanes of vectors one after the other, without gaps.
 class Packing {
  public:
   explicit Packing(Flags flags);
 
   std::size_t count() const { return static_cast<std::size_t>(__builtin_popcount(mask_)); }
-  // Lanes that are not flagged may be written behind the others: p needs room for kDoubles numbers.
+  // Other lanes may be stored after the flagged ones: p needs room for kDoubles numbers.
   void put(Doubles a, double* p) const;
 
  private:
@@ -138,13 +140,13 @@ class Packing {
 #if defined(__AVX512F__)
 inline Packing::Packing(Flags flags) : mask_(_mm512_movepi64_mask((__m512i)flags)) {}
 inline void Packing::put(Doubles a, double* p) const {
-  // Not the compressing store, which some processors do in a hundred cycles.
+  // The compressing store instruction is avoided, because it needs a hundred cycles on some processors.
   store(p, _mm512_maskz_compress_pd(static_cast<__mmask8>(mask_), a));
 }
 #elif defined(__AVX2__)
 inline Packing::Packing(Flags flags) : mask_(static_cast<unsigned>(_mm256_movemask_pd((__m256d)flags))) {}
 inline void Packing::put(Doubles a, double* p) const {
-  // The halves of the lanes of each mask, a byte each.
+  // The indices of the 32-bit halves of the flagged lanes, one byte each, for each mask.
   static constexpr std::uint64_t kOrder[16] = {
       0x0706050403020100, 0x0706050403020100, 0x0706050403020302, 0x0706050403020100,
       0x0706050403020504, 0x0706050405040100, 0x0706050405040302, 0x0706050403020100,
@@ -164,7 +166,7 @@ struct Doubles3 {
   Doubles x, y, z;
 };
 
-// Sums of three terms in the order in which Eigen adds them.
+// The three terms are added in the order in which Eigen adds them.
 inline Doubles dot(const Doubles3& a, const Doubles3& b) {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }

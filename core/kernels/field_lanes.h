@@ -1,5 +1,5 @@
-// The trilinear distance field of a tool at several positions at once, with the operations of sample_field()
-// in its order.
+// The trilinear distance field of a tool at several positions at once. The operations are those of
+// sample_field(), in the same order.
 #pragma once
 
 #include "core/kernels/disk_search.h"
@@ -12,9 +12,9 @@ namespace {
 struct FieldLanes {
   Doubles distance;
   Doubles3 gradient_T;
-  Flags is_known;  // false outside the grid, where the other members are those of the nearest position in it
-  Counts cell;     // index of the cell, the first coordinate running fastest
-  Flags in_cell;   // false on the last planes of the grid, too
+  Flags is_known;  // false outside the grid; the other members then belong to the nearest position in it
+  Counts cell;     // index of the cell; the first coordinate runs fastest
+  Flags in_cell;   // also false on the last planes of the grid
 };
 
 inline Doubles clamped(Doubles u, double cells) {
@@ -22,13 +22,13 @@ inline Doubles clamped(Doubles u, double cells) {
   return above < cells ? above : all(cells);
 }
 
-// The values at a node and at the next one.
+// The values at a node and at the next node along the first coordinate.
 struct TwoNodes {
   Doubles first, second;
 };
 #if defined(__AVX512F__)
 inline TwoNodes two_nodes(const float* node, Counts at) {
-  // Faster than a gather instruction.
+  // Two loads of each lane are faster than a gather instruction.
   const auto one = [&](int lane) {
     return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(node + at[lane])));
   };
@@ -101,10 +101,11 @@ inline PlacesInField places(const PointColumns& points, std::size_t i, const Pos
   return {p_T, sample(f, p_T)};
 }
 
-// Disks of the points from i on, in the tool frame: normals, radii, and slopes of the field in their planes.
+// Disks of the points from index i on, in the tool frame: normals, radii, slopes of the field in their
+// planes, and lower bounds of the distance of any position on them.
 struct DisksInField {
   Doubles3 n_T;
-  Doubles radius, extent, slope, lower;  // slope: NaN without a normal
+  Doubles radius, extent, slope, lower;  // slope: NaN without a normal; lower: then the distance
 };
 inline DisksInField disks_at(const PointColumns& points, std::size_t i, double fraction, const PosedField& f,
                              const FieldLanes& at) {

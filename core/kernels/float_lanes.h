@@ -1,12 +1,13 @@
-// Vectors of single precision for the depth kernels: a lane is a pixel of a row, so that their number does
-// not change any result.
+// Vectors of single precision for the depth kernels. Each lane processes one pixel of a row, so the number of
+// lanes does not change any result.
 #pragma once
 
 #include <immintrin.h>
 
 #include <cstddef>
 
-// A copy for every file: code that is compiled for a newer machine must not be linked in for an older one.
+// The unnamed namespace gives each file its own copy: code that is compiled for a newer machine must not be
+// linked into a program for an older one.
 namespace remote_touch {
 namespace {
 
@@ -69,7 +70,8 @@ inline Floats smaller(Floats a, Floats b) {
 }
 #endif
 
-// work(first), ..., work(last), unrolled: compilers leave such short loops as loops.
+// Calls work(kFirst) to work(kLast). The calls are unrolled here, because compilers do not unroll such short
+// loops.
 template <int kFirst, int kLast, class Work>
 __attribute__((always_inline)) inline void unrolled(const Work& work) {
   if constexpr (kFirst <= kLast) {
@@ -78,7 +80,7 @@ __attribute__((always_inline)) inline void unrolled(const Work& work) {
   }
 }
 
-// work(i) for i = 1 .. half, where kHalf is half, or 0 if that is not known.
+// Calls work(i) for i = 1 .. half. kHalf is half, or 0 if half is not known at compile time.
 template <int kHalf, class Work>
 __attribute__((always_inline)) inline void for_each_step(int half, const Work& work) {
   if constexpr (kHalf > 0)
@@ -87,9 +89,9 @@ __attribute__((always_inline)) inline void for_each_step(int half, const Work& w
     for (int i = 1; i <= half; ++i) work(i);
 }
 
-// Weights of the pairs of one row, as described in depth_kernels.h. A row of them holds those of pairs whose
-// lower point is `below` steps of rows under the upper one and `across` steps of columns to its right, at the
-// column of the upper one.
+// The weights of the pairs of points of one row, which depth_kernels.h describes. There is a row of weights
+// for each (below, across). It holds the pairs whose lower point is below * step rows under the upper point
+// and across * step columns to its right, at the column of the upper point.
 class PairWeights {
  public:
   PairWeights(float* scratch, int width, int half, int step, int row)
@@ -104,14 +106,14 @@ class PairWeights {
       fresh_[below] = at(row), kept_[below] = at(row - step * below);
     }
   }
-  // Weights of points in this row with others below.
+  // Returns the row for pairs of points in this row with points below; to be written.
   float* fresh(int below, int across) const { return fresh_[below] + across * across_; }
-  // Weights of points above with others in this row.
+  // Returns the row for pairs of points above with points in this row; written earlier.
   const float* kept(int above, int across) const { return kept_[above] + across * across_; }
 
  private:
   static constexpr int kMaxWidth = 16;
-  std::ptrdiff_t across_;  // weight_stride(), whose one linked copy could be of another level
+  std::ptrdiff_t across_;  // same as weight_stride(), whose linked copy could be of another level
   float* fresh_[8];
   const float* kept_[8];
 };

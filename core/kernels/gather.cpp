@@ -1,8 +1,9 @@
-// Copies the points of a ball out of the runs that a neighbour search visits. The comparison is the same on
-// every level, so the set is too. The functions copy their arguments, because the compiler would have to
-// reread them after each store. In the rows of an image window most points qualify, and skipping the others
-// costs more in mispredicted branches than it saves. With radii the window is that of the largest region, and
-// most points do not qualify.
+// Copies the points in a ball from the runs that a neighbour search visits. The comparison is the same on
+// every level, so the set of points is the same too. The functions copy their arguments, because otherwise
+// the compiler would reread them after each store. Most points of an image window qualify, so the functions
+// do not skip groups without a qualifying point: the mispredicted branches would cost more than they save. If
+// there are radii, the window is that of the largest region, and most points do not qualify, so groups are
+// skipped.
 #include <immintrin.h>
 
 #include "core/kernels/gather_kernels.h"
@@ -64,7 +65,8 @@ std::size_t append_columns(PointRun run, const double centre[3], double reach, c
 
 #elif defined(__AVX2__)
 
-// Source positions of the survivors for each set of survivors among four, as pairs of words and as words.
+// The source indices of the qualifying points among four, for each set of them, as pairs of 32-bit words and
+// as single words.
 struct Squeeze {
   alignas(32) std::int32_t pair[16][8];
   alignas(16) std::int32_t word[16][4];
@@ -135,7 +137,7 @@ std::size_t append_columns(PointRun run, const double centre[3], double reach, c
 
 #else
 
-// Stores every point; only a survivor advances the end.
+// Stores every point; only a qualifying point advances the end.
 template <bool kIndexed, bool kExtra>
 std::size_t append_short(const PointRun& run, std::size_t start, const double centre[3], double reach,
                          const PointSink& sink, std::size_t n) {
@@ -157,8 +159,8 @@ std::size_t append_short(const PointRun& run, std::size_t start, const double ce
   return n;
 }
 
-// Computes the distances first, in a loop that the compiler vectorises, then stores the survivors, few among
-// many.
+// Computes the distances first, in a loop that the compiler vectorises, then stores the qualifying points,
+// which are few among many.
 template <bool kIndexed, bool kExtra>
 std::size_t append_long(const PointRun& run, std::size_t start, const double centre[3], double reach,
                         const PointSink& sink, std::size_t n) {

@@ -1,4 +1,4 @@
-// Copies the points of a ball out of the runs that a neighbour search visits, 4.2.2 and 5.2. Lengths in m.
+// Copies the points in a ball from the runs that a neighbour search visits, 4.2.2 and 5.2. Lengths in m.
 #pragma once
 
 #include <cstdint>
@@ -7,23 +7,22 @@
 
 namespace remote_touch {
 
-// Stored points with consecutive positions in the columns, as a neighbour search hands them over: count of
-// them, or, in an image, rows of count, whose first points are stride apart. No alignment or padding is
-// required.
+// The points that a neighbour search tests: `count` consecutive points of the columns; in an image `rows`
+// such rows, whose first points are `stride` apart. No alignment or padding is required.
 struct PointRun {
   const double* x;
   const double* y;
   const double* z;
   const double* radius;        // may be null
   const double* stiffness;     // may be null
-  const std::uint32_t* index;  // null: first_index, first_index + 1, ...
+  const std::uint32_t* index;  // null: the index is first_index + offset from the first point
   std::uint32_t first_index;
   std::size_t count;
   std::size_t rows = 1;
   std::size_t stride = 0;
 };
 
-// Columns to append to; each has the capacity for every point of the cloud and kLanes more. radius and
+// The columns to append to. Each has capacity for every point of the cloud and kLanes more. radius and
 // stiffness are written only if the run has them.
 struct PointSink {
   double* x;

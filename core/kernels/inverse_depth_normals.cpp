@@ -1,6 +1,6 @@
-// Normals, 6.2.1, by a fit that needs no eigenvectors: a plane is an affine function of the pixel in inverse
-// depth, 1 / z = A i + B j + C at i columns and j rows from the centre. The kernel computes 16, 8 or 4 pixels
-// of a row at a time.
+// Normals, 6.2.1, by a fit that needs no eigenvectors. The inverse depth of a plane is an affine function of
+// the pixel: 1 / z = A i + B j + C at i columns and j rows from the centre. The kernel computes 16, 8 or 4
+// pixels of a row at a time.
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/float_lanes.h"
 #include "core/kernels/level.h"
@@ -9,17 +9,17 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// Weighted least squares of z (A i + B j + c) = -dz / z0, with C = 1 / z0 + c. The fit's equation is
-// multiplied by z, so that no neighbour's depth is divided by, and its value at the centre is subtracted, so
-// that nothing cancels. The sums are those of w z^2 {1, i, j, i^2, i j, j^2}, of w z dz {1, i, j}, and of
-// w dz^2.
+// Weighted least squares of z (A i + B j + c) = -dz / z0, with C = 1 / z0 + c. The equation of the plane is
+// multiplied by z, so that no division by the depth of a neighbour is needed. Its value at the centre is
+// subtracted, so that nothing cancels. The sums are those of w z^2 {1, i, j, i^2, i j, j^2}, of w z dz {1, i,
+// j}, and of w dz^2.
 struct Sums {
   Floats one = {}, i = {}, j = {}, ii = {}, ij = {}, jj = {};
   Floats k = {}, ki = {}, kj = {}, kk = {};
 };
 
-// (1 - q^2)^2, where q is the distance in units of the radius: it is smooth to 0 at the radius and needs no
-// root.
+// Returns the weight (1 - q^2)^2, where q is the distance in units of the radius. It falls smoothly to 0 at
+// the radius and needs no root.
 inline Floats biweight(Floats squared) {
   const Floats u = larger(1.0f - squared, Floats{});
   return u * u;
@@ -36,7 +36,7 @@ inline Normal normal(const Sums& sums, Floats z0, Floats ray_x, Floats ray_y, co
   const Floats i = sums.i * each, j = sums.j * each, k = sums.k * each * minus;
   const Floats ii = sums.ii * each - i * i, ij = sums.ij * each - i * j, jj = sums.jj * each - j * j;
   const Floats ki = sums.ki * each * minus - k * i, kj = sums.kj * each * minus - k * j;
-  const Floats spread = ii + jj, minor = ii * jj - ij * ij;  // a, b, centre: times minor, to divide once
+  const Floats spread = ii + jj, minor = ii * jj - ij * ij;  // a, b, centre: multiplied by minor
   const Floats a = ki * jj - kj * ij, b = kj * ii - ki * ij;
   const Floats centre = minor * (k - minus) - a * i - b * j;
   Normal n = {};
@@ -48,8 +48,8 @@ inline Normal normal(const Sums& sums, Floats z0, Floats ray_x, Floats ray_y, co
   const Floats none = Floats{} + __builtin_nanf("");
   n.x = plane ? n.x * factor : none, n.y = plane ? n.y * factor : none, n.z = plane ? n.z * factor : none;
   if constexpr (kFits) {
-    // The least sum of squares is that of all w (dz / z0)^2 less the part that the fit explains. Multiplied
-    // by z0^2 and divided by the sum of w z^2, it is the mean square of the relative errors.
+    // The minimum of the sum of squares is the sum of all w (dz / z0)^2 minus the part that the fit explains.
+    // Multiplied by z0^2 and divided by the sum of w z^2, it is the mean square of the relative errors.
     const Floats once = 1.0f / minor;
     n.a = plane ? a * once : none, n.b = plane ? b * once : none, n.c = plane ? centre * once : none;
     const Floats explained = n.a * sums.ki + n.b * sums.kj + (n.c + minus) * sums.k;

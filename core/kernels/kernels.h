@@ -1,12 +1,13 @@
-// The inner loops over points and pixels, compiled once for each x86-64 level and chosen at run time: one
-// table of functions for each domain. Code that calls a domain's kernels includes its header, e.g.
-// depth_kernels.h; code that only passes the choice on includes this one.
+// The inner loops over points and pixels, compiled once for each x86-64 level and selected at run time. There
+// is one table of functions for each domain. Code that calls a domain's kernels includes its header, e.g.
+// depth_kernels.h; code that only passes the tables on includes this one.
 //
-// The same bits on every level, for every order of the points: every term is computed by itself in IEEE
-// double without contraction, minima and maxima do not depend on order, and sums are exact. A sum is exact
-// because each term is first rounded to a fixed grid: with M = 1.5 * 2^m, (t + M) - M rounds t to a multiple
-// of 2^(m-52), and up to 2^m terms of magnitude at most 1 then add without rounding (pre-rounding, Demmel and
-// Nguyen 2013). The price is an absolute error of up to 2^(m-53) a term, 2.8e-14 for up to 255 points.
+// The results have the same bits on every level and for every order of the points: every term is computed by
+// itself in IEEE arithmetic without contraction, minima and maxima do not depend on order, and sums over
+// points are exact. A sum is exact because each term is first rounded to a fixed grid: with M = 1.5 * 2^m, (t
+// + M) - M rounds t to a multiple of 2^(m-52), and up to 2^m terms of magnitude at most 1 are then added
+// without rounding (pre-rounding, Demmel and Nguyen 2013). The price is an absolute error of up to 2^(m-53)
+// per term, 2.8e-14 for up to 255 points.
 #pragma once
 
 namespace remote_touch {

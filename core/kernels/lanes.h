@@ -1,4 +1,4 @@
-// Padding of columns: to whole groups of kLanes, which each x86-64 level reads in one or several vectors.
+// Padding of columns to whole groups of kLanes. Each x86-64 level reads a group in one or several vectors.
 #pragma once
 
 #include <cstddef>

@@ -1,11 +1,12 @@
 // The kernels of one x86-64 level. Each file of this folder is compiled once for each level, into the
-// namespace that REMOTE_TOUCH_LEVEL names. They include nothing with inline functions that other files share:
-// the linker could keep one level's copy for all of them.
+// namespace that REMOTE_TOUCH_LEVEL names. These files include no inline functions that other files share,
+// because the linker could keep the copy of one level for all of them.
 #pragma once
 
 #include "core/kernels/kernels.h"
 
-// Each is defined after the functions of its domain, or, if these are in several files, in a file of its own.
+// Each table is defined after the functions of its domain, or in a file of its own if these are in several
+// files.
 #define REMOTE_TOUCH_DECLARE_TABLES(level)   \
   namespace remote_touch::level {            \
   extern const GatherKernels kGatherKernels; \
@@ -22,7 +23,8 @@ REMOTE_TOUCH_DECLARE_TABLES(REMOTE_TOUCH_LEVEL)
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
-// Kernel<&DepthKernels::filter_depth> is the type of that kernel, to declare it for a table in another file.
+// Kernel<&DepthKernels::filter_depth> is the type of that kernel. It declares the kernel for a table in
+// another file.
 template <class Member>
 struct KernelOfMember;
 template <class Table, class Function>

@@ -1,7 +1,7 @@
-// Gaussian noise: Philox4x32-10 (Salmon et al. 2011) and Box-Muller, with own elementary functions, because
-// those of the C library differ in the last bit between machines. The code is written in vectors of 64-bit
-// lanes, because compilers vectorise 32-bit products badly. A word of the generator is the lower half of a
-// lane; the upper half is masked away before it is used.
+// Gaussian noise: Philox4x32-10 (Salmon et al. 2011) and Box-Muller. The elementary functions are written
+// here, because those of the C library differ in the last bit between machines. The code uses vectors of
+// 64-bit lanes, because compilers vectorise 32-bit products badly. A word of the generator is the lower half
+// of a lane; the upper half is masked before it is used.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -12,8 +12,8 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// One native vector: the products of its lanes' lower halves, its square roots, and the signs of its lanes as
-// a mask.
+// Operations on one native vector: the products of the lower halves of lanes, the square roots of lanes, and
+// the signs of lanes as a mask.
 #if defined(__AVX512F__)
 using Part = __m512i;
 inline Part product(Part a, Part b) {
@@ -52,8 +52,8 @@ inline unsigned signs(Part a) {
 constexpr std::size_t kNative = sizeof(Part) / 8;
 using NativeBits __attribute__((vector_size(sizeof(Part)))) = std::uint64_t;
 
-// Two native vectors side by side for the normals: the long chain of operations on one would leave the
-// machine waiting.
+// The normals are computed in two native vectors side by side: with one, the machine would wait for each
+// result in the long chain of operations.
 constexpr std::size_t kWidth = 2 * kNative;
 using Lanes __attribute__((vector_size(2 * sizeof(Part)))) = double;
 using Bits __attribute__((vector_size(2 * sizeof(Part)))) = std::uint64_t;
@@ -64,7 +64,7 @@ struct Parts {
 inline NativeBits product(NativeBits a, NativeBits b) {
   return (NativeBits)product((Part)a, (Part)b);
 }
-// The vector is copied, not cast: g++ 12 makes better AVX2 code of it.
+// The vector is copied, not cast, because g++ 12 then compiles better AVX2 code.
 template <class Vector>
 inline Parts split(const Vector& vector) {
   Parts parts;
@@ -109,15 +109,17 @@ inline Bits load(const std::uint32_t* words, std::size_t live) {
   return __builtin_convertvector(half, Bits);
 }
 
-// Converts whole numbers below 2^51 in magnitude to doubles: they are the last digits of 1.5 * 2^52.
+// Converts whole numbers below 2^51 in magnitude to doubles: added to the bits of 1.5 * 2^52, they are its
+// last digits.
 inline Lanes number(Bits whole) {
   return (Lanes)(whole + 0x4338000000000000u) - 0x1.8p52;
 }
 
-// ln u for u in (0, 1], to 1e-15 relative: u = m 2^e with m in [2/3, 4/3), ln m = 2 artanh((m - 1)/(m + 1)).
+// Returns ln u for u in (0, 1], with a relative error of 1e-15: u = m 2^e with m in [2/3, 4/3), ln m = 2
+// artanh((m - 1)/(m + 1)).
 inline Lanes logarithm(Lanes u) {
   const Bits bits = (Bits)u;
-  // The exponent of u relative to 2/3, from -33 to 0: twelve bits with a sign.
+  // The exponent of u relative to 2/3, from -33 to 0, as a signed number of twelve bits.
   const Bits exponent = (((bits - 0x3FE5555555555555u) >> 52) ^ 0x800u) - 0x800u;
   const Lanes m = (Lanes)(bits - (exponent << 52));
   const Lanes s = (m - 1.0) / (m + 1.0), s2 = s * s;
@@ -129,8 +131,8 @@ inline Lanes logarithm(Lanes u) {
   return number(exponent) * 0.6931471805599453 + 2.0 * s * series;
 }
 
-// Radius and angle of one Box-Muller pair. u = (k + 1) 2^-32 lies in (0, 1], so the radius is at most
-// sqrt(64 ln 2) = 6.6605: a hard bound that lets a scenario skip points that cannot come near.
+// Returns the radius of a Box-Muller pair. u = (k + 1) 2^-32 is in (0, 1], so the radius is at most sqrt(64
+// ln 2) = 6.6605. This hard bound lets a scenario skip points that cannot come near.
 inline Lanes gaussian_radius(Bits k) {
   return root(-2.0 * logarithm(number(k + 1) * 0x1p-32));
 }
@@ -150,8 +152,8 @@ struct SineCosine {
   Lanes sine, cosine;
 };
 
-// Sine and cosine of 2 pi k / 2^32: subtracts the nearest quarter turn, then uses Taylor series on
-// [-pi/4, pi/4].
+// Returns sine and cosine of 2 pi k / 2^32: subtracts the nearest multiple of a quarter turn, then uses
+// Taylor series on [-pi/4, pi/4].
 inline SineCosine sine_cosine(Bits k) {
   const Bits quarter = (k + 0x20000000u) >> 30;
   const Lanes a = number(k - (quarter << 30)) * (6.283185307179586 * 0x1p-32), a2 = a * a;
@@ -160,7 +162,7 @@ inline SineCosine sine_cosine(Bits k) {
   s = s * a2 - 1.0 / 5040.0, s = s * a2 + 1.0 / 120.0, s = s * a2 - 1.0 / 6.0, s = (s * a2 + 1.0) * a;
   c = c + 1.0 / 479001600.0, c = c * a2 - 1.0 / 3628800.0, c = c * a2 + 1.0 / 40320.0;
   c = c * a2 - 1.0 / 720.0, c = c * a2 + 1.0 / 24.0, c = c * a2 - 0.5, c = c * a2 + 1.0;
-  const Bits odd = kNone - (quarter & 1u);  // all ones where the quarter turns are odd
+  const Bits odd = kNone - (quarter & 1u);  // all ones if the number of quarter turns is odd
   const Bits sine_sign = (quarter & 2u) << 62, cosine_sign = ((quarter + 1u) & 2u) << 62;
   return {(Lanes)((Bits)choose(odd, c, s) ^ sine_sign), (Lanes)((Bits)choose(odd, s, c) ^ cosine_sign)};
 }
@@ -172,7 +174,7 @@ inline NativeBits refused(NativeBits radius, NativeBits angle, NativeBits bounds
   return ((bounds & kWord) - radius) | ((negative ^ (bounds << 1)) & bounds);
 }
 
-// Appends first + k for the lanes k below live that are not refused. Returns how many.
+// Appends first + k for the lanes k < live that are not refused. Returns their number.
 inline std::size_t keep(NativeBits refused, std::uint32_t first, std::size_t live, std::uint32_t* index) {
   const unsigned kept = ~signs((Part)refused) & ((1u << live) - 1);
 #if defined(__AVX512F__)

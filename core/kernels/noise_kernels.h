@@ -13,12 +13,13 @@ struct NoiseStream {
 };
 
 struct NoiseKernels {
-  // Three standard normals for each of the points index[0..count), by Box and Muller.
+  // Computes three standard normals for each of the points index[0..count), by the method of Box and Muller.
   void (*normals)(const NoiseStream&, const std::uint32_t* index, std::size_t count, double* x, double* y,
                   double* z);
-  // Selects from the points first .. first + count - 1, in order, those whose random words allow the x normal
-  // to meet the bound x[i] and the z normal to meet z (word_bounds() in noise.h). A point that is not
-  // selected misses at least one of them. Returns their number; index has the capacity for count + kLanes.
+  // Selects the points whose random words allow the x normal to meet the bound x[i] and the z normal to meet
+  // the bound z (word_bounds() in noise.h). The points tested are first .. first + count - 1, in order. A
+  // point that is not selected misses at least one of the bounds. Returns the number of selected points;
+  // index has capacity for count + kLanes.
   std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
                             const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
 };

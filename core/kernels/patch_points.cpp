@@ -23,7 +23,7 @@ inline double square(double x) {
 }  // namespace
 
 // Computes the positions first, in a loop that the compiler vectorises. Then it stores every point; only
-// points of the region advance the end.
+// points in the cylinder advance the end.
 std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, const PatchColumns& to) {
   constexpr std::size_t kChunk = 64;
   double u[kChunk], v[kChunk], h[kChunk];
@@ -109,7 +109,7 @@ void height_bins(const PatchColumns& places, std::size_t count, const double* he
   }
 }
 
-// Products of two are rounded, so that products with them are exact.
+// The products uu, uv and vv are rounded, so that products with them are exact.
 QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* member, std::size_t count,
                                 double radius) {
   const double *us = places.u, *vs = places.v, *hs = places.h, max_width = radius * radius;

@@ -5,7 +5,8 @@
 
 #include "core/kernels/noise_kernels.h"
 
-// A copy for every file: code that is compiled for a newer machine must not be linked in for an older one.
+// The unnamed namespace gives each file its own copy: code that is compiled for a newer machine must not be
+// linked into a program for an older one.
 namespace remote_touch {
 namespace {
 

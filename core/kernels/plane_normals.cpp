@@ -8,9 +8,9 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// The neighbour (i, j) columns and rows away has, relative to the centre's point, the sheared coordinates
-// (i z / fx, j z / fy, dz): with rays a, p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So sums of
-// w dz^n i^a j^b give every moment, and i, j are numbers instead of columns to load and multiply with.
+// The neighbour that is i columns and j rows away has, relative to the centre's point, the sheared
+// coordinates (i z / fx, j z / fy, dz): with rays a, p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So
+// all moments follow from sums of w dz^n i^a j^b, in which i and j are numbers and not columns to be loaded.
 struct Sums {
   Floats one = {}, i = {}, j = {}, ii = {}, ij = {}, jj = {};
 };
@@ -34,15 +34,16 @@ struct Symmetric {
   Floats xx, xy, xz, yy, yz, zz;
 };
 
-// Wendland's psi(q) / 4 with q the distance in units of the radius: (1 - q)^4 (4 q + 1), 0 beyond. The factor
-// is the same for all.
+// Returns Wendland's psi(q) / 4, where q is the distance in units of the radius and psi(q) = (1 - q)^4 (4 q +
+// 1), 0 beyond. The factor 1/4 has no effect, because it is the same for all points.
 inline Floats wendland(Floats squared) {
   const Floats u = larger(1.0f - root(squared), Floats{});
   const Floats u2 = u * u;
   return (u2 * u2) * (1.25f - u);
 }
 
-// Covariance in the camera frame from sums of w, w dz, w dz^2; the mean is subtracted in sheared coordinates.
+// Returns the covariance in the camera frame from sums of w, w dz, w dz^2. The mean is subtracted in sheared
+// coordinates.
 inline Symmetric covariance(const Sums sums[3], Floats z, Floats ray_x, Floats ray_y, float step_x,
                             float step_y) {
   const Sums &w = sums[0], &k = sums[1], &l = sums[2];
@@ -69,13 +70,15 @@ inline Symmetric adjugate(const Symmetric& m) {
           m.xx * m.zz - m.xz * m.xz, m.xy * m.xz - m.yz * m.xx, m.xx * m.yy - m.xy * m.xy};
 }
 
-// The eigenvector of the smallest eigenvalue, towards the sensor. NaN where there is no point at depth z, or
-// no plane: the middle eigenvalue is below kThinnest of the sum, as for points on a line.
+// Returns the eigenvector of the smallest eigenvalue, towards the sensor. It is NaN if there is no point at
+// depth z. It is also NaN if there is no plane, that is if the middle eigenvalue is below kThinnest of the
+// sum, as for points on a line.
 inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats ray_y) {
   const Floats scale = 1.0f / (m.xx + m.yy + m.zz);
   m = {m.xx * scale, m.xy * scale, m.xz * scale, m.yy * scale, m.yz * scale, m.zz * scale};
-  // Laguerre's steps for the smallest root of f = t^3 - t^2 + c1 t - c0 never pass it, coming from 0: all
-  // three are real. They are cubic, and still fast where two roots are nearly one.
+  // Laguerre's method computes the smallest root of f = t^3 - t^2 + c1 t - c0, starting at 0. All three roots
+  // are real, so the steps never pass the smallest one. They converge cubically, and still fast if two roots
+  // nearly coincide.
   const Symmetric a = adjugate(m);
   const Floats c1 = a.xx + a.yy + a.zz, c0 = m.xx * a.xx + m.xy * a.xy + m.xz * a.xz;
   Floats t = {};
@@ -84,7 +87,8 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
     const Floats bend = 6.0f * t - 2.0f;
     t -= 3.0f * f / (slope + root(larger(4.0f * (slope * slope) - 6.0f * (f * bend), Floats{})));
   }
-  // The columns of the adjugate of m - t are the eigenvector times its components: take the longest.
+  // Each column of the adjugate of m - t is the eigenvector multiplied by one of its components. The column
+  // with the largest factor is used.
   const Symmetric b = adjugate({m.xx - t, m.xy, m.xz, m.yy - t, m.yz, m.zz - t});
   const auto x_max = (b.xx >= b.yy) & (b.xx >= b.zz), y_max = b.yy >= b.zz;
   Normal n = {y_max ? b.xy : b.xz, y_max ? b.yy : b.yz, y_max ? b.yz : b.zz};
@@ -93,7 +97,8 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
   const Floats away = n.x * ray_x + n.y * ray_y + n.z;
   const Floats factor = (away > Floats{} ? Floats{} - 1.0f : Floats{} + 1.0f) / length;
   const auto plane = (z < Floats{} + 0.5f * kNowhere) & (c1 > Floats{} + kThinnest);
-  // The same NaN for all: the compiler chooses which of two NaNs a product keeps.
+  // All three components are the same NaN: a product of two NaNs would keep the one that the compiler
+  // chooses.
   const Floats none = Floats{} + __builtin_nanf("");
   return {plane ? n.x * factor : none, plane ? n.y * factor : none, plane ? n.z * factor : none};
 }

@@ -1,13 +1,13 @@
-// The gathered points as the kernels read them.
+// The columns of the gathered points that the kernels read.
 #pragma once
 
 #include "core/kernels/lanes.h"
 
 namespace remote_touch {
 
-// Columns in m, without required alignment, padded with points at kFarAway to padded_count, a multiple of
-// kLanes. radius is r_f of each point and stiffness k_s in N/m (NaN: the renderer's own); both are null where
-// the cloud has no such column.
+// Columns in m. They need no alignment. They are padded with points at kFarAway to padded_count, a multiple
+// of kLanes. radius is r_f of each point and stiffness is k_s in N/m (NaN: the renderer's own); both are null
+// if the cloud has no such column.
 struct PointsView {
   const double* x;
   const double* y;

@@ -12,20 +12,21 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-12;  // rounding of squares never rejects a pair within the margin
+constexpr double kRounding = 1 + 1e-12;  // factor: rounding of squares never rejects a pair within the margin
 
-// The remaining regions move together once one in so many has been removed: that costs time, but saves it in
-// later passes.
+// The remaining regions are moved together when one in kCloseUp has been removed: this costs time, but saves
+// more in later passes.
 constexpr std::size_t kCloseUp = 8;
 
 inline std::size_t in_whole_groups(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-// boxes_near() returns which of kWidth groups can hold a region that sort_group() would keep: each of its
-// terms is rounded from one that is no larger, and its reach is no smaller. sort_group() stores the numbers
-// of those regions of a group that may be near, the vectors from their centres in the columns of the normal,
-// and their radii in the column of the gap.
+// boxes_near() returns a mask of the groups, kWidth at a time, that may contain a region which sort_group()
+// would keep. The test is conservative, also after rounding: each of its distances is at most that of any
+// sphere of the group, and its reach is at least that of any. sort_group() selects the regions of a group
+// that may be near. It stores their numbers, the vectors from their centres to the leaf in the columns of the
+// normal, and their radii in the column of the gap.
 #if defined(__AVX512F__)
 
 constexpr std::size_t kWidth = 8;
@@ -159,8 +160,8 @@ std::size_t sort_out(const SphereRun& run, const double columns[4], double margi
   return n;
 }
 
-// Converts vectors and radii to unit normals and gaps, in whole groups. Values beyond the last are never
-// read.
+// Converts vectors and radii to unit normals and gaps, in whole groups. Values after the last region are
+// never read.
 void measure(double leaf_radius, const NearRegions& near, std::size_t from, std::size_t to) {
   const std::size_t end = from + in_whole_groups(to - from);
   for (std::size_t group = from; group < end; group += kLanes)
@@ -177,8 +178,8 @@ void measure(double leaf_radius, const NearRegions& near, std::size_t from, std:
     }
 }
 
-// Removes the regions whose gaps are above the margin and moves the others together, with or without their
-// numbers. Most often none is removed. The write position never passes the read position.
+// Removes the regions whose gaps are above the margin and moves the others together. kNumbers: also moves
+// their numbers. Most calls remove none. The write position never passes the read position.
 #if defined(__AVX512F__)
 
 template <bool kNumbers>
@@ -226,9 +227,9 @@ std::size_t within_margin(const NearRegions& near, double margin, std::size_t fr
 
 #endif
 
-// Returns the first index with the least gap; pre: there is one. The caller must not derive this from the
-// least gap: if no gap is finite, an OpenMP minimum may be the largest finite number instead of infinity, as
-// with clang++.
+// Returns the first index with the smallest gap. pre: there is a region. The caller must not conclude this
+// from `min`: if no gap is finite, the minimum that OpenMP computes may be the largest finite number instead
+// of infinity, as with clang++.
 std::size_t deepest(const double* gap, double min) {
   std::size_t at = 0;
   unsigned same = equal(gap, min);
@@ -240,12 +241,12 @@ struct Kept {
   double nx, ny, nz, gap, twice_motion_squared, alike;
 };
 struct Left {
-  double min;  // least gap
+  double min;  // smallest gap
   std::size_t count;
 };
 
 // Sets the gaps of the regions that `by` makes redundant, and all gaps above max, to infinity. Returns the
-// least remaining gap and the number of remaining regions.
+// smallest remaining gap and the number of remaining regions.
 #if defined(__AVX512F__)
 
 Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {

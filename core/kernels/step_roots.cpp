@@ -1,4 +1,5 @@
-// Step sizes along a direction: how far to the first point, and how far out of all points.
+// Step sizes along a direction: the distance to the first point, and the distance that leads out of all
+// points.
 #include "core/kernels/level.h"
 #include "core/kernels/proxy_kernels.h"
 
@@ -13,8 +14,9 @@ inline double smaller(double a, double b) {
   return a < b ? a : b;
 }
 
-// The perpendicular form of the root: along is the foot of x on the ray and the offset is taken from it, so
-// nothing cancels when x is far away. The discriminant form loses the 2e-5 m shell there.
+// The root is computed in its perpendicular form: `along` is the foot of x on the ray, and the offset of x is
+// computed from that foot, so nothing cancels if x is far away. The discriminant form would lose the shell of
+// 2e-5 m between r1 and r2 there.
 template <bool kRadius>
 double first_hit_columns(const PointsView& points, const double p[3], const double u[3], double reach) {
   const double px = p[0], py = p[1], pz = p[2], ux = u[0], uy = u[1], uz = u[2];
@@ -31,7 +33,7 @@ double first_hit_columns(const PointsView& points, const double p[3], const doub
     const bool met = (along > 0.0) & (rest >= 0.0) & (root > 0.0);  // ahead, a real root, not behind P
     first = smaller(met ? root : __builtin_inf(), first);
   }
-  // OpenMP begins the lanes of a minimum with the largest number, which is infinity for some compilers only.
+  // OpenMP starts the lanes of a minimum with the largest number, which is infinity for some compilers only.
   return first < __DBL_MAX__ ? first : __builtin_inf();
 }
 

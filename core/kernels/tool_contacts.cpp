@@ -91,7 +91,8 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
           flags ? a.slope : b.slope};
 }
 
-// Searches one line in the lanes that are `active`. Returns the lanes that moved and did not end at the rim.
+// Searches one line in the lanes that are `active`. Returns the lanes whose position moved and is not at the
+// rim of the disk.
 Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
   const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
@@ -186,7 +187,7 @@ void put(const ContactLanes& contacts, const std::uint32_t* from, std::size_t co
 void disk_contacts(const DiskColumns& disks, const std::uint32_t* number, std::size_t count,
                    const PosedField& field, double search_m, double known_side, ContactNumbers* out) {
   constexpr std::size_t kChunk = 512;
-  // Disks that are flat in the field are grouped together, since none of them is searched.
+  // Disks in which the field is flat are grouped together, because none of them needs a search.
   enum Kind { kFar, kFlat, kSteep, kKinds };
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t size = count - first < kChunk ? count - first : kChunk;

@@ -1,6 +1,6 @@
 // Surface disks near a tool, 6.2.2: their positions, the trilinear distance field there, and a lower bound of
 // the distance of any position on a disk. The operations are those of voxel_tool.cpp and disk_contact.cpp, in
-// their order.
+// the same order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 
@@ -8,12 +8,12 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// 1 if x is positive, else 0. Computed from the sign of -x.
+// Returns 1 if x is positive, else 0. It is computed from the sign of -x.
 inline Flags is_positive(Doubles x) {
   return (Flags)(0 - x) < 0 ? Flags{} + 1 : Flags{};
 }
 
-// Appends those lanes of `may` that are within the limits, from index `to` of the columns on. Returns their
+// Appends the lanes of `may` that are within the limits to the columns, from index `to` on. Returns their
 // number.
 inline std::size_t put_disks(const PlacesInField& places, const DisksInField& disks, Flags may,
                              const DiskLimits& limits, double cells_per_m, const DiskColumns& out,

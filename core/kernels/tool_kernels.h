@@ -1,5 +1,6 @@
 // Detection of spheres and points near a tool, 6.2.2, and the distance field at surface disks. Points and
-// spheres come in whole groups: group g is kLanes g .. kLanes g + kLanes - 1 of columns padded to kLanes.
+// spheres are processed in whole groups: group g is kLanes g .. kLanes g + kLanes - 1 of columns that are
+// padded to kLanes.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +9,14 @@
 
 namespace remote_touch {
 
-// One byte for each cell of a regular grid, the first coordinate running fastest; three more bytes after the
-// last must be readable.
+// One byte for each cell of a regular grid; the first coordinate runs fastest. Three more bytes after the
+// last one must be readable.
 struct CellTable {
   const std::int8_t* value;
   int cells[3];
 };
 
-// Transforms world coordinates, m, to cell coordinates: along each axis row[0..2] . (x, y, z) + row[3].
+// Transforms world coordinates, m, to cell coordinates: along each axis, row[0..2] . (x, y, z) + row[3].
 struct CellTransform {
   double row[3][4];
 };
@@ -35,7 +36,7 @@ struct NearnessCode {
   double reach, per_m;
 };
 
-// Points with normals (NaN: none) and distances to the points around them, m.
+// Points in m with normals (NaN: none). spacing: distance to the points around.
 struct PointColumns {
   const double* x;
   const double* y;
@@ -44,7 +45,7 @@ struct PointColumns {
   const double* ny;
   const double* nz;
   const double* spacing;
-  const double* extent;  // radius that the point stands for around itself; 0 for itself alone
+  const double* extent;  // radius of the area that the point represents; 0 if only itself
 };
 
 // Limits that select disks of points, m.
@@ -55,8 +56,8 @@ struct DiskLimits {
   double passed;  // groups of points that were farther away than this before are skipped
 };
 
-// The pose of a tool, and its distance field in m at the nodes of a grid, the first coordinate running
-// fastest; size is the edge of a cell, m.
+// The pose of a tool, and its distance field in m at the nodes of a grid; the first coordinate runs fastest.
+// size is the edge of a cell, m.
 struct PosedField {
   double R_TW[3][3];
   double p_W[3];
@@ -66,13 +67,15 @@ struct PosedField {
   double size;
 };
 
-// Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
+// When this constant is added to a number below 2^51, the number is rounded to a whole one, which is then in
+// the low bits.
 inline constexpr double kRoundsToWhole = 0x1.8p52;
-// Subtracted first, it makes that rounding down. A number less than 2^-34 below an integer counts as that
-// integer.
+// When this constant is subtracted first, that rounding becomes rounding down. A number that is less than
+// 2^-34 below an integer counts as that integer.
 inline constexpr double kAlmostHalf = 0.5 - 0x1p-34;
 
-// Surface disks in the tool frame; capacity for kLanes more than there are points. Lengths in m.
+// Surface disks in the tool frame. Each column has capacity for kLanes more than there are points. Lengths in
+// m.
 struct DiskColumns {
   double* p_T[3];
   double* n_T[3];
@@ -81,9 +84,9 @@ struct DiskColumns {
   double* gradient_T[3];
   double* slope;   // slope of the field in the plane of the disk; NaN without a normal
   double* lower;   // lower bound of the distance of any position on the disk
-  double* bound;   // distance if lower is no more than `search` and the disk is flat in the field; else lower
-  double* cell;    // the bits of cell_and_octant() of p_T and the direction against the gradient
-  double* extent;  // extent of its point
+  double* bound;   // distance if lower <= `search` and the field is flat over the disk; else lower
+  double* cell;    // bits of cell_and_octant() of p_T and the direction against the gradient
+  double* extent;  // PointColumns::extent of its point
 };
 
 // Limits that select points, m.
@@ -92,14 +95,14 @@ struct PlaceLimits {
   double passed;  // the same as in DiskLimits
 };
 
-// Points in the tool frame; capacity for kLanes more than there are points. Lengths in m.
+// Points in the tool frame. Each column has capacity for kLanes more than there are points. Lengths in m.
 struct PlaceColumns {
   double* p_T[3];
   double* distance;  // NaN outside the grid
-  double* number;    // number of the point, a whole number
+  double* number;    // index of the point, a whole number
 };
 
-// A constraint (6.3), as ToolContact has it; m.
+// A constraint (6.3) with the members of ToolContact; m.
 struct ContactNumbers {
   double r_T[3], n_T[3];
   double depth, side;
@@ -107,19 +110,19 @@ struct ContactNumbers {
 
 // Limits that define contact of points with a tool, m.
 struct TouchLimits {
-  double reach;   // points farther away do not count at all
+  double reach;   // points farther away are ignored
   double voxels;  // points farther away are in no voxel of the tool
   double touch;   // largest distance of a disk that is touched
-  double slope;   // largest length of the field's gradient where the field is `reach` or less
+  double slope;   // largest length of the field's gradient at distances up to `reach`
   double passed;  // the same as in DiskLimits
 };
 
 // The touched points of a cloud. The lists have capacity for kLanes more than there are points.
 struct TouchedSummary {
-  double nearest;           // distance of a point, m; infinite if none is within reach
+  double nearest;           // distance of the nearest point in the grid, m; infinite if none is within reach
   std::size_t point_count;  // number of touched points
-  bool is_inside;           // one of them is in an interior voxel
-  std::uint64_t* cluster;   // cell_number() of all of them, each at least once
+  bool is_inside;           // true if a point is in an interior voxel
+  std::uint64_t* cluster;   // cell_number() of the touched points; each value at least once
   std::size_t clusters;     // length of that list
   std::uint32_t* unclear;   // points that this query cannot decide
   std::size_t unclear_count;
@@ -127,42 +130,41 @@ struct TouchedSummary {
 
 struct ToolKernels {
   // Finds the spheres of the groups that contain positions within reach of the tool, in order, and some
-  // others that are near. Writes their numbers into found, which has the capacity for all. Returns how many.
+  // others that are near. Writes their indices into found, which has capacity for all. Returns their number.
   std::size_t (*near_spheres)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
                               const CellTransform&, const CellTable&, const NearnessCode&,
                               std::uint32_t* found);
-  // Finds the points of the groups that lie in a cell whose value is min or more, in order. NaN lies in no
-  // cell. A point less than a cell outside the grid counts as inside it. Writes their numbers into found,
-  // which has the capacity for all. Returns how many.
+  // Finds the points of the groups that lie in a cell whose value is min or more, in order. A NaN point is in
+  // no cell. A point less than a cell below the grid counts as inside it. Writes their indices into found,
+  // which has capacity for all. Returns their number.
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
                                  const CellTable&, int min, std::uint32_t* found);
   // Computes the disks around the first count points, of radius fraction x spacing + extent, that are within
   // the limits, in the order of the points. The values are those of sample_field() and lower_bound_m(), bit
-  // for bit. All positions outside the grid are included, with NaN as lower. nearest: the least distance of
-  // each group of kLanes points, or a lower one. It is written if is_new; else it is read and compared with
-  // limits.passed. The columns of the points are padded. Returns the number of disks; outside_count of them
-  // are outside the grid.
+  // for bit. All points outside the grid are included, with NaN as lower. nearest: the smallest distance of
+  // each group of kLanes points, or a lower bound of it. It is written if is_new; else it is read and
+  // compared with limits.passed. The columns of the points are padded. Returns the number of disks;
+  // outside_count is the number of those outside the grid.
   std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
                                 const PosedField&, const DiskLimits&, double* nearest, bool is_new,
                                 const DiskColumns&, std::size_t& outside_count);
-  // Computes the points of the groups that are within the limits, in their order, with the values of
-  // sample_field(), bit for bit. A point outside the grid is included if the nearest position of the grid is
-  // within reach. nearest and is_new are as above, one for each group[i]. Returns the number of points;
-  // outside_count of them are outside the grid.
+  // Computes the points of the groups that are within the limits, in the order of the points, with the values
+  // of sample_field(), bit for bit. A point outside the grid is included if the nearest position of the grid
+  // is within reach. nearest and is_new are as above, one for each group[i]. Returns the number of points;
+  // outside_count is the number of those outside the grid.
   std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
                                  const PosedField&, const PlaceLimits&, double* nearest, bool is_new,
                                  const PlaceColumns&, std::size_t& outside_count);
   // Finds the touched points of the groups. A point is touched if it lies in a voxel (1: shell, 2: interior),
-  // or if the centre of its disk of radius fraction x spacing + extent is as near as limits.touch. A point is
-  // unclear if only a search could show that its disk is so near, or if it lies outside the grid. nearest and
-  // is_new are as above, one for each group[i].
+  // or if the distance of its centre is at most limits.touch. A point is unclear if it lies outside the grid,
+  // or if its disk, of radius fraction x spacing + extent, may be as near as limits.touch and only a search
+  // can show it. nearest and is_new are as above, one for each group[i].
   void (*touched_points)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
                          double fraction, double clusters_per_m, const PosedField&, const CellTable& voxels,
                          const TouchLimits&, double* nearest, bool is_new, TouchedSummary&);
-  // Computes the contacts of the disks number[0..count), bit for bit: those of far_contact() if lower is more
-  // than search, else those of near_contact() at nearest_place(). depth is NaN if that search leaves the
-  // grid.
+  // Computes the contacts of the disks number[0..count), bit for bit: those of far_contact() if lower >
+  // search, else those of near_contact() at nearest_place(). depth is NaN if the search leaves the grid.
   void (*disk_contacts)(const DiskColumns&, const std::uint32_t* number, std::size_t count, const PosedField&,
                         double search, double known_side, ContactNumbers* contacts);
 };

@@ -1,5 +1,5 @@
 // Detection of the points near a tool, 6.2.2, and the trilinear distance field at them. The operations are
-// those of voxel_tool.cpp, in their order.
+// those of voxel_tool.cpp, in the same order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 

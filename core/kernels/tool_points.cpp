@@ -1,6 +1,6 @@
-// Detection of points in those cells of a tool that matter, 6.2.2: each point is transformed into the cells'
-// frame and its cell is looked up. The operations of the transform come in the same order on every level, so
-// the cell of a point is the same too.
+// Detection of points in the relevant cells of a tool, 6.2.2. Each point is transformed to the frame of the
+// cells, and the value of its cell is read. The operations of the transform have the same order on every
+// level, so the cell of a point is the same too.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -12,8 +12,8 @@ namespace {
 
 #if defined(__AVX512F__)
 
-// A coordinate of eight points in cells, rounded towards zero; NaN, or a value far off, becomes a negative
-// one.
+// Returns a coordinate of eight points in cells, rounded towards zero. NaN and values beyond the range of
+// integers become negative.
 inline __m256i coordinate(const double row[4], __m512d x, __m512d y, __m512d z) {
   const __m512d along = _mm512_add_pd(
       _mm512_add_pd(_mm512_mul_pd(_mm512_set1_pd(row[0]), x), _mm512_mul_pd(_mm512_set1_pd(row[1]), y)),
@@ -44,8 +44,8 @@ std::size_t find(const double* x, const double* y, const double* z, const std::u
     const __m256i values = _mm256_srai_epi32(_mm256_slli_epi32(words, 24), 24);
     in = _mm256_mask_cmpge_epi32_mask(in, values, limit);
     const __m256i number = _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(at)));
-    // Not the compressing store, which some processors do in a hundred cycles: found has room for whole
-    // groups.
+    // The compressing store instruction is avoided, because it needs a hundred cycles on some processors;
+    // found has room for whole groups.
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(found + n), _mm256_maskz_compress_epi32(in, number));
     n += static_cast<std::size_t>(__builtin_popcount(in));
   }
@@ -76,8 +76,8 @@ inline void store_coordinate(const double row[4], const double* x, const double*
 }
 #endif
 
-// Computes the coordinates of eight points in vectors, then looks up the cells one by one: few points are
-// inside the grid.
+// Computes the coordinates of eight points in vectors, then reads the cells one by one, because few points
+// are inside the grid.
 std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
                  std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
                  std::uint32_t* found) {

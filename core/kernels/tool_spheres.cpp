@@ -1,6 +1,6 @@
 // Detection of the groups of points that can be near a tool, 6.2.2, by the distance of their bounding spheres
-// from the tool. Outside the grid two lower bounds of it are used: the distance to the grid's box, and the
-// distance of the nearest cell less the way there.
+// from the tool. A sphere with its centre outside the grid is tested with two lower bounds of the distance:
+// the distance to the grid's box, and the distance of the nearest cell minus the length of a path to it.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -13,7 +13,7 @@ namespace {
 #if defined(__AVX512F__)
 
 // A coordinate of eight centres in cells, moved into the grid (NaN becomes 0), and the distance by which it
-// moved.
+// was moved.
 struct Along {
   __m256i cell;
   __m512d away;
@@ -60,8 +60,8 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
     const __m512d values = _mm512_cvtepi32_pd(_mm256_srai_epi32(_mm256_slli_epi32(words, 24), 24));
     in = _mm512_mask_cmp_pd_mask(in, values, min, _CMP_NLT_UQ);
     const __m256i number = _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(at)));
-    // Not the compressing store, which some processors do in a hundred cycles: found has room for whole
-    // groups.
+    // The compressing store instruction is avoided, because it needs a hundred cycles on some processors;
+    // found has room for whole groups.
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(found + n), _mm256_maskz_compress_epi32(in, number));
     n += static_cast<std::size_t>(__builtin_popcount(in));
   }
@@ -84,13 +84,14 @@ inline double magnitude(double x) {
   return x < 0 ? -x : x;
 }
 
-// The same in doubles: computes eight coordinates at a time, then looks up the cells one by one.
+// Does the same in doubles: computes the coordinates of eight spheres at a time, then reads the cells one by
+// one.
 std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
                  const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
                  std::uint32_t* found) {
   const double columns = table.cells[0], rows = table.cells[1], layers = table.cells[2];
   const double per_unit = 1 / code.unit;
-  constexpr double kNever = 1e9;  // above all values of cells
+  constexpr double kNever = 1e9;  // larger than every value of a cell
   std::size_t n = 0;
   for (std::size_t g = 0; g < group_count; ++g) {
     const std::size_t at = kLanes * std::size_t{groups[g]};

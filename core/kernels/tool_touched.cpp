@@ -1,6 +1,6 @@
-// The points of a cloud that a tool touches, 6.2.2, every point counted: the voxels that points lie in, and
-// the distances of points that lie in none. The operations are those of voxel_tool.cpp and disk_contact.cpp,
-// in their order.
+// The points of a cloud that a tool touches, 6.2.2: points that lie in voxels, and points outside the voxels
+// whose distance is small enough. Every touched point is counted. The operations are those of voxel_tool.cpp
+// and disk_contact.cpp, in the same order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr long kInterior = 2;  // the value of Voxel::interior
 
-// Looks up the voxels of cells, one by one.
+// Reads the voxels of cells, one by one.
 inline Flags voxels_at(const CellTable& table, Counts cell) {
   Flags voxels;
   for (int lane = 0; lane < kDoubles; ++lane)
@@ -18,8 +18,8 @@ inline Flags voxels_at(const CellTable& table, Counts cell) {
   return voxels;
 }
 
-// True for lanes whose disks can come as near as `touch`: in the plane of a normal n the field is no steeper
-// than its gradient times the larger of 1 and |1 - n.n|.
+// Returns the lanes whose disks may be as near as `touch`. The slope of the field in the plane of a normal n
+// is at most the length of its gradient times the larger of 1 and |1 - n.n|.
 inline Flags can_touch(const PointColumns& points, std::size_t i, double fraction, const TouchLimits& limits,
                        Doubles distance) {
   constexpr double kRounding = 1 + 1e-9;

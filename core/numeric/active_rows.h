@@ -1,5 +1,6 @@
-// The active rows, which hold the solution of a quadratic program, and their changes: the inner part of the
-// method of Goldfarb and Idnani (1983). Used by quadratic_program.cpp.
+// The active rows, which are the rows that the solution of a quadratic program fulfils with equality, and
+// their changes: the inner part of the method of Goldfarb and Idnani (1983). This file is for
+// quadratic_program.cpp only.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +11,14 @@
 
 namespace remote_touch {
 
-// Rows have unit length. Rounding error of row . y for coordinates of y up to 1:
+// The rounding error of row . y, for a row of unit length and coordinates of y up to 1.
 inline constexpr double kRounding = 1e-14;
-// A row is a combination of others if the square of its part outside of them is below:
+// A row counts as a linear combination of other rows if the squared length of its component normal to them is
+// at most this value.
 inline constexpr double kParallelSquared = 1e-16;
 
-// The rows that hold y, as the columns of q R: q is orthonormal, and R is kept as its inverse. Columns beyond
-// count are zero, so that products run over all N and have no branches.
+// The active rows as the columns of a matrix q R: q is orthonormal, and R is stored as its inverse. The
+// columns beyond count are zero, so that all products run over N columns and need no branches.
 template <int N>
 struct ActiveRows {
   int count = 0;
@@ -24,18 +26,19 @@ struct ActiveRows {
   double multiplier[N] = {};
   Square<N> q, inverse;
 
-  // Moves y until it fulfils a row, with the rows that hold y tight and their multipliers at 0 or above: a
-  // row whose multiplier reaches 0 on the way is removed. Returns false if no such y exists.
+  // Moves y until it fulfils a row, and makes that row active. The other active rows stay fulfilled with
+  // equality, with multipliers of 0 or more. An active row whose multiplier reaches 0 on the way is removed.
+  // Returns false if no such y exists.
   bool take_in(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
     double its_multiplier = 0;
     for (;;) {
       Packed<N> inside = q.transposed_times(unit_row), outside = unit_row;
       outside.add(-1, q.times(inside));
-      if (outside.dot(outside) < 0.5) {  // much has cancelled; twice is enough (Daniel et al. 1976)
+      if (outside.dot(outside) < 0.5) {  // large cancellation; a second pass is enough (Daniel et al. 1976)
         const Packed<N> more = q.transposed_times(outside);
         inside.add(1, more), outside.add(-1, q.times(more));
       }
-      const Packed<N> coefficient = inverse.times(inside);  // in unit_row, of each row that holds y
+      const Packed<N> coefficient = inverse.times(inside);  // coefficients of the active rows in unit_row
       const double squared = outside.dot(outside);
       const bool is_free = squared > kParallelSquared;
       double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
@@ -65,7 +68,8 @@ struct ActiveRows {
     ++count;
   }
 
-  // A reflection turns the basis until its last direction is the one that this row alone needs.
+  // Removes the active row with index `gone`. A reflection turns the basis so that its last direction is the
+  // one that only this row needs. That direction is dropped, and the last active row moves to the free index.
   void remove(int gone) {
     --count;
     Packed<N> v;
@@ -82,8 +86,8 @@ struct ActiveRows {
     }
   }
 
-  // Removes the distances of y to the rows that hold it, which are rounding of the steps, and computes the
-  // multipliers that belong to y.
+  // Corrects y for its distances to the active rows, which are rounding errors of the steps, and computes the
+  // multipliers that belong to the corrected y.
   void settle(const Packed<N>& distance, const Packed<N>& target, Packed<N>& y) {
     y.add(1, q.times(inverse.transposed_times(distance)));
     Packed<N> moved = y;

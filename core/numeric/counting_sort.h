@@ -8,9 +8,9 @@
 
 namespace remote_touch {
 
-// cell_of(i) is the cell of item i, called twice for each; place(i, to) puts item i in place `to`. Afterwards
-// the items of cell c are in the places start[c] to start[c + 1] - 1. start and next, which is scratch, have
-// one element more than there are cells.
+// cell_of(i) returns the cell of item i and is called twice for each item; place(i, to) puts item i at
+// position `to`. Afterwards the items of cell c are at the positions start[c] to start[c + 1] - 1. start and
+// next (a work buffer) have one element more than there are cells.
 template <class CellOf, class Place>
 void sort_by_cell(std::size_t items, std::span<std::uint32_t> start, std::span<std::uint32_t> next,
                   const CellOf& cell_of, const Place& place) {

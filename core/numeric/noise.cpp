@@ -20,7 +20,7 @@ std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point) {
   return numbers;
 }
 
-// radius^2 = -2 ln((word + 1) 2^-32), see kernels/noise.cpp
+// The normal is at most the radius in magnitude, radius^2 = -2 ln((word + 1) 2^-32), see kernels/noise.cpp.
 std::uint64_t word_bounds(double min, double towards) {
   constexpr double kWords = 4294967296.0;
   if (!(min > 0)) return 0xFFFFFFFFu;

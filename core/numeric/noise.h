@@ -31,7 +31,7 @@ enum class NoiseUse : std::uint32_t {
   sensor_ray = 8,
 };
 
-// No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
+// The upper bound of the magnitude of every standard normal of this generator: sqrt(64 ln 2), rounded up.
 inline constexpr double kMaxNormal = 6.661;
 
 // pre: frame < 2^28.
@@ -41,15 +41,16 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
            static_cast<std::uint32_t>(key.replicate)}};
 }
 
-// The random words of one point of the stream, as numbers uniform in (0, 1); the normals of the same point
-// are made from the same words.
+// Returns the random words of one point of the stream, as numbers uniform in (0, 1). The normals of the same
+// point are computed from the same words.
 std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
 
-// A condition on a normal, at least min (or, where towards is below 0, at most -min), as a condition on the
-// two random words that it is made of: its radius falls with the first, its sign follows from the second. min
-// <= 0: no condition. The result is too permissive by a millionth, never too strict, so it does not depend on
-// the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the required sign; 63: a sign is
-// required.
+// Converts a condition on a normal to a necessary condition on the two random words from which it is
+// computed. The condition is normal >= min, or normal <= -min if towards < 0; there is none if min <= 0. The
+// magnitude of the normal is at most a radius that decreases with the first word, and its sign follows from
+// the second. The result is too permissive by a millionth and never too strict, so it does not depend on the
+// last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the required sign, 1 for negative;
+// 63: a sign is required.
 std::uint64_t word_bounds(double min, double towards);
 
 }  // namespace remote_touch

@@ -13,9 +13,10 @@ namespace {
 constexpr int kLanes = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMax = 1e150;         // its square is finite
-constexpr double kInfeasible = 5e-13;  // violations below may be the rounding of rows that nearly agree
+constexpr double kInfeasible = 5e-13;  // smaller violations may be rounding errors of rows that nearly agree
 
-// Violations of two rows; row: in each lane, the number of the first row of the pair it came from.
+// Violations in two lanes. distance: the violation; row: the number of the first row of the pair that it came
+// from.
 struct PairOfRows {
   Pair distance = both(-kInfinite), row = both(0);
 };
@@ -72,7 +73,7 @@ Pair sum_of_squares(const Pair* terms) {
 
 }  // namespace
 
-// Processes rows in pairs.
+// Reads, checks and scales the rows in pairs.
 template <int N>
 bool QuadraticProgram<N>::add_all(const double* const (&column)[N], const double* bounds, int count) {
   if (count > capacity_ - count_ || count_ % 2 != 0) return false;
@@ -103,7 +104,7 @@ bool QuadraticProgram<N>::add_all(const double* const (&column)[N], const double
   return true;
 }
 
-// Padding is never violated.
+// Padding rows have the bound minus infinity, so they are never violated.
 template <int N>
 typename QuadraticProgram<N>::Violation QuadraticProgram<N>::max_violation(const double* y) const {
   Pair y_twice[N];
@@ -137,7 +138,7 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
   Packed<N> y = start;
   ActiveRows<N> held;
   const double start_scale = start.max_abs();
-  double min = 0;  // violations that are due to rounding
+  double min = 0;  // violations up to this value are due to rounding
   bool settled = false;
   const int max = 8 * (N + count_);
   while (result.iterations++ < max) {

@@ -30,7 +30,7 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
-// Returns the position at which the UTF-8 character begins that contains byte `at`.
+// Returns the position of the first byte of the UTF-8 character that contains byte `at`.
 std::size_t character_before(const std::string& line, std::size_t at) {
   while (at > 0 && (static_cast<unsigned char>(line[at]) & 0xC0) == 0x80) --at;
   return at;
@@ -43,8 +43,8 @@ std::string ends_of(const std::string& text, std::size_t first_bytes, std::size_
   return text.substr(0, first) + "..." + text.substr(last);
 }
 
-// Shortens words: a number with many digits, or an endless key, is not worth its line. Few file names are
-// longer than the limit.
+// Shortens long words, because a number with many digits or an endless key is not worth a full line. Few file
+// names are longer than the limit.
 std::string with_short_words(const std::string& line) {
   constexpr std::size_t kMaxWord = 400, kBegin = 200, kEnd = 100;
   std::string shorter;

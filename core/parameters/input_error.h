@@ -7,15 +7,16 @@
 
 namespace remote_touch {
 
-// One line of UTF-8: a line break becomes a blank, other control characters and bytes that are not UTF-8 are
-// written as \x and two hexadecimal digits. Of a word longer than 400 bytes the middle becomes "...".
+// Returns the text as one line of UTF-8. A line break or tab becomes a blank; other ASCII control characters
+// and bytes that are not UTF-8 are written as \x and two hexadecimal digits. The middle of a word longer than
+// 400 bytes, and then of a line longer than 1000 bytes, is replaced with "...".
 std::string printable(const std::string& text);
 
 class InputError : public std::runtime_error {
  public:
   // subject: the file or the parameter path, as the user would write it.
   InputError(const std::string& subject, const std::string& problem) : InputError(subject + ": " + problem) {}
-  // Both in one, as the validate() functions return them.
+  // line: subject and problem in one line, as the validate() functions return them.
   explicit InputError(const std::string& line) : std::runtime_error(printable(line)) {}
 };
 

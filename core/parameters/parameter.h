@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// One of a few named values, kept in an enumeration of the owner.
+// One of a few named values. The owner stores it in an enumeration.
 struct Choice {
   std::vector<std::string> names;
   std::function<int()> get;
@@ -44,7 +44,7 @@ inline Parameters live_ones(Parameters list) {
   return list;
 }
 
-// A choice held in any enumeration whose values are 0, 1, 2, ... in the order of names.
+// Returns the Choice for an enumeration whose values are 0, 1, 2, ... in the order of names.
 template <class Enumeration>
 Choice choice(Enumeration& value, std::vector<std::string> names) {
   return {std::move(names), [&value] { return static_cast<int>(value); },

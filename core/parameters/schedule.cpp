@@ -4,7 +4,7 @@ namespace remote_touch {
 
 double scheduled(const std::vector<double>& rows, double time_s) {
   if (rows.empty()) return 1;
-  std::size_t next = 0;  // the first row that lies ahead
+  std::size_t next = 0;  // index of the first row after time_s
   while (next < rows.size() && rows[next] <= time_s) next += 2;
   if (next == 0) return rows[1];
   const double before_s = rows[next - 2], before = rows[next - 1];

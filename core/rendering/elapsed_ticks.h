@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// Returns the number of ticks from before_s to now_s, rounded, and at least 1. So it is 1 if no tick was
-// missed, and also if the time stands still, goes back or is NaN.
+// Returns the number of ticks from before_s to now_s, rounded, and at least 1. It is also 1 if the time does
+// not advance, decreases or is NaN.
 inline double elapsed_ticks(double before_s, double now_s, double haptic_rate_hz) {
   return std::max(1.0, std::floor((now_s - before_s) * haptic_rate_hz + 0.5));
 }

@@ -1,4 +1,4 @@
-// The data that a renderer gets from a sensor and from a device.
+// The data that a renderer receives from a sensor and from a device.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class FramePreparation {
   virtual ~FramePreparation() = default;
 };
 
-// The true surface that a frame shows, as a simulation knows it; a sensor has none. Only for oracles:
-// renderers that show what a better estimate could reach.
+// The true surface at the time of a frame, which only a simulation knows; a frame of a sensor has none. It is
+// only for oracles: renderers that show what a better estimate could reach.
 class TrueSurface {
  public:
   virtual ~TrueSurface() = default;
@@ -27,7 +27,7 @@ class TrueSurface {
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
 };
 
-// One point cloud of the stream. Latency is part of the data: the renderer gets the frame at arrives_s.
+// One point cloud of the stream. Latency is part of the data: the renderer receives the frame at arrives_s.
 struct Frame {
   int index = 0;
   double captured_s = 0;
@@ -38,8 +38,8 @@ struct Frame {
   std::shared_ptr<const TrueSurface> truth = nullptr;  // simulations only
 };
 
-// The haptic interface point (HIP), world frame, the orientation that takes the handle's axes to the world,
-// and the buttons of the handle that are down, one bit each.
+// The position of the haptic interface point (HIP) in the world frame; the orientation, which rotates the
+// axes of the handle to the world; and the pressed buttons of the handle, one bit each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();

@@ -1,5 +1,5 @@
-// The needs that a renderer can have of the points of its frames. A run is refused if its frames lack one,
-// because there would be no force, or a wrong one.
+// The properties that a renderer can require of the points of its frames. A run is refused if its frames lack
+// one of them, because there would be no force, or a wrong one.
 #pragma once
 
 namespace remote_touch {

@@ -11,15 +11,15 @@ namespace remote_touch {
 
 class FrameOrder {
  public:
-  // True if the frame was captured after the newest one, or is the first.
+  // Returns true if the frame was captured after the newest one, or is the first.
   bool is_newer(const Frame& frame) const;
   // Same as is_newer(). A newer frame becomes the newest one; any other frame counts as dropped.
   bool take(const Frame& frame);
-  int newest() const { return index_; }  // -1 before the first
+  int newest() const { return index_; }  // index of the newest frame; -1 before the first
   double captured_s() const { return captured_s_; }
 
-  // The status of a tick: `otherwise`, or stale_frame_dropped if that is ok and a frame was dropped since the
-  // last tick.
+  // Returns the status of a tick: stale_frame_dropped if `otherwise` is ok and a frame was dropped since the
+  // last tick, else `otherwise`.
   RenderStatus status(RenderStatus otherwise) {
     const bool dropped = std::exchange(dropped_, false);
     return dropped && otherwise == RenderStatus::ok ? RenderStatus::stale_frame_dropped : otherwise;

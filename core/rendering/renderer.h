@@ -59,9 +59,9 @@ struct GuidanceOutput {
 struct RenderOutput {
   Vec3 proxy_W = Vec3::Zero();
   Vec3 force_N = Vec3::Zero();
-  // The commanded position of the slave robot, 5.2: never a proxy position inside a region, so the last
-  // command is repeated until there is a valid one. NaN before the first. A slave robot with a tool also
-  // follows the orientation of the pose that is commanded, the tool's or the device's.
+  // The commanded position of the slave robot, 5.2. A proxy position inside a region is never commanded: the
+  // last command is repeated until there is a valid one. NaN before the first. A slave robot with a tool also
+  // follows the orientation of the commanded pose, which is that of the tool or of the device.
   Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   ContactState state = ContactState::free;  // state of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
@@ -85,20 +85,21 @@ class Renderer {
   // of the same kind and settings. May run in parallel to on_frame() and step(), so it reads no live
   // parameter. The results of the renderer do not depend on it.
   virtual void prepare(Frame& /*frame*/) const {}
-  // Reserves memory for frames of so many points, or for images of so many pixels, both sides rounded up to
-  // multiples of 16; then on_frame() of a prepared frame allocates nothing. It releases the frame before: the
-  // caller keeps a reference to that one if memory must not be freed there either.
+  // Reserves memory for frames of `points` points. An image counts with its number of pixels, both sides
+  // rounded up to multiples of 16. Afterwards on_frame() of a prepared frame allocates nothing. on_frame()
+  // releases the previous frame: the caller keeps a reference to that one if memory must not be freed there
+  // either.
   virtual void reserve(std::size_t /*points*/) {}
   // Adds a new frame, prepared or not. A frame that is not newer than the last one is dropped, and the status
   // of the next output reports it.
   virtual void on_frame(const Frame& frame) = 0;
-  // Returns the settings that are marked live, with pointers to the renderer's own values. Between two steps
-  // the thread of step() may set these values to others that validate() allows. parameters_changed() then
-  // applies them, without an allocation.
+  // Returns the settings that are marked live, with pointers to the renderer's own values. The thread of
+  // step() may set these values between two steps, to others that validate() allows. parameters_changed()
+  // then applies them, without an allocation.
   virtual Parameters live_parameters() { return {}; }
   virtual void parameters_changed() {}
-  // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: errors are
-  // reported as a status.
+  // Computes one haptic tick at time_s, which must not decrease. It does not allocate, lock or throw: errors
+  // are reported as a status.
   virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
 };
 

@@ -18,8 +18,9 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
   return carried * normal_;
 }
 
-// Updates the estimate by (4.13), v_hat + n.s / interval, if the proxy was carried all the way. If (4.3) was
-// bounded, the motion of the surface is the distance carried plus the step.
+// Updates the estimate. If (4.3) was not bounded, this is (4.13), v_hat + n.s / interval. If it was bounded,
+// the motion of the surface is the distance that the proxy was carried plus the step. The growth of a region
+// is subtracted from the motion in both cases.
 void SurfaceVelocity::on_step(const Vec3& step) {
   if (!awaits_step_) return;
   awaits_step_ = false;

@@ -1,5 +1,5 @@
-// Point cloud velocity estimate, 4.2.5: how fast the surface moves along the proxy's normal, towards the
-// proxy.
+// Estimate of the point cloud velocity, 4.2.5: the speed of the surface along the proxy's normal, positive
+// towards the proxy.
 #pragma once
 
 #include "core/geometry/vector.h"
@@ -13,9 +13,9 @@ class SurfaceVelocity {
   explicit SurfaceVelocity(double max_interval_s)
       : max_interval_s_(max_interval_s), horizon_s_(max_interval_s) {}
 
-  // A new frame, with the normal estimated just before it. Returns the correction s_j of (4.3), to be added
-  // to the proxy. The interval is the time between the two frames' captures: 1/f_c for a steady stream.
-  // Frames that follow each other without a step between them count as one.
+  // Processes a new frame, with the normal estimated just before it. Returns the correction s_j of (4.3), to
+  // be added to the proxy. The interval is the time between the captures of the two frames: 1/f_c for a
+  // steady stream. Frames that follow each other without a step between them count as one.
   Vec3 on_frame(double captured_s, const Vec3& normal);
   // Adds the growth of a forbidden region under the proxy in the newest frame, m. on_step() subtracts it,
   // because it is no motion of the cloud. Call it between on_frame() and on_step().
@@ -25,15 +25,15 @@ class SurfaceVelocity {
   // estimate is never negative and never reset.
   void on_step(const Vec3& step);
 
-  // Replaces both calls if the motion is measured by other means. The velocity along the normal has either
-  // sign.
+  // Replaces on_frame() and on_step() if the motion is measured by other means. The velocity along the normal
+  // may then be negative.
   void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
 
   double m_per_s() const { return velocity_m_per_s_; }
-  // v_hat as a vector, along the normal of the last frame.
+  // Returns v_hat as a vector along the normal of the last frame.
   Vec3 vector() const { return velocity_m_per_s_ * normal_; }
-  // The time after a frame during which v_hat may be used, s: the larger of max_interval_s and the newest
-  // interval between frames without its pause.
+  // Returns the time after a frame during which v_hat may be used, s: the larger of max_interval_s and the
+  // newest interval between frames without its pause.
   double horizon_s() const { return horizon_s_; }
 
  private:

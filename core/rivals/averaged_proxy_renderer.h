@@ -1,5 +1,5 @@
-// The proxy of chapter 4 on points that are averaged over the last frames (frame_average.h): what a user gets
-// who switches on the temporal filter of the depth camera.
+// The proxy of chapter 4 on points that are averaged over the last frames (frame_average.h). A user has this
+// result when the temporal filter of the depth camera is on.
 #pragma once
 
 #include <string>
@@ -16,14 +16,15 @@ struct AveragedProxyParameters {
 
 Parameters parameters(AveragedProxyParameters& p);
 std::string validate(const AveragedProxyParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const AveragedProxyParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }
 
 class AveragedProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
   AveragedProxyRenderer(const AveragedProxyParameters& parameters, double haptic_rate_hz,
                         const Kernels& kernels)
       : proxy_(parameters.proxy, haptic_rate_hz, kernels), average_(parameters.average, kernels) {}

@@ -1,5 +1,5 @@
-// A neighbour search over points in the order of their numbers, in blocks with bounding boxes. It is filled
-// again and again without allocating. Points with neighbouring numbers should be near each other, as in an
+// A neighbour search over points in the order of their indices, in blocks with bounding boxes. It can be
+// filled repeatedly without allocating. Points with neighbouring indices should be near each other, as in an
 // image or a grid.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace remote_touch {
 class BlockSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points);
-  // Sets the number of points, none of which is measured yet. Keeps its memory.
+  // Sets the number of points. All points are missing until set() is called for them. The memory is kept.
   void clear(std::size_t points, int columns, bool with_radius, bool with_stiffness);
   void set(std::size_t number, const Vec3& p_W) {
     x_[number] = p_W.x(), y_[number] = p_W.y(), z_[number] = p_W.z();

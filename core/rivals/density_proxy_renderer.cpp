@@ -56,7 +56,8 @@ void DensityProxyRenderer::on_frame(const Frame& frame) {
   proxy_.on_frame(frame);
 }
 
-// Returns the contact radius that belongs to the set found last; 0 if the set is too small.
+// Returns the contact radius for the points that nearest_ found last; 0 if there are too few. last_m:
+// distance of the last of these points.
 double DensityProxyRenderer::wanted_radius(double last_m) const {
   constexpr double kPi = 3.14159265358979323846, kGrowth = 1.05;
   double first_m = std::numeric_limits<double>::infinity();

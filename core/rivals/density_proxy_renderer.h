@@ -1,17 +1,17 @@
-// The proxy of chapter 4 with a contact radius that follows the local density of the points, after the idea
-// of P. Kumari, K. G. Sreeni, S. Chaudhuri, "Scalable rendering of variable density point cloud data", World
-// Haptics 2013 and arXiv 2010.02626: a larger ball where points are sparse does not sink between them. Their
-// rule (a kernel bandwidth) is known from the abstract only; the rule here is this project's:
+// The proxy of chapter 4 with a contact radius that depends on the local density of the points. The idea is
+// that of P. Kumari, K. G. Sreeni, S. Chaudhuri, "Scalable rendering of variable density point cloud data",
+// World Haptics 2013 and arXiv 2010.02626: a larger ball does not sink between sparse points. Only the
+// abstract of their rule (a kernel bandwidth) is known; the rule here is this project's:
 //
 //   s = sqrt(pi (d_K^2 - d_1^2) / K),    r_c = f s,  from min_radius_m to max_radius_m,
 //
-// with the distances d_1 and d_K from the proxy to the nearest and the K-th nearest point: s is the spacing
-// of a square grid of that density and f is radius_ratio. r_1 and r_2 differ from r_c by as much as those of
-// the nominal radius; r_3 = 2 r_c. The radius is computed in every tick and takes one of the values
-// min_radius_m, 1.05 min_radius_m, 1.05^2 min_radius_m, ..., so that it seldom changes.
+// d_1 and d_K are the distances from the proxy to the nearest and the K-th nearest point, s is the spacing of
+// a square grid of that density, and f is radius_ratio. r_1 and r_2 differ from r_c by as much as those of
+// the nominal radius; r_3 = 2 r_c. The radius is computed in every tick. It has one of the values
+// min_radius_m, 1.05 min_radius_m, 1.05^2 min_radius_m, ..., max_radius_m, so that it seldom changes.
 //
-// The output's proxy is the centre of a ball of the nominal radius that touches the surface at the same
-// place, so that heights are comparable with those of other balls.
+// The output's proxy in contact is the centre of a ball of the nominal radius that touches the surface at the
+// same position, so that heights are comparable with those of other balls.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@
 namespace remote_touch {
 
 struct DensityProxyParameters {
-  ProxyParameters proxy;  // r_1 and r_2 give the nominal radius r_c
+  ProxyParameters proxy;  // r_1 and r_2 define the nominal radius r_c
   double radius_ratio = 10.0 / 3;
   double min_radius_m = 0.002, max_radius_m = 0.02;
   int neighbours = 24;
@@ -31,14 +31,15 @@ struct DensityProxyParameters {
 Parameters parameters(DensityProxyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const DensityProxyParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const DensityProxyParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }
 
 class DensityProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
   DensityProxyRenderer(const DensityProxyParameters& parameters, double haptic_rate_hz,
                        const Kernels& kernels);
   void reserve(std::size_t points) override;

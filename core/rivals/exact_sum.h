@@ -9,12 +9,12 @@
 
 namespace remote_touch {
 
-// M of core/kernels/kernels.h for so many terms of magnitude 1.
+// Returns M of core/kernels/kernels.h for `terms` terms of magnitude 1.
 inline double sum_grid_for(std::size_t terms) {
   return 1.5 * static_cast<double>(std::bit_ceil(terms + 1));
 }
 
-// Sums up to as many terms of magnitude 1 as the grid is for.
+// A sum of terms of magnitude 1, up to the number of terms for which the grid was computed.
 class ExactSum {
  public:
   explicit ExactSum(double grid) : grid_(grid) {}

@@ -56,7 +56,7 @@ void FrameAverage::begin(std::size_t points) {
   smooth_.assign(points, kNotMeasured), seen_.assign(points, 0);
 }
 
-// The newest frame by the numbers of its points.
+// Stores the positions of the newest frame by the indices of its points.
 void FrameAverage::take(const NeighbourSearch& points) {
   constexpr double kEverywhere_m = 1e6;
   newest_ = s_.rule == AverageRule::mean ? (newest_ + 1) % s_.mean_frames : 0;
@@ -68,7 +68,8 @@ void FrameAverage::take(const NeighbourSearch& points) {
   for (std::size_t i = 0; i < all_.size(); ++i) now[all_.index()[i]] = Vec3(view.x[i], view.y[i], view.z[i]);
 }
 
-// A point that is missing keeps what it had for as long as the filter knows it.
+// Returns the average of a point after the newest frame. A missing point keeps its average as long as the
+// persistence allows; then the result is NaN.
 Vec3 FrameAverage::exponential(std::size_t number, const ViewPoint& view) {
   const Vec3 now = latest(number);
   const bool is_measured = now.allFinite();

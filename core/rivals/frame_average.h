@@ -1,6 +1,6 @@
-// Averages of each point over the last frames: a simple way to reduce noise, which sensors and programs
-// offer. A point is identified by its number: the pixel of an image, or the node of a simulated grid. So the
-// averaged surface lags behind a surface that moves.
+// Averages of each point over the last frames: a simple way to reduce noise that sensors and programs offer.
+// A point is identified by its index: the pixel of an image, or the node of a simulated grid. So the averaged
+// surface lags behind a moving surface.
 //
 //   exponential  the temporal filter of common depth cameras, from the public description of its settings
 //                (librealsense): along the ray, d_j' = alpha d_j + (1 - alpha) d_{j-1}', but d_j where both
@@ -41,8 +41,8 @@ class FrameAverage {
  public:
   FrameAverage(const FrameAverageSettings& settings, const Kernels& kernels);
   void reserve(std::size_t points);
-  // Adds a frame to the stream and returns the averaged points, which are valid until the next call but one.
-  // A frame of another size restarts the averages, but one without points counts as one in which all are
+  // Adds a frame to the stream and returns the averaged points. They are valid until the second next call. A
+  // frame of another size restarts the averages; a frame without points counts as one in which all points are
   // missing. Allocates only for a frame larger than reserved. r_f and k_s are those of the newest frame; a
   // point that is missing there has neither.
   std::shared_ptr<const NeighbourSearch> next(const NeighbourSearch& points);
@@ -58,8 +58,8 @@ class FrameAverage {
   const FrameAverageSettings s_;
   const Kernels& kernels_;
   GatheredPoints all_;
-  // Measured positions of the last frames, NaN where nothing was measured. As many frames are used as the
-  // rule needs.
+  // Measured positions of the last frames; NaN if a point was not measured. Only as many frames are used as
+  // the rule needs.
   std::array<std::vector<Vec3>, kMaxFrames> history_;
   int newest_ = 0;
   std::vector<Vec3> smooth_;         // state of the exponential rule

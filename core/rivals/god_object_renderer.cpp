@@ -8,10 +8,11 @@ namespace remote_touch {
 
 namespace {
 
-// Radius of the ball in which the mesh is made, and the longest motion of one round, in units of the edge
+// Radius of the ball in which the mesh is computed, and longest motion of one round, in units of the edge
 // limit.
 constexpr double kMeshed = 0.5, kMaxStride = 0.25;
-// A shorter motion counts as none, and planes are obeyed up to this, in units of the surface offset.
+// Tolerance in units of the surface offset: a shorter motion counts as none, and a plane may be violated by
+// it.
 constexpr double kRestTolerance = 1e-6;
 
 }  // namespace
@@ -55,13 +56,14 @@ bool GodObjectRenderer::take(const NeighbourSearch& points) {
   return columns_ > 0;
 }
 
-// The mesh reaches beyond every motion of one round. It does not matter which triangles it has beyond that.
+// Updates the mesh around the god-object. It is large enough for every motion of one round; triangles farther
+// away have no effect.
 void GodObjectRenderer::find_planes() {
   const double radius = kMeshed * p_.max_edge_length_m, margin = radius - kMaxStride * p_.max_edge_length_m;
   if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= margin * margin) return;
   meshed_W_ = proxy_W_;
   is_meshed_ = true;
-  // A margin for rounding, which must not cost a triangle.
+  // The reach has a margin for rounding, so that no triangle is lost.
   const double reach = (radius + p_.max_edge_length_m) * (1 + 1e-9);
   mesh_.assign(near_.within(meshed_W_, reach), columns_, {meshed_W_, radius * (1 + 1e-9)});
 }
@@ -74,8 +76,8 @@ void GodObjectRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   report(hip_W, out);
 }
 
-// Moves the god-object to the position nearest to the HIP over the triangles in the way. Returns true if it
-// moved.
+// Moves the god-object to the position that is nearest to the HIP and that the triangles in the way allow.
+// Returns true if it moved.
 bool GodObjectRenderer::follow(const Vec3& hip_W) {
   const Vec3 start_W = proxy_W_;
   planes_.clear();
@@ -88,8 +90,8 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
   return (proxy_W_ - start_W).norm() > kRestTolerance * p_.surface_offset_m;
 }
 
-// Moves straight towards the goal, by one stride at most, or up to the first triangle, whose plane then joins
-// the others. Returns true if this search for planes is over: no triangle was in the way, or there are too
+// Moves straight towards the goal, by at most one stride, or up to the first triangle, whose plane is then
+// added. Returns true if this search for planes is over, because no triangle was in the way or there are too
 // many planes.
 bool GodObjectRenderer::go(const Vec3& goal) {
   find_planes();

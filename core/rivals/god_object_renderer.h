@@ -1,20 +1,21 @@
 // The god-object of C. Zilles and K. Salisbury, "A constraint-based god-object method for haptic display",
 // IROS 1995, on the grid mesh of an organised frame (grid_mesh.h). Recorded depth images were rendered in
-// this way before point clouds were touched directly ([82], [83] of the dissertation).
+// this way before point clouds were rendered directly ([82], [83] of the dissertation).
 //
-// The god-object is a point that never passes a triangle, from either side. In each round it goes straight to
-// the position nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
-// way, whose plane then joins them. If no triangle is in the way it has arrived, and the planes are searched
-// for anew from there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
+// The god-object is a point that never passes a triangle, from either side. Each round moves it straight to
+// the position that is nearest to the HIP among those on the free side of all planes met so far. If a
+// triangle is in the way, it stops there, and the plane of this triangle is added. If no triangle is in the
+// way, it has arrived, and the planes are searched anew from there. This ends when the god-object is at rest
+// or when the maximum number of rounds is reached. F = k_s (god-object - HIP).
 //
-// So that its side is always clear, the god-object stays surface_offset_m away from planes that hold it;
-// where two are nearer to each other than that, it does not move.
+// So that its side is always clear, the god-object keeps the distance surface_offset_m from the planes that
+// hold it. It does not move if it is between two planes that are closer together than that.
 //
-// Limits: a new frame replaces the mesh and the god-object stays where it is, because the motion of the
-// surface is not known: a mesh that passes over it leaves it behind (pop-through). It falls through regions
-// that were not measured, and through gaps wider than max_edge_length_m, which have no triangles. An
-// unorganised frame has no mesh: the god-object is free and the status no_frame, although frame_index is 0 or
-// more. Forbidden regions r_f are ignored; the stiffness of points (5.8) is not.
+// Limits: a new frame replaces the mesh, and the god-object stays at its position, because the motion of the
+// surface is not known. A mesh that passes over the god-object no longer holds it (pop-through). It falls
+// through regions that were not measured, and through gaps wider than max_edge_length_m, which have no
+// triangles. An unorganised frame has no mesh: the god-object is free and the status is no_frame, although
+// frame_index is 0 or more. Forbidden regions r_f are ignored; the stiffness of points (5.8) is used.
 //
 // Outputs: contact_count is the number of planes that hold the god-object, 0 to 3; steps is the number of
 // rounds; nearest_distance_m is the distance to the nearest point; the state is never entrenched, because a
@@ -41,7 +42,8 @@ struct GodObjectParameters {
 Parameters parameters(GodObjectParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const GodObjectParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const GodObjectParameters& p) {
   return p.stiffness_N_per_m;
 }

@@ -7,10 +7,11 @@ namespace remote_touch {
 
 namespace {
 
-// Share of a triangle by which it is larger than its corners say, far above rounding.
+// The fraction of its size by which a triangle is enlarged; it is far above rounding.
 constexpr double kSeam = 1e-9;
 
-// Twice the area of (a, b, p) seen along the normal, as a share of the whole: 0 or more inside the edge ab.
+// Returns the area of (a, b, p), seen along the normal, as a fraction of the area of the triangle. It is 0 or
+// more on the inner side of the edge ab.
 double beside_edge(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& normal, double doubled_area) {
   return (b - a).cross(p - a).dot(normal) / doubled_area;
 }
@@ -26,7 +27,7 @@ bool contains(const Triangle& t, const Vec3& p) {
 
 void GridMesh::reserve(std::size_t points) {
   triangles_.grow(2 * points);
-  place_.grow(2 * points);  // a last row that is not full
+  place_.grow(2 * points);  // room for a last row that is not full
 }
 
 void GridMesh::assign(const GatheredPoints& points, int columns, const Ball& ball) {
@@ -73,7 +74,7 @@ void GridMesh::add(const Vec3& a, const Vec3& b, const Vec3& c, const Ball& ball
   if ((nearest - ball.centre).squaredNorm() > ball.radius * ball.radius) return;
   const Vec3 n = (b - a).cross(c - a);
   const double length = n.norm();
-  if (!(length > 0)) return;  // three points on a line hold nothing
+  if (!(length > 0)) return;  // three points on a line form no triangle
   triangles_[count_++] = {a, b, c, n / length};
 }
 

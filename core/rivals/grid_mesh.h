@@ -1,7 +1,7 @@
 // The triangle mesh between neighbouring points of an organised frame, near a position. Four neighbours in
-// two rows and columns make two triangles, cut from the upper right to the lower left; where one of the four
-// was not measured, the other three make one. A triangle with an edge longer than a limit is left out: it
-// would bridge a depth edge, or join two sheets whose rows follow each other.
+// two rows and columns form two triangles, divided from the upper right to the lower left. If one of the four
+// was not measured, the other three form one triangle. A triangle with an edge longer than a limit is left
+// out, because it would bridge a depth edge, or join two sheets that are stored in consecutive rows.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ struct Triangle {
   Vec3 normal;  // unit; its sign has no meaning
 };
 
-// Crossing of a segment and a triangle. start and end: heights of the segment's ends above the triangle's
-// plane, on the side that the segment starts from, so start > 0 >= end.
+// Crossing of a segment and a triangle. start and end: heights of the ends of the segment above the
+// triangle's plane, positive on the side of the segment's start. So start > 0 >= end.
 struct Crossing {
   const Triangle* triangle = nullptr;
   double start = 0, end = 0;
-  double fraction() const { return start / (start - end); }  // part of the segment up to the plane
+  double fraction() const { return start / (start - end); }  // fraction of the segment up to the plane
 };
 
 class GridMesh {
@@ -32,15 +32,15 @@ class GridMesh {
 
   // Reserves memory for frames of this number of points. assign() and the rest then never allocate.
   void reserve(std::size_t points);
-  // Makes the triangles that meet the ball, from the points of a frame with this number of columns. pre:
-  // points has all that lie within ball.radius + edge limit of the ball's centre. The order of the points has
+  // Computes the triangles that meet the ball, from the points of a frame with this number of columns. pre:
+  // points holds all points within ball.radius + edge limit of the ball's centre. The order of the points has
   // no effect: the triangles are the same, in the same order.
   void assign(const GatheredPoints& points, int columns, const Ball& ball);
   std::span<const Triangle> triangles() const { return {triangles_.data(), count_}; }
 
-  // The triangle that the segment crosses first. A segment that ends on a triangle's plane crosses it; one
-  // that starts there has no side and does not. Triangles are enlarged by 1e-9 of their size, so that no
-  // segment passes between two.
+  // Returns the first triangle that the segment crosses. A segment that ends on a triangle's plane crosses
+  // it. A segment that starts on the plane is on no side and does not cross it. Triangles are enlarged by
+  // 1e-9 of their size, so that no segment passes between two.
   std::optional<Crossing> first_crossing(const Vec3& from, const Vec3& to) const;
 
  private:
@@ -49,7 +49,7 @@ class GridMesh {
   double edge_limit_m_;
   std::size_t count_ = 0;
   Buffer<Triangle> triangles_;
-  Buffer<std::uint32_t> place_;  // number in the list + 1 of each point in a window of the frame; 0: none
+  Buffer<std::uint32_t> place_;  // index in the list + 1 of each point in a window of the frame; 0: none
 };
 
 }  // namespace remote_touch

@@ -8,12 +8,12 @@ namespace remote_touch {
 
 namespace {
 
-// Lengths in units of R.
+// Lengths are in units of R.
 constexpr double kStride = 0.125;     // longest step of a walk or a slide
 constexpr double kMaxNewton = 0.5;    // longest step back to the surface
-constexpr double kOnSurface = 1e-10;  // a position nearer to f = 0 than this is on it
+constexpr double kOnSurface = 1e-10;  // a position at most this far from f = 0 is on the surface
 constexpr double kMinMove = 1e-9;     // a shorter displacement counts as none
-constexpr double kNearRest = 1e-4;    // shorter steps than this are the last ones
+constexpr double kNearRest = 1e-4;    // strides up to this use the other test of progress
 constexpr int kNewtonSteps = 10, kBisections = 12, kHalvings = 6;
 
 bool is_inside(const SurfaceSample& sample) {
@@ -58,8 +58,8 @@ ImplicitSurfaceRenderer::Place ImplicitSurfaceRenderer::place(const Vec3& p_W, c
   return {p_W, surface_.at(points, near_.sum_grid(), p_W, side)};
 }
 
-// One tick. It begins alike with and without a new frame, so that a frame with the same points changes
-// nothing.
+// Computes one tick. It starts in the same way with and without a new frame, so that a frame with the same
+// points changes nothing.
 void ImplicitSurfaceRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   steps_ = 0;
   Place here = place(proxy_W_, side_);
@@ -75,8 +75,7 @@ void ImplicitSurfaceRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   report(here, hip_W, out);
 }
 
-// Takes Newton's steps to f = 0. Returns false if they do not lead there; here is then the position where
-// they ended.
+// Moves by Newton's steps to f = 0. Returns false if they do not reach it; here is then their last position.
 bool ImplicitSurfaceRenderer::settle(Place& here) {
   for (int k = 0; k < kNewtonSteps && here.sample.supported; ++k) {
     if (is_on_surface(here.sample)) return true;
@@ -88,7 +87,7 @@ bool ImplicitSurfaceRenderer::settle(Place& here) {
   return is_on_surface(here.sample);
 }
 
-// Takes one step of the scheme. Returns false if the proxy is at rest.
+// Moves by one step of the scheme. Returns false if the proxy is at rest.
 bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
   const Vec3 u = hip_W - here.p_W;
   if (u.isZero(0)) return false;
@@ -96,8 +95,8 @@ bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
   return held ? slide(here, hip_W) : walk(here, hip_W);
 }
 
-// Walks straight towards the HIP, one stride, or up to the surface. If no point is near, it first skips ahead
-// to where one is.
+// Moves straight towards the HIP, by one stride or up to the surface. If no point is near, it first skips the
+// distance to the first point.
 bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   const double R = p_.support_radius_m, distance = (hip_W - here.p_W).norm();
   const Vec3 direction = (hip_W - here.p_W) / distance;
@@ -114,7 +113,7 @@ bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   return (here.p_W - start).norm() > kMinMove * R;
 }
 
-// Bisects the segment between both, then continues with Newton's steps.
+// Bisects the segment between the two positions, then continues with Newton's steps.
 void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
   for (int k = 0; k < kBisections && !is_on_surface(outside.sample); ++k) {
     const Place middle = place(0.5 * (outside.p_W + inside.p_W), outside.sample.normal());
@@ -125,7 +124,8 @@ void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
 }
 
 // Moves in the tangent plane towards the HIP, and back to the surface. A step must bring the proxy nearer to
-// the HIP; near rest, where squared distances are too coarse to show this, the next step must be shorter.
+// the HIP. Squared distances are too coarse to show this near rest; there the remaining tangential distance
+// must become shorter.
 bool ImplicitSurfaceRenderer::slide(Place& here, const Vec3& hip_W) {
   const Vec3 n = here.sample.normal(), u = hip_W - here.p_W, tangential = less(u, n);
   const double length = tangential.norm(), R = p_.support_radius_m;

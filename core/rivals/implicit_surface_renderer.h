@@ -1,5 +1,5 @@
 // Constraint-based rendering of a point cloud as an implicit surface, [84] (see point_surface.h). The proxy
-// is a point that is held outside by the scheme of K. Salisbury and C. Tarr, "Haptic rendering of surfaces
+// is a point that is kept outside by the scheme of K. Salisbury and C. Tarr, "Haptic rendering of surfaces
 // defined by implicit functions", ASME IMECE 1997:
 //
 //   free       straight to the HIP, up to where the segment first crosses f = 0 (steps of R / 8, bisection)
@@ -7,14 +7,14 @@
 //              -f grad f / |grad f|^2; a step that brings it no nearer to the HIP is halved
 //   released   when the HIP is outside of the tangent plane at the proxy
 //
-// and F = k_s (proxy - HIP). Clouds that vary with time: at the beginning of a tick a proxy that is below
-// the surface of a new frame is brought back along the gradient. Limits: one that is deeper than the middle
-// of the expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at
-// all; the motion of the cloud is not tracked; surfels have no edges: a sheet goes on for R beyond its last
-// points, and an isolated point or line of points exerts no force. Forbidden regions r_f are ignored.
+// The force is F = k_s (proxy - HIP). Clouds may vary with time: at the beginning of a tick a proxy that is
+// below the surface of a new frame is moved back along the gradient. Limits: a proxy that is deeper than the
+// middle of the expanded points (metaballs) or beyond their support (surfels) leaves on the far side or not
+// at all. The motion of the cloud is not tracked. Surfels have no edges: a sheet continues for R beyond its
+// last points, and an isolated point or line of points exerts no force. Forbidden regions r_f are ignored.
 //
-// Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
-// f < 0 at the end of a tick.
+// Outputs: contact_count is the number of points within R; steps is the number of evaluations of f; the state
+// is entrenched if f < 0 at the end of a tick.
 #pragma once
 
 #include <string>
@@ -36,7 +36,8 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
   return p.stiffness_N_per_m;
 }
@@ -68,7 +69,7 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
 
   ImplicitSurfaceParameters p_;
   const PointSurface surface_;
-  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which gives surfels their side; zero away from them
+  Vec3 side_ = Vec3::Zero();  // normal at the proxy, which defines the side of surfels; zero away from them
   int steps_ = 0;             // evaluations of f in this tick
 };
 

@@ -9,7 +9,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMaxRadius_m = 0.5;
-// Squares of equal distances differ by rounding.
+// The factor covers rounding, by which squares of equal distances differ.
 constexpr double kSameDistance = 1 + 1e-9;
 constexpr std::size_t kMaxSample = 20000;
 constexpr int kNeighbours = 3;
@@ -26,8 +26,8 @@ Vec3 NearestPoints::offset(std::size_t i) const {
   return Vec3(view.x[i], view.y[i], view.z[i]) - p_W_;
 }
 
-// Gathers the points in a ball around p_W_. Returns the number of points in the ball: the list has more if
-// regions reach into it.
+// Gathers the points in a ball around p_W_. Returns the number of points in the ball. The list also has the
+// points outside whose regions reach into it.
 std::size_t NearestPoints::gather(const NeighbourSearch& points, double radius) {
   near_.clear();
   points.gather({p_W_, radius}, kernels_, near_);
@@ -39,7 +39,8 @@ std::size_t NearestPoints::gather(const NeighbourSearch& points, double radius) 
   return inside;
 }
 
-// A ball that holds enough points holds the nearest ones, however large it is: its radius costs time only.
+// A ball that holds enough points contains the nearest ones, however large it is: the radius affects the time
+// only.
 double NearestPoints::find(const NeighbourSearch& points, const Vec3& p_W, int count) {
   reserve(points.size());
   p_W_ = p_W;
@@ -59,7 +60,7 @@ double NearestPoints::find(const NeighbourSearch& points, const Vec3& p_W, int c
   return distance;
 }
 
-// Sums whole nanometres, so that the order does not matter.
+// The sum is in whole nanometres, so that the order of the terms has no effect.
 double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
                       PointCloud& buffer) {
   constexpr double kUnit_m = 1e-9;
@@ -74,7 +75,7 @@ double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, con
     int others = 0;
     nearest.for_each([&](const Vec3& e) { distances += std::round(e.norm() / kUnit_m), ++others; });
     if (others <= kNeighbours) continue;
-    // If more than three points lie at the same last distance, only three count.
+    // If several points are at the last distance, only as many count as make three in all.
     distances -= (others - 1 - kNeighbours) * std::round(farthest / kUnit_m);
     sum += static_cast<std::int64_t>(distances), terms += kNeighbours;
   }

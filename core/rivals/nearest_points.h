@@ -12,13 +12,14 @@ class NearestPoints {
  public:
   explicit NearestPoints(const Kernels& kernels) : kernels_(kernels) {}
 
-  // Allocates for clouds of this number of points.
+  // Allocates memory for clouds of this number of points.
   void reserve(std::size_t points);
-  // Finds the `count` points nearest to p, p itself included if it is one, or all within 0.5 m if there are
-  // fewer. The same set for every order of the points: those as far away as the last one belong to it too.
-  // Returns the distance of the last one; 0 without points. Allocates only for a cloud larger than reserved.
+  // Finds the `count` points nearest to p. p itself is included if it is a point. If there are fewer within
+  // 0.5 m, it finds all of these. The set is the same for every order of the points: points as far away as
+  // the last one belong to it too. Returns the distance of the last one; 0 if no point was found. Allocates
+  // only for a cloud larger than reserved.
   double find(const NeighbourSearch& points, const Vec3& p_W, int count);
-  // Calls act(x - p) for each point of the set found last. points: of the last find().
+  // Calls act(x - p) for each point of the set found last.
   template <class Act>
   void for_each(const Act& act) const {
     for (std::size_t i = 0; i < near_.size(); ++i)
@@ -33,13 +34,14 @@ class NearestPoints {
   GatheredPoints near_;
   Buffer<double> squared_, sorted_;
   Vec3 p_W_ = Vec3::Zero();
-  double limit_ = 0;         // squared distance of the last one
-  double radius_m_ = 0.004;  // radius of the first ball: it was enough the last time
+  double limit_ = 0;         // largest squared distance of a point of the set
+  double radius_m_ = 0.004;  // radius of the first ball, from the last search
 };
 
-// Returns the mean over all points of the mean distance to the three nearest others: the spacing of a square
-// grid without noise. In clouds larger than 20000 points only every n-th by its number counts. 0 if there are
-// fewer than four points. The order of the points has no effect. buffer: for a search without a stored cloud.
+// Returns the mean over all points of the mean distance to the three nearest other points: for a square grid
+// without noise this is its spacing. Only every n-th point is used in clouds larger than 20000 points.
+// Returns 0 if there are fewer than four points. The order of the points has no effect in smaller clouds.
+// buffer: for a search without a stored cloud.
 double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
                       PointCloud& buffer);
 

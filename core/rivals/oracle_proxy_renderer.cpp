@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-// The gradient of the distance, unit; zero where there is none.
+// Returns the gradient of the distance as a unit vector; zero if it is not known.
 Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
   constexpr double kStep_m = 1e-6;
   Vec3 gradient;

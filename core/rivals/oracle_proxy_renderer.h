@@ -1,11 +1,11 @@
 // ORACLE, not a method: the proxy of chapter 4 with knowledge of the true surface's motion. It shows what the
-// proxy would reach with a perfect estimate of the velocity, and which failures have other causes: the points
-// and their noise are the same. Only a simulation knows the truth (Frame::truth); without it the proxy is
-// that of velocity_estimate = false.
+// proxy would achieve with a perfect estimate of the velocity, and which failures have other causes: the
+// points and their noise are the same. Only a simulation knows the truth (Frame::truth). The proxy without it
+// is the same as with velocity_estimate = false.
 //
-// At a frame the displacement in (4.3) is that of the true surface since the frame before, along its true
-// normal at the proxy, and v_hat in (4.15) is its mean velocity in that time, of either sign. A frame whose
-// truth is not known at the proxy does not move it.
+// At a frame, the displacement in (4.3) is that of the true surface since the previous frame, along its true
+// normal at the proxy. v_hat in (4.15) is its mean velocity in that time, of either sign. A frame whose truth
+// is not known at the proxy does not move it.
 #pragma once
 
 #include <string>
@@ -22,18 +22,19 @@ Parameters parameters(OracleProxyParameters& p);
 inline std::string validate(const OracleProxyParameters& p) {
   return validate(p.proxy);
 }
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const OracleProxyParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }
 
-// Returns the motion of the true surface nearest to p between two times, along its normal at the second. The
+// Returns the motion of the true surface nearest to p from before_s to now_s, along its normal at now_s. The
 // motion is zero if it is not known.
 SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s);
 
 class OracleProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
   OracleProxyRenderer(const OracleProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
       : proxy_(parameters.proxy, haptic_rate_hz, kernels) {}
   void reserve(std::size_t points) override { proxy_.reserve(points); }

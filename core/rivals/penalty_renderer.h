@@ -1,17 +1,18 @@
-// The penalty method (direct rendering), 2.1.1 of the dissertation, the oldest of the methods that the proxy
-// is compared with: no proxy at all. The HIP is the centre of a ball of radius r_c, and a spring pushes it
+// The penalty method (direct rendering), 2.1.1 of the dissertation, the oldest of the methods with which the
+// proxy is compared. It has no proxy: the HIP is the centre of a ball of radius r_c, and a spring pushes it
 // out in proportion to the depth of the nearest point in the ball,
 //
 //   F = k_s (r_c - r_n) n,    r_n = |HIP - x| - r_f of the nearest region (5.5),
 //
 // along the unit normal n (4.1) of the points within r_3 of the HIP, with the weights of (4.2), r_1 = r_c.
-// With damping, k_d times the HIP's velocity along n is subtracted; the force never pulls.
+// Damping subtracts k_d times the HIP's velocity along n; the force never pulls.
 //
 // Known limits, which the comparison should show: n reverses when the HIP passes the points, so that the
-// force then pushes to the far side (pop-through); the force is at most k_s r_c; the pattern of the points
-// can be felt; and dF/dx is k_s only along n, because n itself turns fast where the HIP is near the points.
+// force then pushes to the far side (pop-through). The force is at most k_s r_c. The pattern of the points
+// can be felt. dF/dx is k_s only along n, because n itself turns fast when the HIP is near the points.
 //
-// Of the outputs: the proxy is the HIP; contact_count counts the points within r_c; contact is r_n < r_c.
+// Outputs: the proxy is the HIP; contact_count is the number of points within r_c; the state is contact if
+// r_n < r_c.
 #pragma once
 
 #include <string>
@@ -32,14 +33,15 @@ struct PenaltyParameters {
 Parameters parameters(PenaltyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const PenaltyParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const PenaltyParameters& p) {
   return p.stiffness_N_per_m;
 }
 
 class PenaltyRenderer final : public RivalRenderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
   PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }

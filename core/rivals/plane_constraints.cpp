@@ -7,27 +7,27 @@ namespace remote_touch {
 
 namespace {
 
-// Planes whose normals span less than this (squared sine, or volume) are left to the choices without one of
-// them: their intersection lies far away, or nowhere.
+// Planes whose normals span less than this (squared sine, or volume) are not combined, because their
+// intersection is far away or does not exist. The choices without one of them remain.
 constexpr double kParallel = 1e-9;
 
-// Motions from the goal onto planes, and the shortest that obeys them all.
+// Tries motions from the goal onto planes, and keeps the shortest one that obeys all planes.
 class Search {
  public:
-  // rise: how far the goal must rise along each normal.
+  // rise: distance by which the goal must rise along each normal.
   Search(const std::array<Vec3, PlaneConstraints::kMaxCount>& normal,
          const std::array<double, PlaneConstraints::kMaxCount>& rise, std::size_t count, double slack)
       : normal_(normal), rise_(rise), count_(count), slack_(slack) {}
 
   void on_plane(std::size_t i) { offer(rise_[i] * normal_[i], 1); }
-  // y - goal = l_i n_i + l_j n_j with multipliers from both planes' equations.
+  // y - goal = l_i n_i + l_j n_j, with the multipliers from the equations of both planes.
   void on_line(std::size_t i, std::size_t j) {
     const double between = normal_[i].dot(normal_[j]), rest = normal_[i].cross(normal_[j]).squaredNorm();
     if (!(rest > kParallel)) return;
     const double l_i = (rise_[i] - between * rise_[j]) / rest, l_j = (rise_[j] - between * rise_[i]) / rest;
     offer(l_i * normal_[i] + l_j * normal_[j], 2);
   }
-  // Three equations, solved by Cramer's rule.
+  // The three equations are solved by Cramer's rule.
   void on_corner(std::size_t i, std::size_t j, std::size_t k) {
     const Vec3 jk = normal_[j].cross(normal_[k]), ki = normal_[k].cross(normal_[i]),
                ij = normal_[i].cross(normal_[j]);

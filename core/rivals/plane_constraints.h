@@ -1,7 +1,8 @@
 // The position nearest to a goal on the free side of a few planes: the minimisation of C. Zilles and K.
 // Salisbury, "A constraint-based god-object method for haptic display", IROS 1995. They solve it by Lagrange
-// multipliers for one, two or three active planes; here all choices of up to three planes are tried, since no
-// more can hold a point in space, and the nearest position that obeys every plane is the answer.
+// multipliers for one, two or three active planes. Here all choices of up to three planes are tried, because
+// no more than three are needed to hold a point in space. The result is the nearest position that obeys every
+// plane.
 #pragma once
 
 #include <array>
@@ -13,19 +14,19 @@ namespace remote_touch {
 
 class PlaneConstraints {
  public:
-  // slack_m: violation of a plane that is allowed, for rounding.
+  // slack_m: allowed violation of a plane, for rounding.
   explicit PlaneConstraints(double slack_m) : slack_m_(slack_m) {}
 
   static constexpr std::size_t kMaxCount = 8;
 
   void clear() { count_ = 0; }
   std::size_t size() const { return count_; }
-  // The constraint n . y >= n . point + offset_m for a unit normal n. Returns false when there are kMaxCount
-  // already.
+  // Adds the constraint n . y >= n . point + offset_m for a unit normal n. Returns false if there are
+  // kMaxCount planes already.
   bool add(const Vec3& normal, const Vec3& point, double offset_m);
 
   struct Nearest {
-    bool found = false;  // some position obeys all planes
+    bool found = false;  // true: a position obeys all planes
     Vec3 place = Vec3::Zero();
     int active_planes = 0;  // number of planes that hold it, 0 to 3
   };

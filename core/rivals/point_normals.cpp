@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// A middle variance below this, in units of the squared distance of the last neighbour: no plane.
+// If the middle variance is below this, in units of the squared distance of the last neighbour, there is no
+// plane.
 constexpr double kMinPlaneWidth = 1e-6;
 
 }  // namespace

@@ -21,18 +21,19 @@ struct ViewPoint {
   Vec3 ray_to(const Vec3& p_W) const { return has_position ? Vec3(p_W - position_W) : direction_W; }
 };
 
-// Returns the camera position of an organised frame, else the direction.
+// Returns the camera position of a stored frame with an image, else the direction.
 ViewPoint view_point(const NeighbourSearch& points, const Vec3& direction_W);
 
 class PointNormals {
  public:
-  // neighbours: points of a plane, the point itself included; 3 or more.
+  // neighbours: number of points of a plane fit, the point itself included; 3 or more.
   PointNormals(int neighbours, const Kernels& kernels) : neighbours_(neighbours), nearest_(kernels) {}
 
   void reserve(std::size_t points);
-  // Begins a new frame. Allocates only for one larger than reserved. The points must outlive it.
+  // Starts a new frame. Allocates only for a frame larger than reserved. pre: the points live until the next
+  // call.
   void set_points(const NeighbourSearch& points, const ViewPoint& view);
-  // Returns the unit normal of the point with that number in the frame; zero if the neighbours span no plane.
+  // Returns the unit normal of the point with that index in the frame; zero if its neighbours span no plane.
   // The order of the points has no effect. Allocates nothing.
   Vec3 of(std::uint32_t number, const Vec3& x_W);
   NearestPoints& nearest() { return nearest_; }
@@ -44,9 +45,9 @@ class PointNormals {
   NearestPoints nearest_;
   const NeighbourSearch* points_ = nullptr;
   ViewPoint view_;
-  std::uint32_t frame_ = 0;  // counts set_points()
+  std::uint32_t frame_ = 0;  // number of calls of set_points()
   std::vector<Vec3> normals_;
-  std::vector<std::uint32_t> computed_in_;  // frame_ when the normal was computed
+  std::vector<std::uint32_t> computed_in_;  // value of frame_ when the normal was computed
 };
 
 }  // namespace remote_touch

@@ -9,21 +9,21 @@ namespace remote_touch {
 
 namespace {
 
-// A gradient shorter than this has no direction: what remains is rounding.
+// A gradient shorter than this has no direction, because it is only rounding.
 constexpr double kNoDirection = 1e-10;
-// Sums of weights below this are mostly rounding: they count as outside of all support.
+// Smaller sums of weights are mostly rounding: the position counts as outside of all support.
 constexpr double kMinWeight = 1e-6;
-// A middle variance below this, units of R^2: the points do not span a plane.
+// If the middle variance is below this, in units of R^2, the points do not span a plane.
 constexpr double kMinWidth = 1e-6;
-// No term of a gradient is longer than 4 where its weight is at most 1.
+// An upper bound of the length of a term of the gradient, with which the terms are scaled to magnitude 1.
 constexpr double kMaxTerm = 4;
 
-// w at a distance, and what multiplies (x - p) / R in its gradient by p / R.
+// weight: w at a distance; slope: the factor of (x - p) / R in the gradient of w with respect to p / R.
 struct Bell {
   double weight, slope;
 };
 
-// Factored, so that rounding near the rim makes no weight negative.
+// The polynomial is factored, so that rounding near the rim makes no weight negative.
 Bell wyvill(double squared) {
   const double rest = 1 - squared;
   return {rest * rest * (1 - squared * (4.0 / 9)), 2 * rest * (22.0 / 9 - squared * (12.0 / 9))};

@@ -5,7 +5,8 @@
 namespace remote_touch {
 
 namespace {
-// A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
+// A HIP farther away than this cannot be that of a hand, and squares of its distances would lose all
+// precision.
 constexpr double kMaxHipDistance_m = 1e6;
 }  // namespace
 
@@ -22,7 +23,7 @@ RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out;
   out.frame_index = order_.newest();
   if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
-    reset_motion();  // hold still: a force from a lost position would be a guess
+    reset_motion();  // no force, because the position of the HIP is not known
     out.status = RenderStatus::device_not_finite;
   } else {
     if (!placed_) proxy_W_ = hip_W, placed_ = true;

@@ -1,6 +1,6 @@
-// Common base of the 3-DOF methods for comparison: renderers written from other papers, to be compared with
-// the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of any
-// method: the order of frames, a device that is lost, and the output before the first frame.
+// Common base of the 3-DOF methods for comparison: renderers written from other papers, which are compared
+// with the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of
+// any method: the order of frames, a lost device, and the output before the first frame.
 #pragma once
 
 #include <memory>
@@ -20,23 +20,23 @@ class RivalRenderer : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) final;
 
  protected:
-  // reach_m: greatest distance at which a point has an effect on the method.
+  // reach_m: largest distance at which a point affects the method.
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
       : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 
-  // Returns the points that the method renders for a new frame: by default the frame's own.
+  // Returns the points that the method renders for a new frame. The default is the frame's own points.
   virtual std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) { return frame.points; }
-  // Uses these points from now on. Returns false if the method cannot use them: until the next frame the
-  // outputs are those without a frame.
+  // Starts to use these points. Returns false if the method cannot use them. The outputs are then those
+  // without a frame until the next frame.
   virtual bool take(const NeighbourSearch& /*points*/) { return true; }
-  // One tick for a HIP that is finite and a frame that the method can use. The proxy starts at the first HIP.
-  // Fills in force_N, state, nearest_distance_m, steps, converged, contact_count and status, and leaves the
-  // proxy and the normal in the members below.
+  // Computes one tick. pre: the HIP is finite and the method can use the frame. The proxy starts at the first
+  // HIP. The function fills in force_N, state, nearest_distance_m, steps, converged, contact_count and
+  // status, and leaves the proxy and the normal in the members below.
   virtual void touch(const Vec3& hip_W, RenderOutput& out) = 0;
   // Resets the state that assumes a continuous motion, because the HIP is lost or there is no frame.
   virtual void reset_motion() {}
 
-  // Stiffness (5.8) if points carry one, else the renderer's own.
+  // Returns the stiffness (5.8) if the points have one, else the renderer's own.
   double stiffness_of(const ContactQuery& query) const {
     return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : stiffness_N_per_m_;
   }

@@ -10,11 +10,12 @@ namespace remote_touch {
 
 namespace {
 
-// R in units of the mean distance to the three nearest neighbours, and R for a cloud of less than four
+// R in units of the mean distance to the three nearest neighbours, and R for a cloud of fewer than four
 // points.
 constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
-// Lengths in units of R: the longest step between two checks of the HIP's path, the longest slide of a tick
-// in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as none.
+// Lengths are in units of R: the longest step between two checks of the HIP's path, the longest slide of a
+// tick in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as
+// none.
 constexpr double kLookStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
 constexpr int kMaxLooks = 64;
 
@@ -116,8 +117,8 @@ void SurfelRenderer::release(const Vec3& hip_W) {
   proxy_W_ = hip_W;
 }
 
-// Moves from the last HIP position to the current one, up to the first position behind the surface. If no
-// point is near, it skips ahead to where one is.
+// Moves from the last HIP position to the current one, up to the first checked position behind the surface.
+// If no point is near, it skips the distance to the first point. It moves to the HIP after kMaxLooks checks.
 void SurfelRenderer::approach(const Vec3& hip_W) {
   const double R = radius_m_;
   for (int look = 1; look <= kMaxLooks; ++look) {
@@ -137,7 +138,7 @@ void SurfelRenderer::approach(const Vec3& hip_W) {
   }
 }
 
-// One tick in contact.
+// Computes one tick in contact.
 void SurfelRenderer::follow(const Vec3& hip_W) {
   const double R = radius_m_;
   const Vec3 u = hip_W - proxy_W_, tangential = u - u.dot(normal_W_) * normal_W_;

@@ -1,20 +1,21 @@
 // The surfels of A. Leeper, S. Chan, K. Salisbury, ICRA 2012, [84] of the dissertation, after a description
-// of the authors' program (README.md of this folder says what is known of it): every point has a normal of
-// its own, turned towards the sensor, and the surface is f = n . (p - a) = 0 with the weighted means a of the
-// points and n of their normals within R. So f < 0 is behind the surface, wherever the proxy came from.
+// of the authors' program (README.md of this folder says what is known of it). Every point has its own
+// normal, turned towards the sensor. The surface is f = n . (p - a) = 0 with the weighted means a of the
+// points and n of their normals within R. So f < 0 is behind the surface, from whichever side the proxy came.
 //
-//   free      the proxy is the HIP. Contact begins if f < 0 anywhere on the path of the HIP since the last
-//             tick, its end included; so also if a new frame puts the surface in front of the HIP
+//   free      the proxy is the HIP. Contact begins if f < 0 at a checked position (every R/8) on the path of
+//             the HIP since the last tick, its end included; so also if a new frame puts the surface in front
+//             of the HIP
 //   contact   per tick one step in the tangent plane towards the HIP, less what friction holds back, and one
 //             projection onto f = 0 of at most R/2
 //   released  when the HIP is outside of the tangent plane, or nothing is within R of the proxy
 //
-// and F = k_s (proxy - HIP). The normal of a tick is blended with that of the tick before. Limits: a cloud
-// that passes the proxy by more than R from one frame to the next is lost, unless the HIP is within R behind
-// it; the back of a sheet pulls the hand through; forbidden regions r_f are ignored.
+// The force is F = k_s (proxy - HIP). The normal of a tick is blended with that of the previous tick. Limits:
+// a cloud that passes the proxy by more than R from one frame to the next is lost, unless the HIP is within R
+// behind it. The back of a sheet pulls the hand through. Forbidden regions r_f are ignored.
 //
-// Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
-// f < 0 at the end of a tick.
+// Outputs: contact_count is the number of points within R; steps is the number of evaluations of f; the state
+// is entrenched if f < 0 at the end of a tick.
 #pragma once
 
 #include <deque>
@@ -41,7 +42,8 @@ struct SurfelParameters {
 Parameters parameters(SurfelParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const SurfelParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const SurfelParameters& p) {
   return p.stiffness_N_per_m;
 }
@@ -71,7 +73,7 @@ class SurfelRenderer final : public RivalRenderer {
   PointNormals normals_;
   PointCloud buffer_;
   Buffer<Vec3> gathered_normals_;
-  std::deque<std::shared_ptr<const NeighbourSearch>> latest_;  // frames to be fused, the newest last
+  std::deque<std::shared_ptr<const NeighbourSearch>> latest_;  // frames that are fused, the newest last
   bool is_held_ = false;
   double depth_m_ = 0;  // depth of the held proxy behind the surface
   int samples_ = 0;     // evaluations of f in this tick

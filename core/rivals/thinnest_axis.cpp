@@ -7,13 +7,13 @@ namespace remote_touch {
 
 namespace {
 
-// Each sweep squares what is left of the off-diagonal elements; four or five are enough.
+// The number of sweeps. Each sweep squares the rest of the off-diagonal elements, so four or five are enough.
 constexpr int kSweeps = 8;
 // An element smaller than this fraction of the trace counts as zero.
 constexpr double kNothing = 1e-20;
 
-// Turns the plane of the axes p and q so that a(p, q) vanishes (Golub and Van Loan, 8.5.2). Returns false if
-// there was nothing to do.
+// Rotates in the plane of the axes p and q so that a(p, q) vanishes (Golub and Van Loan, 8.5.2). Returns
+// false if a(p, q) is zero already.
 bool rotate(Eigen::Matrix3d& a, Eigen::Matrix3d& axes, int p, int q, double nothing) {
   if (std::abs(a(p, q)) <= nothing) return false;
   const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));

@@ -18,11 +18,12 @@ struct Ball {
   double radius;
 };
 
-// Buffer for numbers that are written before they are read; memory that is never written is never allocated.
+// Buffer for numbers that are written before they are read. It is not initialised, so memory pages that are
+// never written use no physical memory.
 template <class T>
 class Buffer {
  public:
-  // When the buffer grows, the first `kept` values stay; all others are lost.
+  // Enlarges the buffer to `size` values if it is smaller. The first `kept` values stay; all others are lost.
   void grow(std::size_t size, std::size_t kept = 0) {
     if (size <= size_) return;
     auto more = std::make_unique_for_overwrite<T[]>(size);
@@ -37,20 +38,21 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-// Columns are allocated once, by reserve(); adding and clearing never allocate. The order of the points is
-// whatever the search produced: no result depends on it.
+// The columns are allocated once, by reserve(); adding and clearing never allocate. The order of the points
+// depends on the search, but no result depends on it.
 class GatheredPoints {
  public:
-  // Sets the columns, with capacity for every point of a cloud; allocates only if they are shorter.
+  // Selects the columns and gives them capacity for every point of a cloud. Allocates only if they are
+  // shorter.
   void reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness);
   void clear() { count_ = 0; }
-  // Appends those points of the run whose regions meet the ball. pre: reserve() for the run's cloud.
+  // Appends the points of the run whose regions meet the ball. pre: reserve() was called for the run's cloud.
   void add(const PointRun& run, const Ball& ball, const Kernels& kernels);
-  // Pads to whole lanes; to be called once after the last add().
+  // Pads the columns to whole lanes. Call it once after the last add().
   void finish();
 
   std::size_t size() const { return count_; }
-  // The numbers that the points have in the frame, whatever the order of the search.
+  // Returns the indices of the points in the frame, which do not depend on the order of the search.
   const std::uint32_t* index() const { return index_.data(); }
   PointsView view() const;
 

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// Every third bit from the lowest on.
+// Moves bit k of the lowest 21 bits to bit 3 k.
 std::uint64_t spread(std::uint64_t bits) {
   bits &= 0x1fffff;
   bits = (bits | bits << 32) & 0x1f00000000ffff;

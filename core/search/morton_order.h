@@ -1,4 +1,4 @@
-// The points of a cloud along a space-filling curve: neighbours mostly follow each other.
+// The order of the points of a cloud along a space-filling curve: most points follow a neighbour.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// Numbers of the measured points along a Morton curve through the cloud's box; points at one place keep the
-// order of the cloud.
+// Returns the indices of the measured points along a Morton curve through the cloud's bounding box. Points in
+// the same cell of the curve keep the order of the cloud.
 std::vector<std::uint32_t> morton_order(const PointCloud& cloud);
 
 }  // namespace remote_touch

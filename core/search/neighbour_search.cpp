@@ -52,16 +52,18 @@ struct PixelRange {
   int first, last;  // ends included; empty when first > last
 };
 
-// Pixels along one axis that can see the ball: the tangents from the camera's centre to a circle at (lateral,
-// z). pre: z > radius, so that both tangents are in front of the camera.
+// Returns the pixels along one axis that can see the ball. They lie between the two tangents from the
+// camera's centre to a circle at (lateral, z). pre: z > radius, so that both tangents are in front of the
+// camera.
 PixelRange tangent_range(double lateral, double z, double radius, double focal, double centre, double slack,
                          int count) {
   const double squared = z * z - radius * radius, scale = focal / squared;
   const double spread = radius * std::sqrt(std::max(0.0, lateral * lateral + squared));
   const double low = scale * (lateral * z - spread) + centre - slack;
   const double high = scale * (lateral * z + spread) + centre + slack;
-  // Clamped as double: far off to the side the pixel does not fit an int. Shifted to be positive, truncation
-  // rounds down, where std::floor is a call on the oldest machines.
+  // The bounds are clamped as doubles, because a pixel far outside the image does not fit an int. The result
+  // is low rounded up and high rounded down. Both come from truncation, which rounds a positive number down:
+  // std::floor is a function call on the oldest machines.
   const int top = count + 2;
   return {top - static_cast<int>(top - std::clamp(low, -1.0, count + 1.0)),
           static_cast<int>(std::clamp(high, -2.0, count - 1.0) + 2.0) - 2};
@@ -82,11 +84,12 @@ ImageWindowSearch::ImageWindowSearch(PointCloud cloud) : CloudSearch(std::move(c
 void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   const CameraIntrinsics& camera = cloud_.image->camera;
   const Vec3 c_C = X_CW_ * ball.centre;
-  // Rounding of the transform and of the points, far above what double leaves at room scale.
+  // The radius is enlarged for the rounding of the transform and of the points. The margin is far above the
+  // rounding of doubles at room scale.
   const double radius = widened(ball).radius * (1 + 1e-9) + 1e-9;
   PixelRange columns{0, camera.width - 1}, rows{0, camera.height - 1};
-  // Behind all that was measured there is nothing to find in front of it: a ball at the camera need not see
-  // it all.
+  // A ball in front of everything that was measured holds no point. This test avoids a search of the whole
+  // image for a ball at the camera.
   if (!(c_C.z() + radius >= nearest_depth_m_)) return;
   if (c_C.z() > 1.001 * radius) {
     const double slack = cloud_.image->pixel_slack;
@@ -124,14 +127,15 @@ void UniformGridSearch::choose_cells(double cell_m) {
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = static_cast<int>(cells_along(axis));
 }
 
-// Clamped, for a query may lie anywhere. Monotonic, so a ball's bounding box meets the cell of each of its
-// points.
+// The result is clamped, because a query may lie anywhere. It increases monotonically with the coordinate, so
+// the range of cells of a ball's bounding box includes the cell of each of the ball's points.
 int UniformGridSearch::cell_along(int axis, double coordinate) const {
   const double cell = std::floor((coordinate - low_[axis]) * cells_per_m_);
   return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(cells_[axis] - 1)));
 }
 
-// Counting sort; points that measured nothing go last, outside every cell.
+// Sorts the points with a counting sort. Points that were not measured come last, in an additional cell that
+// no query reads.
 void UniformGridSearch::sort_points_by_cell() {
   const std::size_t cell_count = static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2];
   std::vector<std::uint32_t> cell_of(cloud_.size());

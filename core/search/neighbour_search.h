@@ -16,22 +16,23 @@ class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
   // Adds the points whose regions meet the ball to out, which has capacity for size() points. A ball with NaN
-  // adds none. Does not call finish(). For one reader at a time: an implementation may cache results for the
-  // next call.
+  // adds none. It does not call finish(). Only one thread may call it at a time, because an implementation
+  // may cache results for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
-  // Every measured point, in the order of the search. The default writes what gather() finds into buffer:
-  // positions, and radii and stiffness if there are any, but no normals and no colours. A search over a
-  // stored cloud returns the cloud itself, with all its columns, and with the missing measurements as NaN.
+  // Returns every measured point, in the order of the search. The default writes the points that gather()
+  // finds within 1e6 m of the origin into buffer: positions, and radii and stiffness if there are any, but no
+  // normals and no colours. A search over a stored cloud returns the cloud itself, with all its columns;
+  // there the missing measurements are included as NaN.
   virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& buffer) const;
   virtual bool has_fixture_radius() const { return false; }
-  // True if some radius is above 0: there are forbidden regions, chapter 5.
+  // Returns true if some radius is above 0, that is if there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
   virtual bool has_stiffness() const { return false; }
-  // Upper bound of r_f of the cloud, m.
+  // Returns an upper bound of r_f of the cloud, m.
   virtual double max_fixture_radius_m() const { return 0; }
-  // Number of columns of an organised frame; 0: unorganised. The point in a row and column has the number row
-  // x columns + column in GatheredPoints::index(), whatever the order of the search.
+  // Returns the number of columns of an organised frame; 0: unorganised. The point in a row and column has
+  // the index row x columns + column in GatheredPoints::index(), for every order of the search.
   virtual int organised_columns() const { return 0; }
 };
 
@@ -50,7 +51,8 @@ class CloudSearch : public NeighbourSearch {
 
  protected:
   PointRun run(std::size_t first, std::size_t count) const;
-  // The ball that holds every point whose region meets the given one: larger by the largest r_f of the cloud.
+  // Returns a ball that contains every point whose region meets the given one: its radius is larger by the
+  // largest r_f of the cloud.
   Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + max_fixture_radius_}; }
   PointCloud cloud_;
 
@@ -65,8 +67,8 @@ class BruteForceSearch final : public CloudSearch {
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
 };
 
-// Tests the window of the image that the ball projects into, 4.2.2. Needs no preparation per frame. pre:
-// cloud.image is set and correct.
+// Tests the points of the image window onto which the ball is projected, 4.2.2. It needs no data structure.
+// pre: cloud.image is set and correct.
 class ImageWindowSearch final : public CloudSearch {
  public:
   explicit ImageWindowSearch(PointCloud cloud);
@@ -77,12 +79,12 @@ class ImageWindowSearch final : public CloudSearch {
   double nearest_depth_m_;  // smallest depth of the whole image
 };
 
-// Tests the cells of a uniform grid that the ball's bounding box meets. Points are stored cell by cell, so
-// that neighbouring cells along z are one run.
+// Tests the cells of a uniform grid that the ball's bounding box meets. Points are stored cell by cell, and
+// neighbouring cells along z are contiguous, so that they are tested as one run.
 class UniformGridSearch final : public CloudSearch {
  public:
-  // cell_m is coarsened until there are at most about four cells per point. Throws std::invalid_argument if
-  // it is <= 0.
+  // cell_m is increased until there are at most about four cells per point. Throws std::invalid_argument if
+  // it is not positive.
   UniformGridSearch(PointCloud cloud, double cell_m);
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
   int organised_columns() const override { return columns_; }
@@ -95,12 +97,14 @@ class UniformGridSearch final : public CloudSearch {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
   double cells_per_m_ = 1;
   int cells_[3] = {1, 1, 1};
-  int columns_;                                // columns of the given cloud: here points are sorted by cell
+  int columns_;                                // columns of the given cloud; the stored points are sorted by
+                                               // cell
   std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
   std::vector<std::uint32_t> original_index_;  // original number of each stored point
 };
 
-// Makes an image window search for an organised cloud, brute force for a small one, the grid otherwise.
+// Returns an image window search for a cloud with an image, brute force for at most 256 points, the grid
+// otherwise.
 std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m = 0.004);
 
 }  // namespace remote_touch

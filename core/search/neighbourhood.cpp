@@ -10,9 +10,10 @@
 namespace remote_touch {
 
 namespace {
-// A cube's edge in units of the reach: smaller means fewer useless points in a list, larger fewer new lists.
+// The edge of a cube in units of the reach. A smaller edge means fewer useless points in a list, a larger one
+// means fewer new lists.
 constexpr double kPitch = 0.125;
-// A tube is searched in at most so many hops, however far the HIP jumped.
+// The maximum number of hops in which a tube is searched, however far the HIP jumped.
 constexpr double kMaxHops = 64;
 }  // namespace
 
@@ -23,7 +24,7 @@ Neighbourhood::Neighbourhood(double reach, const Kernels& kernels) : kernels_(ke
 void Neighbourhood::set_reach(double reach) {
   reach_ = reach;
   pitch_ = kPitch * reach;
-  list_radius_ = reach_ + 0.8661 * pitch_;  // > sqrt(3)/2: from a cube's centre to its corner, and rounding
+  list_radius_ = reach_ + 0.8661 * pitch_;  // sqrt(3)/2, from a cube's centre to its corner, rounded up
   for (CachedList& kept : cache_) kept.valid = false;
 }
 
@@ -71,9 +72,9 @@ double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, dou
   if (covered)
     return std::min(limit, kernels_.proxy.first_hit(here.points.view(), p.data(), u.data(), radius));
 
-  // The region of a point first met between two hops comes within radius of that part of the axis, so it
-  // meets that hop's ball; the root is taken from p itself, whatever the hop, so the result does not depend
-  // on the hops.
+  // A point whose region is met first between two hops lies within radius (plus r_f) of that part of the
+  // axis, so it meets the ball of that hop. The root is computed from p itself for every hop, so the result
+  // does not depend on the hops.
   const double hop = std::max(2 * reach_, limit / kMaxHops);
   for (double start = 0; start < limit; start += hop) {
     const double end = std::min(start + hop, limit);

@@ -37,8 +37,8 @@ std::string failed_names(const std::vector<std::pair<std::string, std::string>>&
 }  // namespace
 
 SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
-  // Asked here and not in runners/interfaces/cli: it belongs to the loading of libraries, as the loader's
-  // LD_LIBRARY_PATH does, and which variables there are only the devices know.
+  // The environment is read here and not in runners/interfaces/cli, because the variable belongs to the
+  // loading of libraries, as LD_LIBRARY_PATH does. Only the devices know the names of these variables.
   const char* named = std::getenv(variable_);
   const bool is_named = named != nullptr && *named != '\0';
   const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : place.names;

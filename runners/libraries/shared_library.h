@@ -1,4 +1,5 @@
-// A library of a vendor, loaded when a device needs it: none is needed to build or to start the program.
+// A library of a vendor, loaded when a device needs it. The program is built and started without any such
+// library.
 #pragma once
 
 #include <string>
@@ -21,12 +22,12 @@ class SharedLibrary {
   // The file that was loaded.
   const std::string& file() const { return file_; }
 
-  // The function of this name, of the type that the caller gives; throws InputError if there is none.
+  // Finds the function of this name, of the type that the caller gives. Throws InputError if there is none.
   template <class Function>
   void find(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(address(name));
   }
-  // Null if there is none, for functions of newer versions only.
+  // The same for a function that only newer versions have: it is null if there is none.
   template <class Function>
   void find_optional(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(address_if_there(name));

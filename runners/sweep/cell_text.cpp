@@ -60,7 +60,7 @@ std::optional<std::size_t> row_of(const Column& axis, const std::string& value) 
   return {};
 }
 
-// NAME=VALUE of each axis, in any order.
+// Returns the cell of a text with NAME=VALUE for each axis, in any order.
 std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
   std::vector<std::optional<std::size_t>> place(result.axes.size());
   for (const std::string& item : items_of(cell.text)) {

@@ -21,8 +21,8 @@ struct RefineSettings {
 
 Parameters parameters(RefineSettings& refine);
 
-// The settings of a sweep with these measures and replicates; none if it has no such section. Throws
-// InputError.
+// Reads the section of a sweep with these measures and replicates. Returns nothing if the sweep has no such
+// section. Throws InputError.
 std::optional<RefineSettings> read_refine(const Json& sweep, const std::vector<Measure>& measures,
                                           int replicates, const std::string& label);
 

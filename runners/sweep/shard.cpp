@@ -17,7 +17,8 @@ std::optional<int> integer_value(const std::string& text) {
   return value;
 }
 
-// A variable of that value as an integer; nothing where it is not set.
+// Returns the value of a variable as an integer; nothing if it is not set or empty. Throws InputError for
+// other texts.
 std::optional<int> integer_variable(const char* name, const char* text) {
   if (text == nullptr || *text == '\0') return std::nullopt;
   const auto value = integer_value(text);

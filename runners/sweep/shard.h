@@ -1,4 +1,4 @@
-// The part of a sweep that one process does.
+// The part of a sweep that one process runs.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,9 @@
 
 namespace remote_touch {
 
-// Shard index of count, numbered from 1. Cell c of the first round, numbered from 0, belongs to shard c mod
-// count + 1: neighbours differ little in cost, so every shard gets about equally many slow cells.
+// Shard `index` of `count`, numbered from 1. Cell c of the first round, numbered from 0, belongs to shard c
+// mod count + 1. Neighbouring cells cost nearly the same, so every shard has about as many slow cells as the
+// others.
 struct Shard {
   int index = 1;
   int count = 1;
@@ -21,9 +22,10 @@ struct Shard {
 // "2/7". Throws InputError.
 Shard parse_shard(const std::string& text);
 
-// The shard of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or of a program started by mpirun
-// (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. value_of: value of an environment variable, null if
-// it is not set, like std::getenv. Throws InputError for values that are not a valid shard.
+// Returns the shard of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or of a program started
+// by mpirun (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. value_of: returns the value of an
+// environment variable, null if it is not set, like std::getenv. Throws InputError for values that are not a
+// valid shard.
 std::optional<Shard> shard_from_environment(const std::function<const char*(const char*)>& value_of);
 
 }  // namespace remote_touch

@@ -36,7 +36,7 @@ struct Sweep::Definition {
   std::optional<RefineSettings> refine;
   std::vector<RecordingPart> inputs;  // recordings that the cells read
 
-  // The experiment of one run, which has the values that the result states of its cell.
+  // Returns the experiment of one run. It has the values that the result states for its cell.
   Experiment run(std::size_t cell, int replicate) const;
   std::string title_of_run(const std::vector<std::size_t>& place) const;
   void refuse_other_entry(const SweepAxis& axis, const std::string& label) const;
@@ -66,7 +66,8 @@ void refuse_unknown_part(const Json& json, const std::string& label) {
     if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown: expected " + known);
 }
 
-// A path in a sweep's file is meant from the file's own folder.
+// Returns the path of an experiment that a sweep file names. A file in the folder of the sweep file comes
+// first.
 std::string beside(const std::string& sweep_file, const std::string& experiment) {
   const auto there = std::filesystem::path(sweep_file).parent_path() / experiment;
   std::error_code unreachable;
@@ -91,8 +92,8 @@ Json read_experiment(const Json& json, const std::string& label, const std::vect
   return parse_json(experiment.to_json(), label);
 }
 
-// The title of a sweep that has none: that of its experiment, with the axes. The former names already what
-// was changed of the experiment, but not of the sweep.
+// Returns a title for a sweep that has none: the title of its experiment, with the axes. That title already
+// names the changes of the experiment, so only the changes of the sweep itself are added.
 std::string title_over(const Json& experiment, const std::vector<ChangedSetting>& changes,
                        const std::vector<SweepAxis>& axes) {
   const std::string title = experiment.value("title", std::string());
@@ -167,7 +168,7 @@ std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& plac
 }
 
 // Throws InputError for an axis that only changes the name of the renderer, scenario or trajectory. The
-// experiment has the settings of its own one, which another one may not have.
+// experiment has the settings of its own entry, and another entry may not have them.
 void Sweep::Definition::refuse_other_entry(const SweepAxis& axis, const std::string& label) const {
   const std::vector<std::string> keys = path_keys(axis.parameter);
   if (keys.size() != 2 || keys[1] != "name" || !experiment.contains(keys[0])) return;

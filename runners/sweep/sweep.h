@@ -18,8 +18,8 @@ class Sweep {
  public:
   // Reads JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
   // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
-  // else its experiment; the title names them (changed_settings.h). Every cell is resolved and checked:
-  // throws InputError for the first that cannot be run, and for parts that overwrite each other
+  // otherwise its experiment; the title names them (changed_settings.h). Every cell is resolved and checked:
+  // throws InputError for the first cell that cannot be run, and for parts that overwrite each other
   // (sweep_statements.h).
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
@@ -27,16 +27,16 @@ class Sweep {
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;
-  // Returns empty arrays. The shard's runs of the first round are pending, those of other shards are
-  // elsewhere.
+  // Returns a result without values. The runs of the shard in the first round are pending, and those of other
+  // shards are `elsewhere`.
   SweepResult plan(const Shard& shard = {}) const;
-  // The experiment of one run, with its own noise: cell and replicate are part of the noise key. It has the
-  // values that the result states of its cell; throws InputError otherwise.
+  // Returns the experiment of one run, with its own noise: cell and replicate are part of the noise key. It
+  // has the values that the result states for its cell; throws InputError otherwise.
   Experiment experiment(std::size_t cell, int replicate) const;
-  // Throws InputError, naming the file, for a stored result with other axes, measures or replicates: none of
-  // its runs is one of this sweep.
+  // Throws InputError, with the name of the file, for a stored result with other axes, measures or
+  // replicates: none of its runs belongs to this sweep.
   void require_fits(const SweepResult& stored, const std::string& file) const;
-  // The recordings that its cells read, each part once, as named in the configuration.
+  // Returns the recordings that the cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
   bool needs_true_contact() const;  // true if one of its measures does

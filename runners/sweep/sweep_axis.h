@@ -1,4 +1,4 @@
-// One axis of a sweep: a parameter and the values that it takes.
+// One axis of a sweep: a parameter and its values.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,9 +22,9 @@ struct SweepAxis {
   std::string name() const { return parameter.substr(parameter.rfind('.') + 1); }
 };
 
-// {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"} or {"parameter": PATH,
-// "values": [...]}. Refinement halves the steps of the former `levels` times. label names the axis in
-// InputErrors.
+// Reads an axis: {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"} or
+// {"parameter": PATH, "values": [...]}. Refinement may halve the steps of the first form `levels` times.
+// label names the axis in InputErrors.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
 
 }  // namespace remote_touch

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxError = 300;  // every run has room for the longest
 
-// One run into its own slots of the result. Throws std::bad_alloc: that is no result of the run.
+// Does one run and writes its values, or its error, into its own elements of the result. Throws
+// std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
 void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
   try {
     SimulationOptions simulation;

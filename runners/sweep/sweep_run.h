@@ -24,7 +24,8 @@ struct SweepRunOptions {
 // was no memory; they are still pending.
 std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
 
-// Adds the next round of refinement: its runs become pending. False if there is none, see next_round().
+// Adds the next round of refinement: its runs become pending. Returns false if there is none, see
+// next_round().
 bool add_round(const Sweep& sweep, SweepResult& result);
 
 // Does all rounds in memory. Failed runs are in the result, with their errors. Throws std::bad_alloc.

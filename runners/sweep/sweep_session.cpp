@@ -18,7 +18,7 @@ std::string first_difference(const TextAttributes& theirs, const TextAttributes&
   return all.empty() ? "its title" : all.front();
 }
 
-// A file of another sweep, another shard or another build is not touched.
+// Throws InputError for a file of another sweep, shard or build, so that it is not overwritten.
 void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
                   const TextAttributes& ours) {
   const auto refuse = [&](const std::string& what) {
@@ -34,7 +34,8 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
              attribute(ours, name) + "\"");
 }
 
-// A recording that changed is another one; whatever was measured on it before does not belong here.
+// Throws InputError if a finished run has read a recording that has changed since: its values belong to
+// another recording.
 void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, const SweepResult& result,
                          const std::vector<ChangedInput>& changed) {
   if (changed.empty()) return;
@@ -52,7 +53,8 @@ void set_attribute(TextAttributes& attributes, const std::string& name, const st
   if (!value.empty()) attributes.emplace_back(name, value);
 }
 
-// The runs of the earlier call. Only what they gave is taken: the rest is known.
+// Copies the values, states, rounds, errors and notes of the runs of the earlier call. Everything else is
+// known already.
 void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
   if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
       earlier.round.size() != result.round.size() || earlier.note_kinds != result.note_kinds)
@@ -104,10 +106,10 @@ SweepSession::SweepSession(const Sweep& sweep, const Shard& shard, const TextAtt
       lock_(file_),
       plan_(plan_in_file(sweep, shard, attributes, file_)) {}
 
-// Shards do the first round; refinement looks at all of them, so it begins on the merged file.
+// Shards do only the first round. Refinement needs the runs of all shards, so it begins on the merged file.
 bool SweepSession::add_round_if_whole() {
   if (shard_.count > 1 || !add_round(sweep_, plan_.result)) return false;
-  plan_.in_progress = false;  // the file knows nothing of the new round
+  plan_.in_progress = false;  // the file does not have the new round yet
   return true;
 }
 
@@ -129,8 +131,8 @@ bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, co
   return true;
 }
 
-// It is not known which runs have read a recording before it changed, so that all runs of this call are
-// pending again.
+// Throws InputError if a recording has changed. All runs of this call are then pending again, because it is
+// not known which of them have read a recording before it changed.
 void SweepSession::require_unchanged_inputs(const SweepResult& before) {
   const std::string inputs = attribute(plan_.attributes, "input_digests");
   if (inputs.empty()) return;

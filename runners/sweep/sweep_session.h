@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// The work that is left of a sweep, given its file if that exists.
+// The work of a sweep that is left after the results in its file, if that exists.
 struct SweepPlan {
   SweepResult result;         // failed runs are pending again
   TextAttributes attributes;  // the existing file's, else as given; `input_digests` always as given
@@ -20,9 +20,9 @@ struct SweepPlan {
   bool is_there = false;
   bool is_finished = false;  // the file exists and equals what a finished sweep with this result would write
 };
-// Throws InputError for a file that is not a sweep (a pipe or device, too), or is of another configuration,
-// shard or build; and if a recording that a finished run has read was changed. A recording that only failed
-// runs have read may be repaired.
+// Throws InputError for a file that is not a sweep (also for a pipe or a device), or that belongs to another
+// configuration, shard or build. Throws InputError also if a recording that a finished run has read was
+// changed. A recording that only failed runs have read may be repaired.
 SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                        const std::filesystem::path& file);
 

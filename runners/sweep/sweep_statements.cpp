@@ -36,12 +36,13 @@ bool has_member(const Json& value, std::span<const std::string> keys) {
 bool overwrites(const Statement& later, const Statement& earlier) {
   if (is_within(earlier.keys, later.keys)) return true;
   if (!is_within(later.keys, earlier.keys)) return false;
-  if (earlier.value.is_null()) return true;  // it says that there is nothing
+  if (earlier.value.is_null()) return true;  // null states that there is nothing
   return has_member(earlier.value, std::span(later.keys).subspan(earlier.keys.size()));
 }
 
-// The last --set counts, but no statement may discard another value with the object or list around it. A
-// --set that discards another one is found before, see refuse_discarded().
+// A --set may replace a value of `set`, or an earlier --set. It may not replace the object or list around
+// another value, unless that keeps the value. A --set that discards another one is found before, see
+// refuse_discarded().
 bool may_overwrite(const Statement& later, const Statement& earlier) {
   using Of = Statement::Of;
   if (earlier.of == later.of) return later.of != Of::set;

@@ -8,7 +8,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kPrior_s =
-    2;  // so much of expected work has to be done before this machine's speed counts fully
+    2;  // so much work counts as done in its expected time, so that a first short job decides little
 constexpr double kAtLeast = 0.05;  // least share of its time that a job has left, even if it is late
 
 // Returns the factor by which jobs take longer here than expected.

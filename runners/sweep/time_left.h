@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// The jobs in the order in which they begin: the shortest first, so that first results appear soon. Equal
-// ones keep their order.
+// Returns the order in which the jobs begin, as indices: the shortest first, so that first results appear
+// soon. Jobs of equal length keep their order.
 std::vector<std::size_t> shortest_first(const std::vector<double>& expected_s);
 
 struct TimeLeft {

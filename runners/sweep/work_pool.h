@@ -1,5 +1,5 @@
-// Jobs that share the threads of the machine: while there are jobs left each thread takes the next one; a
-// thread that finds none helps with the independent pieces of the jobs that still run.
+// Runs jobs that share the threads of the machine. Each thread does one job after another while there are
+// jobs left. A thread that finds none helps with the independent pieces of the jobs that still run.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@ enum class JobState { waiting, running, done };
 
 struct JobProgress {
   JobState state = JobState::waiting;
-  double spent_s = 0;  // time of all threads
+  double spent_s = 0;  // summed over all threads
 };
 
 class WorkPool {
@@ -31,7 +31,7 @@ class WorkPool {
   // Called inside a job: does its pieces on this thread and on those that are free. See SideBySide.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
-  // The progress of all jobs; may be called by report.
+  // Returns the progress of all jobs. `report` may call it.
   std::vector<JobProgress> progress() const;
 
  private:

@@ -12,10 +12,11 @@ namespace {
 constexpr double kContracted = 0.3, kRelaxes = 0.35, kRelaxed = 0.75;
 constexpr double kAtriumLeads = 0.18;
 
-// Semi-axis of the left ventricle that ends in the organ's top; the amplitude is its change.
+// Vertical semi-axis of the left ventricle, which ends at the organ's top. amplitude_m is the largest
+// decrease of this semi-axis.
 constexpr double kTopSemiAxis_m = 0.032;
 
-// Reds that differ a little, hues 3 to 11 degrees, on a drape of hue 190.
+// Reds that differ a little (hues 3 to 11 degrees) for the organ, and hue 190 for the drape on the table.
 constexpr std::uint32_t kLeftVentricle = 0xB23A30, kRightVentricle = 0xC4553C, kAtrium = 0x9A2F2A;
 constexpr std::uint32_t kTable = 0x3A6E78;
 

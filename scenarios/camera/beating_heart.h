@@ -1,5 +1,5 @@
-// A depth camera looks down on a beating organ that lies on a table, as in 5.3.3: a surface that moves all
-// the time, known exactly at every instant.
+// A depth camera that looks down on a beating organ on a table, as in 5.3.3. The surface moves all the time
+// and is known exactly at every instant.
 #pragma once
 
 #include <array>
@@ -36,8 +36,9 @@ class BeatingHeart final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Distance at exactly that time, also between frames. It is exact outside organ and table. Inside both, or
-  // inside two lobes, the depth returned is a lower bound.
+  // Distance at exactly time_s, also between frames. It is exact outside organ and table. Inside, the depth
+  // returned is a lower bound, because the nearest point of one lobe may lie inside another lobe or inside
+  // the table.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 

@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// World frame: the table is y = 0, y up; ramp and box lie one behind the other along z, and the camera is
-// beside the gap between them, where it sees the walls on both sides of it.
+// World frame: the table is y = 0, y up. Ramp and box lie one behind the other along z. The camera is beside
+// the gap between them, where it sees the walls on both sides of the gap.
 class CameraScene final : public Scenario {
  public:
   struct Settings {

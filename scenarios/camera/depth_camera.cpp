@@ -82,7 +82,7 @@ IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
   return view;
 }
 
-// Structured light is shadowed and mixed at depth edges; the sensor gives nothing there.
+// Structured light is shadowed and mixed at depth edges, so the sensor measures no depth there.
 std::vector<char> DepthCamera::holes(const DepthImage& ideal) const {
   const int w = ideal.width, h = ideal.height, reach = settings_.hole_px;
   std::vector<char> hole(ideal.z_m.size(), 0);
@@ -130,9 +130,9 @@ void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, 
     double& z = depth.z_m[first + u];
     const double factor = view.depth_noise_factor.empty() ? 1 : view.depth_noise_factor[first + u];
     z += settings_.noise_per_m * z * z * normal[u] * factor;
-    // The sensor counts whole disparities, proportional to 1/z.
+    // The sensor measures disparity, which is proportional to 1/z, in whole steps.
     if (steps > 0) z = steps / std::floor(steps / z + 0.5);
-    // A hole has no depth. Strong noise can move a depth behind the camera; it is lost too.
+    // A hole has no depth. Strong noise can move a depth behind the camera; such a depth is lost too.
     if (view.hole[first + u] || !(z > 0)) z = std::numeric_limits<double>::quiet_NaN();
   }
 }

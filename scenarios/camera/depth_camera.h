@@ -33,23 +33,23 @@ Parameters parameters(DepthCameraSettings& s);
 std::string validate(const DepthCameraSettings& s);
 
 // Pose of a camera (x right, y down, z forward) that looks from `from` to `to` with the world's y up in the
-// image. If it looks straight down or up, no direction in the image is the world's up: the image's right is
-// then the world's +x, so that seen from above the image's up is -z. pre: from and to differ.
+// image. If it looks straight down or up, the world's up has no direction in the image. The image's right is
+// then the world's +x; if the camera looks down, the image's up is then -z. pre: from and to differ.
 RigidTransform look_at(const Vec3& from, const Vec3& to);
 
 // First hit of a ray: the position origin + t ray, and its colour.
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
-  std::uint32_t colour = 0;  // 0xRRGGBB; black where nothing is met
+  std::uint32_t colour = 0;  // 0xRRGGBB; black if the ray hits nothing
 };
 using RayCast = std::function<RayHit(const Vec3& origin_W, const Vec3& ray_W)>;
 
 // A scene at one instant, as an ideal camera would see it. Columns have an entry for every pixel.
 struct IdealView {
   DepthImage depth;                             // NaN beyond 3 m
-  std::vector<char> hole;                       // 1 where the sensor gives nothing: a depth edge is near
+  std::vector<char> hole;                       // 1 if the sensor measures no depth: a depth edge is near
   std::vector<std::uint32_t> colour;            // 0xRRGGBB; empty for a scene without colours
-  std::vector<double> depth_noise_factor = {};  // times the camera's own noise; empty: 1 everywhere
+  std::vector<double> depth_noise_factor = {};  // factor on the camera's own noise; empty: 1 everywhere
 };
 
 class DepthCamera {
@@ -61,10 +61,10 @@ class DepthCamera {
   const RigidTransform& pose() const { return X_WC_; }
   bool noisy() const { return settings_.noise_per_m > 0; }
 
-  // Casts the ray of every pixel, from several threads at once.
+  // Casts the ray of every pixel. Calls `cast` from several threads at once.
   IdealView view(const RayCast& cast, bool coloured) const;
-  // The organised cloud of a frame; a pure function of the view, the noise key and the frame's number. A hole
-  // keeps its colour: the camera sees it, only its depth is missing.
+  // Returns the organised cloud of a frame, a pure function of the view, the noise key and the frame's
+  // number. A hole keeps its colour, because the camera sees it and only its depth is missing.
   PointCloud measured(const IdealView& view, int frame) const;
 
  private:

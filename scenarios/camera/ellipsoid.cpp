@@ -30,13 +30,13 @@ double ClosestPoint::root(double low) const {
   // would be 1 without gaps, so that it is at most 1.
   low = std::max({low, scaled.x() - gap.x(), scaled.y() - gap.y(), scaled.z() - gap.z()});
   double high = std::max(low, scaled.norm());
-  // Halves the ratio's logarithm: 12 times take the range of all doubles to a factor of 2.
+  // Each step halves the logarithm of high / low: 12 steps reduce the range of all doubles to a factor of 2.
   for (int i = 0; i < 12 && high > 2 * low; ++i) {
     const double between = std::sqrt(low) * std::sqrt(high);
     (excess(between) > 0 ? low : high) = between;
   }
-  // Newton's method from the left of a convex function's root cannot pass it, and from within a factor of 2
-  // has all digits after seven steps.
+  // Newton's method on a convex function that falls cannot pass the root if it starts left of it. A start
+  // within a factor of 2 of the root gives all digits after seven steps.
   double tau = low;
   for (int i = 0; i < 10; ++i) {
     const Vec3 x = unit(tau);
@@ -62,9 +62,9 @@ Vec3 Ellipsoid::closest(const Vec3& p) const {
   problem.scaled = semi_axes_.cwiseProduct(q.cwiseAbs());
   for (int i = 0; i < 3; ++i) problem.gap[i] = (semi_axes_[i] - shortest) * (semi_axes_[i] + shortest);
 
-  // Near the plane across the shortest axis, and deep enough inside, the root goes to 0. There the surface
-  // above and the surface below that plane are equally close, and the coordinate along the shortest axis
-  // follows from the other two.
+  // The root goes to 0 if p is deep enough inside and near the plane through the centre that is perpendicular
+  // to the shortest axis. There the surface above and the surface below that plane are equally close, and the
+  // coordinate along the shortest axis follows from the other two.
   const double min = 1e-20 * shortest * shortest;
   Vec3 unit;
   if (problem.excess(min) > 0) {
@@ -84,8 +84,8 @@ double Ellipsoid::signed_distance(const Vec3& p) const {
   return level(p) < 1 ? -distance : distance;
 }
 
-// Computed in coordinates that make the ellipsoid the unit ball. half is computed from the line's middle, so
-// that it is as exact for a far origin as for a near one.
+// The chord is computed in coordinates in which the ellipsoid is the unit ball. half is computed from the
+// point of the line that is nearest to the centre, so that it is as exact for a far origin as for a near one.
 Ellipsoid::Chord Ellipsoid::chord(const Vec3& origin, const Vec3& direction) const {
   // Most rays of a camera miss even the ball around the solid. This test needs no rotation and no division.
   const Vec3 displacement = centre_ - origin;

@@ -13,7 +13,7 @@ class Ellipsoid {
 
   // Distance to the surface, negative inside; exact on both sides.
   double signed_distance(const Vec3& p) const;
-  // The point of the surface that is closest to p; one of them if there are several.
+  // Returns the point of the surface that is closest to p, or one of them if there are several.
   Vec3 closest(const Vec3& p) const;
   // Smallest t >= 0 at which origin + t direction enters the solid; infinite if it does not.
   double cast(const Vec3& origin, const Vec3& direction) const;
@@ -23,8 +23,8 @@ class Ellipsoid {
   double level(const Vec3& p) const { return (to_unit_ball_ * (p - centre_)).squaredNorm(); }
 
  private:
-  // The part of a ray's line inside the solid: t from middle - half to middle + half; half is NaN if there is
-  // none.
+  // The part of a ray's line inside the solid: t from middle - half to middle + half. half is NaN if the line
+  // misses the solid.
   struct Chord {
     double middle, half;
   };

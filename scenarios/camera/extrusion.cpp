@@ -14,7 +14,7 @@ namespace {
 struct Edge {
   double z, y, dz, dy;  // start and direction, counter-clockwise: the inside is on the left
   double length_squared() const { return dz * dz + dy * dy; }
-  // Height of a point over the edge's line, positive outside; not scaled by the edge's length.
+  // Distance of a point from the edge's line, multiplied by the edge's length; positive outside.
   double outside(double pz, double py) const { return dy * (pz - z) - dz * (py - y); }
 };
 
@@ -43,7 +43,7 @@ double Extrusion::signed_distance(const Vec3& p) const {
   return std::max(across, beside);
 }
 
-// Clips the ray by every face; what is left of it inside begins at the entry.
+// Clips the ray at every face. The part that is left is inside the solid, and its start is the entry.
 double Extrusion::cast(const Vec3& origin, const Vec3& direction) const {
   double enter = 0, leave = std::numeric_limits<double>::infinity();
   const auto clip = [&](double height, double slope) {  // outside where height + t slope > 0

@@ -9,7 +9,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kOnSurface_m = 1e-9;
-// A ray that passes so close that it takes more steps than this to get by is one that misses.
+// Limit of the steps of a ray. A ray that needs more passes very close to the surface and counts as a miss.
 constexpr int kMaxSteps = 20000;
 constexpr double kDifference_m = 1e-6;
 
@@ -17,7 +17,7 @@ constexpr double kDifference_m = 1e-6;
 constexpr double kSin60 = 0.86602540378443865;
 constexpr double kSpokes[3][2] = {{0, 1}, {kSin60, -0.5}, {-kSin60, -0.5}};
 
-// All in coordinates of the wheel's centre. Each part is exact on both sides.
+// The functions below use coordinates relative to the wheel's centre. Each part is exact on both sides.
 
 double across(const Vec3& q) {
   return std::sqrt(q.x() * q.x() + q.y() * q.y());
@@ -28,14 +28,14 @@ double to_ring(const Vec3& q, double ring_radius) {
   return std::sqrt(off * off + q.z() * q.z()) - Handwheel::kTubeRadius_m;
 }
 
-// A capsule from the centre to the middle of the ring's tube.
+// Distance to a spoke: a capsule from the centre to the middle of the ring's tube.
 double to_spoke(const Vec3& q, const double (&displacement)[2], double ring_radius) {
   const double along = std::clamp(q.x() * displacement[0] + q.y() * displacement[1], 0.0, ring_radius);
   const double x = q.x() - along * displacement[0], y = q.y() - along * displacement[1];
   return std::sqrt(x * x + y * y + q.z() * q.z()) - Handwheel::kSpokeRadius_m;
 }
 
-// A cylinder about the axis, from z_low to z_high.
+// Distance to a cylinder about the axis, from z_low to z_high.
 double to_cylinder(const Vec3& q, double radius, double z_low, double z_high) {
   const double beside = across(q) - radius, beyond = std::max(z_low - q.z(), q.z() - z_high);
   if (beside > 0 && beyond > 0) return std::sqrt(beside * beside + beyond * beyond);
@@ -60,9 +60,9 @@ double Handwheel::signed_distance(const Vec3& p) const {
   return std::min(distance, to_cylinder(q, kStemRadius_m, -centre_.z(), 0));
 }
 
-// Sphere tracing: nothing is nearer than the distance, so the ray may go on by as much.
+// Sphere tracing: no surface is nearer than the distance, so the ray can advance by that distance.
 double Handwheel::cast(const Vec3& origin, const Vec3& direction) const {
-  // Most rays of a camera miss even the ball.
+  // Most rays of a camera miss even the ball around the wheel.
   const double length = direction.norm();
   const double middle = (ball_centre_ - origin).dot(direction) / (length * length);
   const double left =

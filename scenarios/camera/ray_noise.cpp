@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kMaxAge = 16;
 
-// Standard normals of these numbers, with what they keep of the frames before.
+// Returns a standard normal for each number (of a point or a node), correlated with those of the previous
+// frames.
 std::vector<double> remembered(const std::vector<std::uint32_t>& numbers, double memory, const NoiseKey& key,
                                int frame, const Kernels& kernels) {
   std::vector<double> sum(numbers.size()), x(numbers.size()), y(numbers.size()), z(numbers.size());
@@ -28,7 +29,7 @@ std::vector<double> remembered(const std::vector<std::uint32_t>& numbers, double
   return sum;
 }
 
-// The nodes of a lattice around all places.
+// Nodes of a lattice around all points of a frame.
 struct Lattice {
   double pitch;
   int first_x = 0, first_z = 0, columns = 0, rows = 0;
@@ -44,11 +45,11 @@ struct Lattice {
     first_x = cell(low_x), first_z = cell(low_z);
     columns = cell(high_x) - first_x + 2, rows = cell(high_z) - first_z + 2;
   }
-  // Far out all places share a node, so that the number stays in range.
+  // Positions beyond 30000 pitches all count as the outermost cell, so that a node's number stays in range.
   int cell(double place) const {
     return static_cast<int>(std::floor(std::clamp(place / pitch, -30000.0, 30000.0)));
   }
-  // A node has the same number, and so the same noise, whatever the lattice around the places of a frame.
+  // The number of a node, and so its noise, depends only on its position and not on the frame's lattice.
   std::vector<std::uint32_t> numbers() const {
     std::vector<std::uint32_t> all;
     for (int row = 0; row < rows; ++row)

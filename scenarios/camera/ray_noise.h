@@ -1,5 +1,5 @@
-// Noise along the viewing rays as depth sensors have it: it grows with the square of the distance, and
-// neighbouring points and successive frames have it in common.
+// Noise along the viewing rays as depth sensors have it: it grows with the square of the distance, and it is
+// correlated between neighbouring points and between successive frames.
 #pragma once
 
 #include <vector>
@@ -12,18 +12,20 @@ namespace remote_touch {
 
 struct RayNoise {
   double sigma_m = 0;        // standard deviation at a distance of 1 m; it is sigma_m (distance / 1 m)^2
-  double correlation_m = 0;  // pitch of the square lattice across the view whose noise is interpolated
-  double memory = 0;         // weight of the noise of the frame before
+  double correlation_m = 0;  // pitch of the square lattice across the view that carries the noise
+  double memory = 0;         // correlation of the noise of successive frames (-)
 };
 
-// Standard normals for the points of a frame. places: x and z of each point across the view, in the unit of
-// correlation_m; NaN for a point that was not measured, which gets NaN if noise is correlated.
+// Returns one standard normal for each point of a frame. places: position of each point across the view, in x
+// and z, in the unit of correlation_m. A point that was not measured is NaN there, and its noise is NaN if
+// correlation_m is above 0.
 //
-// Without correlation_m every point has noise of its own. Else the noise of the lattice's nodes is
-// interpolated bilinearly and scaled to standard deviation 1 everywhere: points that are farther apart than
-// two pitches along x or z have none in common. With memory m, frame j has sqrt(1 - m^2) (w_j + m w_{j-1} +
-// m^2 w_{j-2}
-// + ...) of independent w, cut off after 16 frames and scaled to 1.
+// Without correlation_m every point has independent noise. Otherwise the noise of the lattice's nodes is
+// interpolated bilinearly and scaled to standard deviation 1 everywhere. The noise of two points that are
+// farther apart than two pitches along x or z is independent.
+//
+// With memory m, the noise of frame j is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
+// cut off at frame j - 16 and scaled to standard deviation 1.
 std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& places, const NoiseKey& key,
                                    int frame, const Kernels& kernels);
 

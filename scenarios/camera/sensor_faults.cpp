@@ -46,7 +46,7 @@ std::vector<double> readout(const PointCloud& cloud) {
     return fraction;
   }
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double z : cloud.z) low = z < low ? z : low, high = z > high ? z : high;  // NaN is neither
+  for (const double z : cloud.z) low = z < low ? z : low, high = z > high ? z : high;  // ignores NaN
   for (std::size_t i = 0; high > low && i < fraction.size(); ++i)
     fraction[i] = (cloud.z[i] - low) / (high - low);
   return fraction;
@@ -176,8 +176,8 @@ void FaultySensor::shear(PointCloud& cloud, double captured_s) const {
   }
 }
 
-// Unit vector away from the surface: the normalised gradient of the distance. At edges and borders the slopes
-// to both sides differ: the smaller one counts, or none if they have opposite signs.
+// Returns the unit vector away from the surface, the normalised gradient of the distance. At edges and
+// borders the slopes to both sides differ: the smaller one is used, or 0 if they have opposite signs.
 Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
   constexpr double kStep_m = 1e-6;
   const double here = scenario_->signed_distance(p_W, time_s);
@@ -191,9 +191,10 @@ Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
   return gradient.normalized();  // 0 stays 0
 }
 
-// Returns the position at then_s of the surface point that is at p_W at now_s: it is displaced along the
-// normal by the change of the distance. A pixel (ray is not null) sees the position where its ray met the
-// surface; NaN if the angle between ray and surface is too small to compute that.
+// Returns the position at then_s of the surface point that is at p_W at now_s. The point is displaced along
+// the normal by the change of the distance. If ray is not null, the result is the position where the ray of
+// this pixel met the surface at then_s. It is NaN if the angle between ray and surface is too small to
+// compute that. Returns p_W if the change is 0 or NaN.
 Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
   constexpr double kMinSlope = 0.1;
   const double change = scenario_->signed_distance(p_W, then_s) - scenario_->signed_distance(p_W, now_s);
@@ -205,7 +206,7 @@ Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const
   return p_W - change / slope * *ray;
 }
 
-// Adds noise along the rays. A point of an image is lost if it would lie behind the camera.
+// Adds noise along the rays. A point of an image is lost if it would lie behind the camera or at it.
 void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const {
   const RayNoise& s = settings_.ray_noise;
   const std::vector<double> noise = standard_noise(s, places, key_, frame, kernels_);
@@ -222,8 +223,8 @@ void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, in
   }
 }
 
-// Displaces flying points and outliers, and quantises. A point of an image is lost if it would lie behind the
-// camera.
+// Displaces flying points and outliers, and quantises depths. A point of an image is lost if it would lie
+// behind the camera or at it.
 void FaultySensor::displace(PointCloud& cloud, int frame) const {
   const SensorFaults& s = settings_;
   const NoiseStream stream = of_points(key_, frame);
@@ -245,8 +246,9 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
   }
 }
 
-// Returns the position of each point as the sensor sees it, in x and z: across the view in metres, or, in an
-// image, at depth 1. Also returns the radius of a hole around each point, in the same unit.
+// Returns the position of each point across the view, in x and z: in metres, or, for an image, as the
+// position where its ray meets depth 1. Also returns the radius of a hole around each point, in the same
+// unit.
 FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cloud) const {
   const Vec3 view_direction = settings_.view_direction.normalized(), across = view_direction.unitOrthogonal(),
              other = view_direction.cross(across);
@@ -265,8 +267,8 @@ FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cl
   return seen;
 }
 
-// Cuts holes around points that are drawn one after the other, until hole_fraction of the points is lost. A
-// point that is already lost can be drawn too.
+// Cuts holes around points that are drawn one after the other, until at least hole_fraction of the points is
+// lost. A point that is already lost can be drawn again.
 void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const {
   if (seen.measured.empty()) return;
   const double count = static_cast<double>(seen.measured.size());

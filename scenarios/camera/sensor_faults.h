@@ -1,5 +1,5 @@
 // Faults that a depth sensor adds to the frames of any scenario: noise along its rays, rounded depths, flying
-// points and outliers, lost points, frames that come twice or late, rows that are read one after the other.
+// points and outliers, lost points, repeated and late frames, and rows that are read one after the other.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,14 @@
 namespace remote_touch {
 
 // Faults are applied in this order. A point can get several faults, but an outlier is not also a flying
-// point. Depth is measured along view_direction for all points; in a cloud with an image layout it is
-// measured along each point's own ray, as the distance from the camera.
+// point. Depth is measured along view_direction. In a cloud with an image layout it is measured along each
+// point's own ray instead, as the distance from the camera.
 struct SensorFaults {
   Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
-  double repeat_probability = 0;  // probability that a frame shows the one before it
+  double repeat_probability = 0;  // probability that a frame repeats the previous one
   double rolling_shutter_s = 0;   // time in which the rows of a frame are read
   RayNoise ray_noise;
-  double sensor_distance_m = 1;  // distance from the origin, against the viewing direction; not for images
+  double sensor_distance_m = 1;  // distance from the origin, against view_direction; not used for images
   double flying_probability = 0, max_flying_distance_m = 0.02;
   double outlier_probability = 0, max_outlier_distance_m = 0.05;
   double quantisation_m = 0;
@@ -32,12 +32,13 @@ struct SensorFaults {
 
 Parameters parameters(SensorFaults& s);
 std::string validate(const SensorFaults& s);
-// True if one of these faults depends on view_direction in a cloud without an image layout.
+// Returns true if one of these faults depends on view_direction in a cloud without an image layout.
 bool use_view_direction(const SensorFaults& s);
 
-// Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
-// fault at 0 they are the scenario's bit for bit. A lost point becomes NaN in all three coordinates, so that
-// points keep their numbers. The ground truth, and everything else, stays that of the scenario.
+// Frames are a pure function of the scenario, the settings, the noise key and the frame's number. If every
+// fault is 0, they are the scenario's bit for bit. A lost point becomes NaN in all three coordinates, so that
+// points keep their numbers. The ground truth, and everything else that the sensor reports, is that of the
+// scenario.
 class FaultySensor final : public Scenario {
  public:
   // Throws std::invalid_argument for settings that validate() refuses.
@@ -45,7 +46,8 @@ class FaultySensor final : public Scenario {
                const Kernels& kernels);
 
   double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
-  // If frames of the same surface differ by their faults, the sensor goes on after the scenario's last frame.
+  // If faults make frames of the same surface differ, the sensor delivers more frames after the scenario's
+  // last one, unless the scenario ends.
   int frame_count() const override;
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }
@@ -78,8 +80,8 @@ class FaultySensor final : public Scenario {
     std::vector<double> hole_radius;
     std::vector<std::uint32_t> measured;
   };
-  int shown(int frame) const;  // the frame whose content this one has
-  int seen(int frame) const;   // the scenario's frame for it
+  int shown(int frame) const;  // the frame whose content this frame shows
+  int seen(int frame) const;   // the scenario's frame for it: the last one if there is none
   bool needs_view_coordinates() const;
   bool moves_points() const;
   bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
 constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
-constexpr double kAmbient = 0.3;  // share of the light that comes from everywhere
+constexpr double kAmbient = 0.3;  // share of the light that is ambient
 
-// Hue and saturation stay what they are, up to rounding; lightness varies.
+// Scales the three channels by `light`: the lightness changes; hue and saturation do not, up to rounding.
 std::uint32_t dimmed(std::uint32_t rgb, double light) {
   std::uint32_t result = 0;
   for (int shift = 16; shift >= 0; shift -= 8)
@@ -125,8 +125,8 @@ PointCloud ValveTank::cloud(int frame) const {
   return cloud;
 }
 
-// Expects depths with noise. Replaces the colours of a row by those seen through the water, with noise, and
-// sets lost depths to NaN.
+// Replaces the colours of a row by those seen through the water, with noise, and sets lost depths to NaN. The
+// cloud's depths must already have their noise.
 void ValveTank::see_row(int frame, int row, PointCloud& cloud) const {
   const auto width = static_cast<std::size_t>(camera_.intrinsics().width);
   const std::size_t first = width * static_cast<std::size_t>(row);

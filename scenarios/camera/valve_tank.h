@@ -18,11 +18,11 @@ namespace remote_touch {
 // The class of a pixel, and the valve that a query is about.
 enum class Valve : std::uint8_t { none, left, right };
 
-// World frame: the robot's base frame, y up; the tank's wall is the plane z = 0 and the valves are in front
-// of it. X_WC, in the image layout of every cloud, is the registration of the camera. Nothing moves; the
-// noise of colour and depth and the pixels without depth change with each frame, as pure functions of the
-// noise key and the frame's number. The scene is lit from the camera by Lambert's law, with some ambient
-// light.
+// World frame: the robot's base frame, y up. The tank's wall is the plane z = 0 and the valves are in front
+// of it. X_WC, in the image layout of every cloud, is the registration of the camera. The scene does not
+// move. The noise of colour and depth and the pixels without depth change with each frame, as pure functions
+// of the noise key and the frame's number. The scene is lit from the camera by Lambert's law, with some
+// ambient light.
 class ValveTank final : public Scenario {
  public:
   struct Settings {
@@ -48,9 +48,9 @@ class ValveTank final : public Scenario {
   // Distance to the union of wall and valves; exact outside.
   double signed_distance(const Vec3& p_W, double time_s) const override;
 
-  // The same for one valve alone, without the wall: the clearance of a tool. pre: valve is not none.
+  // Distance to one valve alone, without the wall; used for the clearance of a tool. pre: valve is not none.
   double distance_to_valve(Valve valve, const Vec3& p_W) const;
-  // The class of each pixel as an ideal camera sees it, with depth or without.
+  // Returns the true class of each pixel as an ideal camera sees it, also for pixels without depth.
   std::vector<Valve> truth() const;
 
  private:

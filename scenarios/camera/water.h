@@ -1,5 +1,5 @@
-// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, depth gets
-// noisier and is lost. Three rates describe the trend, not one particular water.
+// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, and depth
+// becomes noisier or is lost. The rates describe the trend, not one particular water.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace remote_touch {
 // do not depend on which exponential the C library picks for a machine.
 double decay(double x);
 
-// Distances are metres of water between the camera and what it sees; infinite where it sees nothing. The path
-// of the light to the objects is left out, as is blur.
+// Distances are metres of water between the camera and the object; infinite if the pixel shows no object. The
+// model neglects blur and the path of the light to the objects.
 class Water {
  public:
   // Attenuation beta per metre, 0 for clear water. Red is lost fastest, blue slowest.
@@ -28,7 +28,8 @@ class Water {
   // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), with dropout the probability
   // in clear water.
   double lost(double dropout_probability, double distance_m) const;
-  // Factor on the standard deviation of depth, 1 + beta d: the sensor's light pattern comes back fainter.
+  // Factor on the standard deviation of depth, 1 + beta d, because the sensor's light pattern returns
+  // fainter.
   double depth_noise_factor(double distance_m) const;
 
  private:

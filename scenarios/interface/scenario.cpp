@@ -14,9 +14,9 @@ int Scenario::newest_frame(double time_s) const {
   return frame;
 }
 
-// A distance has a gradient of length 1, except where the nearest point of the surface changes: differences
-// across such a place are shorter. The limit allows curvature (1 - length is about 7e-5 at a radius of 5 mm)
-// and finds every crease whose sides meet at more than 5 degrees.
+// The gradient of a distance has length 1, except where the nearest point of the surface jumps: differences
+// across such a position are shorter. The limit allows curvature (1 - length is about 7e-5 at a radius of 5
+// mm) and finds every crease whose sides meet at more than 5 degrees.
 Vec3 Scenario::true_normal(const Vec3& p_W, double time_s) const {
   constexpr double kStep_m = 1e-4, kMaxShortening = 1e-3;
   Vec3 gradient;

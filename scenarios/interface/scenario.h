@@ -17,12 +17,12 @@
 
 namespace remote_touch {
 
-// Two times closer than this are equal: sums and quotients of times are rounded differently.
+// Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
 inline constexpr double kSameTime_s = 5e-7;
 
-// A pure function of its configuration, the noise key and the frame number: the same call gives the same
-// result. Positions are in the world frame, metres; y is up in synthetic scenes, recordings keep the camera's
-// frame.
+// A scenario is a pure function of its configuration, the noise key and the frame number: the same call gives
+// the same result. Positions are in the world frame, in metres. y is up in synthetic scenes; recordings keep
+// the camera's frame unless the camera is registered.
 class Scenario {
  public:
   virtual ~Scenario() = default;
@@ -38,20 +38,22 @@ class Scenario {
   virtual const Scenario& without_faults() const { return *this; }
   // The parts of the motion, in order. Empty: the scene rests, or its motion has no parts.
   virtual std::vector<Phase> phases() const { return {}; }
-  // One line about what was read so far: the frames of a recording. Empty: nothing is read.
+  // One line about the frames of a recording that were read so far. Empty if the scenario reads no files.
   virtual std::string input() const { return {}; }
   // Notes on what was read so far: a recording that was cut short, points that were dropped.
   virtual std::vector<Note> input_notes() const { return {}; }
   // The pose of the sensor in the world frame, for a recording. The sensor looks along its z axis.
   virtual std::optional<RigidTransform> sensor_pose() const { return {}; }
 
-  // Time at which the frame leaves the sensor, if that is not when it was captured: the frame was late, or it
-  // belongs to a recorded live session, which stores when the renderer got it (infinite if it never did).
+  // Time at which the frame leaves the sensor. Empty if that is the time of capture. A late frame has a later
+  // time. A frame of a recorded live session has the time at which the renderer received it, infinite if it
+  // never did.
   virtual std::optional<double> arrives_s(int /*frame*/) const { return {}; }
   // Fixtures that were off when the frame was processed, one bit each; only in a recorded live session.
   virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
 
-  // The newest frame captured by then, with a tolerance of kSameTime_s for rounded times.
+  // Returns the newest frame captured by time_s, with a tolerance of kSameTime_s for rounded times. Returns
+  // frame 0 if no frame was captured by then.
   int newest_frame(double time_s) const;
 
   // Points of a frame, as a renderer touches them. The noise of a point may be computed late, when a search
@@ -61,10 +63,11 @@ class Scenario {
   virtual PointCloud cloud(int frame) const = 0;
 
   // Ground truth at a time: distance to the true surface, m, positive on the side that the sensor sees. NaN
-  // if the truth is not known, if the scene has no surface (single points), and beside a surface with a
-  // border. Beside it, behind the plane that ends at the border, there is no back: nothing hides p from the
-  // sensor, and the way there goes round the border and not through the surface. Above that plane the
-  // distance to the border is positive.
+  // if the truth is not known, or if the scene has no surface (single points). NaN also if p is beside a
+  // surface with a border and behind the plane that ends at the border. The surface has no back there: it
+  // does not hide p from the sensor, and the way to p goes round the border and not through the surface.
+  // Beside the surface and in front of that plane the result is positive: it is the distance to the border,
+  // or, for a flat grid, the height over the plane.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
   // Returns the unit normal of the true surface of signed_distance() at the point that is nearest to p,
   // towards the side that the sensor sees. Returns NaN in all three coordinates if the truth is not known. It
@@ -76,10 +79,10 @@ class Scenario {
   // the true normal of every contact, also of a tool, which touches with an area. Returns nothing for other
   // surfaces.
   virtual std::optional<Vec3> plane_normal(double /*time_s*/) const { return {}; }
-  // Time at which the surface was where signed_distance() measures from: time_s, or, if the truth is what the
-  // camera has seen, the last capture.
+  // Time of the surface from which signed_distance() measures. It is time_s, or the time of the last capture
+  // if the truth is what the camera has seen.
   virtual double truth_time_s(double time_s) const { return time_s; }
-  // Height (y) of the surface over (x, z) as it moves; NaN where the scene is not a height field.
+  // Height (y) of the surface over (x, z) at time_s; NaN where the scene is not a height field.
   virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {
     return std::numeric_limits<double>::quiet_NaN();
   }

@@ -25,7 +25,7 @@ void check_image_size(const std::string& subject, const DepthImage& depth, std::
                                 ", as its CameraInfo has (width, height, binning, roi)");
 }
 
-// The cameras agree in all that makes a depth image a cloud.
+// Returns true if the cameras agree in every field that affects how a depth image becomes a cloud.
 bool same_camera(const CameraInfoMessage& a, const CameraInfoMessage& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
          a.distortion == b.distortion && a.K == b.K && a.P == b.P && a.binning_x == b.binning_x &&
@@ -52,7 +52,7 @@ BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
   if (!choice.frame_id.empty()) choose_frame_id(choice.frame_id);
 }
 
-// Clouds need no camera.
+// Throws InputError if the choice has settings for depth images, because a topic of clouds does not use them.
 void BagFrames::refuse_image_settings(const BagChoice& choice) const {
   const auto refuse = [&](const std::string& problem) { throw InputError(path_, topic().name + problem); };
   if (choice.depth_unit_m != 0) refuse(" holds clouds, in metres: expected scenario.depth_unit_m = 0");
@@ -69,7 +69,8 @@ std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) con
   return path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(same - places.begin());
 }
 
-// Compares the image size that the CameraInfo states with an image before it makes a table of that size.
+// Compares the image size that the CameraInfo states with the size of the first image, before ImageRays makes
+// a table of that size.
 void BagFrames::choose_camera(const BagChoice& choice) {
   const std::size_t camera = topic_of_camera(path_, *bag_, topic_, choice.camera_info);
   const MessagePlace& first = bag_->places(camera).front();
@@ -85,7 +86,8 @@ void BagFrames::choose_camera(const BagChoice& choice) {
   note_changes(camera, [&](const MessageCursor& from) { return same_camera(read_camera_info(from), info); });
 }
 
-// A later message that cannot be read counts as different.
+// Records in camera_change_ the first message of a topic that differs from message 0. A message that cannot
+// be read counts as different.
 template <class IsSame>
 void BagFrames::note_changes(std::size_t topic, IsSame&& is_same) {
   const std::vector<MessagePlace>& places = bag_->places(topic);
@@ -114,12 +116,12 @@ void BagFrames::choose_unit(double chosen_m) {
   const double unit_m = read_float32({message, wire_format(bag_->topics()[unit]), name});
   if (!(unit_m > 0 && unit_m <= 1))
     throw InputError(name, "depth unit = " + std::to_string(unit_m) + " m: expected above 0 to 1");
-  // A float of 32 bits that is meant as 0.001 should not make 1.00000005 m of 1000 units.
+  // The 32-bit float nearest to 0.001 would make 1000 units 1.00000005 m, so the unit is rounded to 1e-9 m.
   units_.of_integers_m = std::round(unit_m * 1e9) / 1e9;
   note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
 }
 
-// Sorts the frames by their messages' stamps, which are in memory only while they are sorted.
+// Sorts the frames by their messages' stamps. The stamps of all messages are in memory only in this function.
 void BagFrames::order_frames() {
   frames_ = bag_->places(topic_);
   bool all_stamped = true;
@@ -149,7 +151,7 @@ void BagFrames::order_frames() {
   frames_.clear();
   for (const auto& [stamp_ns, place] : stamped) {
     frames_.push_back(place);
-    // Sorted: the difference is not negative, but may be more than half of all 64-bit numbers.
+    // The stamps are sorted, so the difference is not negative. It can exceed the range of std::int64_t.
     const auto since_first =
         static_cast<std::uint64_t>(stamp_ns) - static_cast<std::uint64_t>(stamped.front().first);
     captured_s_.push_back(static_cast<double>(since_first) / 1e9);

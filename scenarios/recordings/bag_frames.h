@@ -18,16 +18,16 @@ namespace remote_touch {
 
 // Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth). The first CameraInfo is used
 // for all frames, see camera_change(). Integers of depth images are in units of 1 mm, or in the unit that the
-// option Depth Units of a RealSense recording states. Floats are metres. The choice may set another unit. All
-// messages must name the same coordinate frame.
+// option Depth Units of a RealSense recording states. Floats are metres. BagChoice::depth_unit_m replaces
+// these units. All messages must name the same coordinate frame.
 //
 // The frames are in the order of the stamps in the messages' headers; captured_s counts from the first stamp.
 // If several messages have the same stamp, the first one is used. If a stamp is 0, all times are those of the
 // recorder. Only one message at a time is in memory. Several threads may read at once.
 class BagFrames {
  public:
-  // Throws InputError, about the path and a topic, if there is no topic of frames or more than one, if the
-  // chosen topic has no frames, or if the camera or the transform is missing or cannot be used. For depth
+  // Throws InputError about the path or a topic in these cases: there is no topic of frames or more than one,
+  // the chosen topic has no frames, or the camera or the transform is missing or cannot be used. For depth
   // images the constructor reads the first one.
   BagFrames(const std::filesystem::path& path, const BagChoice& choice);
 
@@ -37,13 +37,13 @@ class BagFrames {
   // Pose of the messages' coordinate frame in the chosen one.
   const RigidTransform& pose() const { return X_chosen_; }
   std::string kind() const { return topic().type + " " + topic().name; }
-  // Empty, or what was wrong with the bag and what was done about it, in one line.
+  // Empty, or one line that says what was wrong with the bag and what was done about it.
   const std::string& remark() const { return remark_; }
-  // One line on the first CameraInfo and the first depth unit that differ from those that are used; empty if
-  // none does.
+  // One line that names the first CameraInfo and the first depth unit that differ from those in use. Empty if
+  // none differs.
   const std::string& camera_change() const { return camera_change_; }
 
-  // The path, the topic and the message of a frame, for a message about it.
+  // Path, topic and number of the message of a frame, for a message to the user about it.
   std::string name_of(std::size_t frame) const { return subject(topic_, frames_[frame]); }
 
   // Returns a frame in the coordinate frame of the messages. Pixels of an image whose depth z is above

@@ -38,7 +38,8 @@ bool has_messages(const BagFile& bag, std::size_t topic) {
   return !bag.places(topic).empty();
 }
 
-// The encoding of an image topic, from its first message. Empty for other topics and damaged messages.
+// Returns the encoding of an image topic, from its first message. Empty for other topics and damaged
+// messages.
 std::string encoding_of(const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   if (topic.type != kImageType || !is_readable(topic) || !has_messages(bag, t)) return {};
@@ -48,12 +49,13 @@ std::string encoding_of(const BagFile& bag, std::size_t t) {
     MessageCursor cursor(start, wire_format(topic), topic.name);
     read_header(cursor), cursor.u32(), cursor.u32();
     return cursor.text();
-  } catch (const InputError&) {  // it is for the one who names the topic
+  } catch (const InputError&) {  // reported later, if the user chooses this topic
     return {};
   }
 }
 
-// Colour images have the same type as depth images.
+// Returns true for topics of clouds and of depth images. Colour images have the same type as depth images, so
+// the encoding decides, or the name of a compressed topic.
 bool has_frames(const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   if (!is_wanted_topic(topic) || !has_messages(bag, t)) return false;
@@ -62,7 +64,7 @@ bool has_frames(const BagFile& bag, std::size_t t) {
   return topic.type == kImageType && is_depth_encoding(encoding_of(bag, t));
 }
 
-// The coordinate frame of the first message. Older programs write /camera for camera.
+// Returns the coordinate frame of the first message, without the leading / that older programs write.
 std::string frame_id_of(const std::string& path, const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   constexpr std::uint64_t kLongestHeader = 1024;

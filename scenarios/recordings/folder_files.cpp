@@ -19,7 +19,7 @@ void require_target(const fs::path& file) {
     throw InputError(file.string(), "is a link to a file that does not exist: expected a file");
 }
 
-// All numbers in a name, without zeros in front: 2 and 7 of img_2_0007.png.
+// Returns all numbers in a name, without leading zeros: 2 and 7 for img_2_0007.png.
 std::vector<std::string> numbers_in(const fs::path& file) {
   constexpr const char* kDigits = "0123456789";
   const std::string name = file.stem().string();
@@ -83,7 +83,7 @@ std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs
   for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);
   bool any = false;
   for (std::size_t j = 0; j < depth.size(); ++j) {
-    const fs::path same = folder / depth[j].filename();  // beside 1.png there may be another 1.PNG
+    const fs::path same = folder / depth[j].filename();  // a folder may hold both 1.png and 1.PNG
     const auto found = of_stem.find(depth[j].stem().string());
     if (found == of_stem.end()) continue;
     images[j] = fs::exists(same) ? same : found->second, any = true;

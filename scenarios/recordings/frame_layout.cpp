@@ -19,7 +19,8 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + " x " + std::to_string(rows) + " points";
 }
 
-// Returns the largest distance of a point from its pixel; infinite if a point is not in front of the camera.
+// Returns the largest offset of a projected point from its pixel, along u or v (px). Returns infinity if a
+// point is not in front of the camera.
 double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
   double worst = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -46,7 +47,8 @@ void conform_to_camera(const CameraIntrinsics& camera, const std::string& subjec
     throw InputError(subject, "has " + size_text(cloud.columns(), rows_of(cloud)) + ": expected " +
                                   size_text(camera.width, camera.height) +
                                   ", as the first frame that is used has");
-  // A depth image has the recording's camera, and a lens may bend its rays by more than a pixel.
+  // A depth image has the recording's camera. It is not tested, because a lens may bend its rays by more than
+  // a pixel.
   if (cloud.image && cloud.image->camera == camera) return;
   const double residual = residual_px(camera, cloud);
   if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))

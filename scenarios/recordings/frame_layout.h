@@ -17,20 +17,22 @@ struct FrameLayout {
 
 FrameLayout layout_of(const PointCloud& cloud);
 
-// Makes a later frame, in its camera's frame, one of the layout:
-// - With a camera, it must have as many rows and columns, and the camera must see every point less than 1 px
-//   off its pixel: the fit of each frame allows 0.5 px. A frame that has no fit of its own, because it has
-//   too few points, gets the camera of the layout; it is refused if the camera that its file states was not
-//   used, since its points are then in coordinates of the file. A frame without any point becomes an image of
-//   holes.
-// - An organised cloud without a camera must be organised, or empty. Its size may change, as that of a lidar
-//   does, because nothing relates the rows of one frame to those of another.
-// - A cloud in no order must be in no order. Its size may change.
-// Throws InputError about the subject otherwise.
+// Checks that a later frame, in its camera's frame, has the layout. Adds the camera of the layout if the
+// frame has none of its own, and removes the frame's camera if the layout has none. Throws InputError about
+// the subject in these cases:
+// - The layout has a camera, and the frame has another number of rows or columns. A frame without any point
+//   becomes an image of holes.
+// - The layout has a camera, and it sees a point off its pixel: by 1 px or more if the frame has a camera of
+//   its own, which was fitted with residuals of up to 0.5 px; by 0.5 px or more if it has none, because it
+//   has too few points for a fit. A frame whose VIEWPOINT is not used has its points in coordinates of the
+//   file and usually fails here.
+// - The layout is organised without a camera, and the frame is neither organised nor empty. Its size may
+//   differ, as with a lidar, because the rows of one frame are not related to those of another.
+// - The layout is a cloud in no order, and the frame is organised. Its size may differ.
 void conform(const FrameLayout& layout, const std::string& subject, PointCloud& cloud);
 
 // Sets the points of an image beyond max_depth_m, along the axis of its camera, to NaN. A cloud without a
-// camera has no depth and stays as it is. Pre: the cloud is in its camera's frame.
+// camera has no depth and is not changed. Pre: the cloud is in its camera's frame.
 void drop_beyond(double max_depth_m, PointCloud& cloud);
 
 }  // namespace remote_touch

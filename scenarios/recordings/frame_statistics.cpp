@@ -11,15 +11,16 @@ namespace remote_touch {
 namespace {
 
 // Two points that are at most a cell apart lie in the same cell or in neighbouring ones. A surface that moves
-// by up to 50 mm between two frames, 1.5 m/s at 30 Hz, therefore stays in the same place here, wherever the
-// borders of the cells are.
+// by up to 50 mm between two frames (1.5 m/s at 30 Hz) therefore counts as unmoved, regardless of the borders
+// of the cells.
 constexpr double kCell_m = 0.05;
-// Two frames show different places if most of what one of them shows is not near anything that the other
-// shows. Successive frames of the recordings in shared/data have 0.85 or more in common, frames of different
-// scenes 0 to 0.52.
+// Two frames show different places if the share of occupied cells of one frame that are near an occupied cell
+// of the other is below this. Successive frames of the recordings in shared/data have a share of 0.85 or
+// more, frames of different scenes have 0 to 0.52.
 constexpr double kLeastOverlap = 0.5;
 constexpr std::size_t kComparedPoints = 20000;
-// A note is written if more points than this were dropped: a background is often beyond the limit.
+// A note is written if more than this share of the points was dropped: a background is often beyond the
+// limit.
 constexpr double kDroppedShare = 0.1;
 
 // The number of a cell has 21 bits for each axis. Indices are at most 1e6, so that those of neighbours fit,
@@ -70,7 +71,7 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// The share of the cells that are near one of the others.
+// Returns the share of the cells that are near one of the others.
 double share_near(const std::vector<std::uint64_t>& cells, const std::vector<std::uint64_t>& others) {
   const auto near =
       std::count_if(cells.begin(), cells.end(), [&](std::uint64_t cell) { return is_near(cell, others); });
@@ -97,7 +98,7 @@ void FrameStatistics::count(std::size_t frame, const PointCloud& cloud, double m
     if (cloud.image && cloud.z[i] > max_depth_m) ++beyond_limit_;
     lowest_m_ = lowest_m_.cwiseMin(cloud.point(i)), highest_m_ = highest_m_.cwiseMax(cloud.point(i));
   }
-  if (measured_ == measured_before) return;  // no colour is missing
+  if (measured_ == measured_before) return;  // a frame without points lacks no colours
   if (cloud.colour.empty()) {
     if (colourless_frames_++ == 0 || frame < first_colourless_) first_colourless_ = frame;
     return;

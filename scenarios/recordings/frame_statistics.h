@@ -18,17 +18,17 @@ class FrameStatistics {
   explicit FrameStatistics(std::size_t frame_count) : is_read_(frame_count, false) {}
 
   bool has(std::size_t frame) const { return is_read_[frame]; }
-  // cloud: the frame as it was measured, before the limit is applied: an image in its camera's frame, any
-  // other cloud in its own coordinates, to which the limit does not apply. All frames are images, or none is.
-  // A frame that was added before is ignored.
+  // Counts a frame. cloud: the frame as it was measured, before the limit is applied. An image is in its
+  // camera's frame. Any other cloud is in its own coordinates, and the limit does not apply to it. Either all
+  // frames are images or none is. A frame that was added before is ignored.
   void add(std::size_t frame, const PointCloud& cloud, double max_depth_m);
 
   std::size_t frames_read() const { return frames_; }
-  // "12 read: 68.3 % of 307200 points measured, depth 0.41 to 2.98 m, with colours". Clouds without a camera
-  // have no depth; the text then has the range of each coordinate.
+  // Returns "12 read: 68.3 % of 307200 points measured, depth 0.41 to 2.98 m, with colours". Clouds without a
+  // camera have no depth; the text then has the range of each coordinate.
   std::string text() const;
-  // Points that were dropped, points and frames without colour, and frames that do not overlap with the frame
-  // before them.
+  // Returns notes about points that were dropped, about points and frames without colour, and about frames
+  // that do not overlap with the frame before them.
   std::vector<Note> notes(double max_depth_m) const;
 
  private:
@@ -41,17 +41,19 @@ class FrameStatistics {
   // Bounding box of all measured points. In images its z is the depth.
   Vec3 lowest_m_ = Vec3::Constant(std::numeric_limits<double>::infinity()), highest_m_ = -lowest_m_;
   bool are_images_ = false;
-  // Frames with measured points: those with colours, those without, and the first of the latter.
+  // Among the frames with measured points: the number with colours, the number without, and the lowest frame
+  // without.
   std::size_t coloured_frames_ = 0, colourless_frames_ = 0, first_colourless_ = 0;
   std::size_t last_ = 0;              // the frame that was read last, if there is one
   std::vector<std::uint64_t> cells_;  // cells that its points occupy, sorted
-  // Pairs of successive frames without overlap: how many, the later frame of the first, and their overlap.
+  // Pairs of successive frames with too little overlap: their number, the later frame of the pair that was
+  // found first, and the smallest overlap of all pairs.
   std::size_t apart_ = 0, first_apart_ = 0;
   double least_overlap_ = 1;
 };
 
-// The note "frames unused", if a frame was not used, with the reason. is_used: of each frame, in the order of
-// arrival.
+// Returns the note "frames unused", with the reason, if a frame was not used. is_used has one element for
+// each frame, in the order of arrival.
 std::vector<Note> unused_frames(const std::vector<bool>& is_used);
 
 }  // namespace remote_touch

@@ -9,7 +9,8 @@ namespace remote_touch {
 
 namespace {
 
-// A longer time between two frames is nearer to two periods than to one: a frame is missing.
+// A time between two frames that is longer than 1.5 periods is nearer to two periods than to one: a frame is
+// missing.
 constexpr double kPause = 1.5;
 
 std::vector<double> periods_s(const std::vector<double>& times_s) {

@@ -1,4 +1,5 @@
-// The points whose pixels a mask marks: the result of any segmentation, as an image.
+// Fixture rule that selects the points whose pixels are marked in a mask: an image that any segmentation may
+// have made.
 #pragma once
 
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
@@ -12,10 +13,10 @@ class ImageMask final : public FixtureRule {
     FixtureValues values;
     std::string path;
   };
-  // Reads the mask: a PNG of any kind that read_colour_png takes, of the size of the frames; a pixel that is
-  // neither black nor fully transparent selects its point. Throws InputError when it cannot be read.
+  // Reads the mask: a PNG of any kind that read_colour_png() accepts, of the size of the frames. A pixel that
+  // is neither black nor fully transparent selects its point. Throws InputError if the file cannot be read.
   explicit ImageMask(const Settings& settings);
-  // An image of the size of the mask.
+  // Throws InputError unless the cloud is an image of the size of the mask.
   void require(const PointCloud& cloud) const override;
   std::vector<double> weights(const PointCloud& cloud) const override;
 

@@ -65,8 +65,8 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
 
 namespace {
 
-// Pose of the camera in the base frame: the transform of tf_static is applied first, then the registration.
-// If no frame_id is chosen, the former is the identity, and the registration stays as it is, bit for bit.
+// Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
+// registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
 RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
   const RigidTransform X_registered =
       Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
@@ -94,8 +94,8 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
                          ", the default, which does not apply to them");
 }
 
-// Throws InputError if the first frame has no usable point. The cause is a mistake: another unit, another
-// limit, an empty file, or a camera whose centre is far from its image.
+// Throws InputError if the first frame has no usable point. That is caused by a mistake: another unit,
+// another limit, an empty file, or a camera whose centre is far from its image.
 void RecordedScene::require_points() const {
   constexpr double kReach_m = 1e4;  // a hundred times the greatest depth
   const PointCloud first = cloud(0);
@@ -121,8 +121,8 @@ std::string RecordedScene::input() const {
          (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply");
 }
 
-// A camera has a rate between these; otherwise the stamps are probably not in seconds. The stamps of bags
-// have a unit.
+// A camera usually has a rate between these limits; outside them the stamps are probably not in seconds. The
+// stamps of bags have a defined unit.
 std::vector<Note> RecordedScene::unusual_rate() const {
   constexpr double kSlowest_Hz = 1, kFastest_Hz = 1000;
   if (!times_.follows_stamps()) return {};
@@ -156,8 +156,8 @@ std::vector<Note> RecordedScene::input_notes() const {
   return notes;
 }
 
-// A frame of the layout in its camera's frame, or in its own coordinates if it has no camera. X_FC becomes
-// the camera in the coordinates of the file.
+// Returns a frame that has the layout, in its camera's frame, or in its own coordinates if it has no camera.
+// Sets X_FC to the pose of the camera in the coordinates of the file.
 PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) const {
   FrameCamera camera;
   PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &camera);
@@ -172,7 +172,7 @@ PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) 
   return cloud;
 }
 
-// A frame in the base frame. Without a registration the bits stay as they were read.
+// Returns a frame in the base frame. Without a registration the points keep the bits that were read.
 PointCloud RecordedScene::registered(std::size_t source) const {
   RigidTransform X_FC;
   PointCloud cloud = as_recorded(source, X_FC);
@@ -221,9 +221,9 @@ PointCloud RecordedScene::cloud(int frame) const {
 
 namespace {
 
-// The plane through the pixels of a window: mean of all points, and a normal from the differences between
-// opposite halves. Unusable when a pixel is missing or the depths in the camera differ by more than the
-// window is wide: an edge.
+// The plane through the pixels of a window: the mean of all points, and a normal from the differences along
+// its rows and columns. Not usable if a pixel is missing, or if the depths in the camera differ by more than
+// max_width_m, which indicates an edge.
 struct Patch {
   Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
   bool usable = false;

@@ -1,4 +1,4 @@
-// A recorded sequence of depth images or organised clouds, streamed at the rate it was recorded.
+// A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
 #pragma once
 
 #include <memory>
@@ -47,8 +47,9 @@ class RecordedScene final : public Scenario {
   std::optional<RigidTransform> sensor_pose() const override { return X_WC_; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
-  // pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges.
+  // The truth is the measurement itself: the distance to a plane through the points of the newest frame
+  // around p's pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges,
+  // outside the image, and for clouds without a camera.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Returns NaN, because the measured surface is no independent truth: a normal would be judged by the error
   // of the measurement.
@@ -65,8 +66,8 @@ class RecordedScene final : public Scenario {
   RecordingIndex recording_;  // its camera is that of the layout
   const RigidTransform X_WC_;
   const FrameTimes times_;
-  // The frames used last, the newest in front: renderer, trajectory and truth use them in turn, and a short
-  // part is played many times.
+  // The frames that were used last, the newest in front. Renderer, trajectory and truth use them in turn, and
+  // a short part is played many times.
   struct CachedFrame {
     std::size_t source;
     std::shared_ptr<const NeighbourSearch> points;

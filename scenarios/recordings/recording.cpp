@@ -54,7 +54,8 @@ Json parse_camera_file(const fs::path& file) {
   return json;
 }
 
-// A finite number that must be there.
+// Returns the value of a required key, a finite number. Throws InputError if it is missing or of another
+// kind.
 double number(const fs::path& file, const Json& json, const std::string& key, bool positive) {
   const auto found = json.find(key);
   if (found == json.end()) refuse(file, "has no key '" + key + "'");
@@ -65,7 +66,7 @@ double number(const fs::path& file, const Json& json, const std::string& key, bo
   return value;
 }
 
-// Up to 65535: more pixels a side than any depth camera has.
+// Returns a value from 1 to 65535, which is more pixels a side than any depth camera has.
 int pixel_count(const fs::path& file, const Json& json, const std::string& key) {
   constexpr double kMaxCount = 65535;
   const double value = number(file, json, key, true);
@@ -79,7 +80,7 @@ double frame_rate(const fs::path& file, const Json& json) {
   refuse(file, "frame_rate_hz = " + shown(json["frame_rate_hz"]) + ": expected above 0 to 10000");
 }
 
-// The intrinsics and the scale, all needed; colour_registered is optional.
+// Reads the intrinsics and the scale, which are required, and colour_registered, which is optional.
 CameraFile read_camera(const fs::path& file, const Json& json) {
   CameraFile result;
   CameraIntrinsics& camera = result.camera;
@@ -96,7 +97,7 @@ CameraFile read_camera(const fs::path& file, const Json& json) {
   return result;
 }
 
-// A recording of one frame has no rate.
+// Returns the nominal rate for a recording of one frame, because one stamp states no rate.
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
   if (frames < 2) return kNominalRate_hz;
   const double rate_hz = static_cast<double>(frames - 1) / last_s;
@@ -105,7 +106,8 @@ double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) 
   return rate_hz;
 }
 
-// camera.json is optional here, and a rate in it is not used: the rate follows from the stamps.
+// Lists a TUM folder. camera.json is optional here. A rate in it is not used, because the rate follows from
+// the stamps.
 RecordingIndex index_tum(const fs::path& folder) {
   const std::vector<StampedFile> depth = read_stamped_list(folder / "depth.txt");
   std::vector<StampedFile> colour;
@@ -189,13 +191,14 @@ RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
   return index;
 }
 
-// "DIR" and "DIR/" alike; "." has the name of the current folder. The root has no name but its path.
+// Returns the same name for "DIR" and "DIR/", and the name of the current folder for ".". The root has no
+// name, so its path is returned.
 std::string name_of(const fs::path& path) {
   const fs::path clean = fs::absolute(path / "").lexically_normal().parent_path();
   return clean.has_filename() ? clean.filename().string() : clean.string();
 }
 
-// The layouts in the order that index_recording promises.
+// Tries the layouts in the order that index_recording() promises.
 RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (fs::exists(path) && is_bag(path)) return index_bag(path, choice);
   for (const auto& [name, value] :
@@ -218,7 +221,8 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
          "metadata.yaml with a ROS 2 bag");
 }
 
-// Pixel (u, v) must be point v * width + u in depth, colour and camera alike.
+// Throws InputError unless the image has the camera's size: pixel (u, v) must be point v * width + u in
+// depth, colour and camera.
 void check_size(const fs::path& file, int width, int height, const CameraIntrinsics& camera) {
   if (width == camera.width && height == camera.height) return;
   refuse(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: expected " +

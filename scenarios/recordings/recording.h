@@ -14,19 +14,19 @@ namespace remote_touch {
 
 class BagFrames;
 
-// The fastest haptic rate: more frames would only pile up in a tick.
+// Equal to the fastest haptic rate. At a higher rate more than one frame would arrive in a tick.
 inline constexpr double kMaxFrameRate_hz = 10000;
 
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
-  std::filesystem::path depth;   // a depth PNG or a PCD file; of a bag: empty
+  std::filesystem::path depth;   // a depth PNG or a PCD file; empty for a bag
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
 // Pose of the camera of a frame.
 struct FrameCamera {
-  // The camera in the coordinates of a PCD file: its VIEWPOINT where that is used, see read_pcd(); else the
-  // identity.
+  // Pose of the camera in the coordinates of a PCD file: its VIEWPOINT if that is used, see read_pcd();
+  // otherwise the identity.
   RigidTransform X_FC = RigidTransform::Identity();
   bool has_unused_viewpoint = false;  // see PcdCloud
 };
@@ -34,11 +34,11 @@ struct FrameCamera {
 struct RecordingIndex {
   enum class Kind { depth_png, pcd, bag };
   Kind kind = Kind::depth_png;
-  // All 0 for pcd and for clouds of a bag: the camera of each frame is fitted to it by read_frame().
+  // All 0 for pcd and for clouds of a bag, because read_frame() fits a camera to each frame.
   CameraIntrinsics camera;
   double metres_per_unit = 0;  // size of one unit of a depth PNG; 1 for other kinds
   double frame_rate_hz = 0;
-  // True if captured_s are stamps, and frame_rate_hz is their mean rate; else frame j is captured at
+  // True if captured_s are stamps; frame_rate_hz is then their mean rate. Otherwise frame j is captured at
   // j / frame_rate_hz.
   bool is_stamped = false;
   std::vector<RecordedFrame> frames;  // one frame or more, captured_s strictly increasing
@@ -48,16 +48,16 @@ struct RecordingIndex {
   std::shared_ptr<const BagFrames> bag;  // set if kind is bag
 };
 
-// The layout of path is the first of these that fits:
-// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_frames.h. Its rate
-//   is the mean rate of the stamps (one: 30 Hz).
-// - DIR/depth.txt (TUM RGB-D): its lists as in tum_layout.h, at the mean rate of the stamps (one: 30 Hz).
-//   Without DIR/camera.json the camera is the benchmark's: 640 x 480 pixels, f = 525, c = (319.5, 239.5),
-//   5000 units per metre, colour registered.
-// - DIR/depth/N.png: needs DIR/camera.json; DIR/rgb/N.png is used if that says colour_registered; other names
-//   are paired by their numbers, see folder_files.h.
-// - DIR/*.pcd: at the frame_rate_hz of DIR/camera.json, else 30 Hz. Nothing else of camera.json is used, and
-//   times in file names are not either.
+// Lists the frames of a recording. Its layout is the first of these that fits path:
+// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_frames.h. Its rate is
+//   the mean rate of the stamps (30 Hz for a single frame).
+// - DIR/depth.txt (TUM RGB-D): its lists as in tum_layout.h, at the mean rate of the stamps (30 Hz for a
+//   single frame). Without DIR/camera.json the camera is the benchmark's: 640 x 480 pixels, f = 525,
+//   c = (319.5, 239.5), 5000 units per metre, colour registered.
+// - DIR/depth/N.png: needs DIR/camera.json. DIR/rgb/N.png is used if camera.json says colour_registered;
+//   other names are paired by their numbers, see folder_files.h.
+// - DIR/*.pcd: at the frame_rate_hz of DIR/camera.json, else 30 Hz. The other values of camera.json and times
+//   in file names are not used.
 // - FILE.pcd: one frame.
 // Frames are in the order of the file names, in which numbers are compared as numbers: sort_by_name().
 // Endings may be in capital letters. Hidden files, whose names begin with a dot, are ignored.
@@ -65,21 +65,21 @@ struct RecordingIndex {
 // camera.json: {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, optionally colour_registered
 // (default false); other keys are refused. Pixels, metres per unit, hertz.
 //
-// Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Frames
-// are opened by read_frame() only.
+// Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. No frame is
+// opened here, except the first depth image of a bag: read_frame() opens them.
 RecordingIndex index_recording(const std::filesystem::path& path, const BagChoice& choice = {});
 
 // One line for the user: "office: 71 frame(s) from depth PNG at RATE, 640 x 480 pixels".
 std::string description(const RecordingIndex& index, const std::string& rate);
 
-// Name of a frame for a message about it: its file, or its message in a bag.
+// Returns the name of a frame for a message about it: its file, or its message in a bag.
 std::string frame_name(const RecordingIndex& index, std::size_t frame);
 
 // Returns one frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point
 // v * width + u. Missing pixels are NaN, and so are pixels whose depth is above max_depth_m. A PCD file or a
 // bag may also hold a cloud that is no image: max_depth_m does not apply to it. Writes the camera of the
-// frame to `camera` unless it is null. Pre: frame < index.frames.size(). Throws InputError if a file is
-// unusable or not of the camera's size.
+// frame to `camera` unless it is null. Pre: frame < index.frames.size(). Throws InputError if a file cannot
+// be used or its image does not have the camera's size.
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
                       FrameCamera* camera = nullptr);
 

@@ -52,7 +52,7 @@ bool is_single_file(const fs::path& file) {
                      [&](const char* ending) { return has_ending(file, ending); });
 }
 
-// Returns all files of a bag, whatever the topic and the frames.
+// Returns all files of a bag, regardless of the topic and the frames.
 std::vector<InputFile> bag_files(const fs::path& bag) {
   std::vector<InputFile> list;
   for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
@@ -68,7 +68,7 @@ std::vector<InputFile> files_of(const RecordingPart& part) {
   if (is_bag(found)) return bag_files(found);
   const RecordingIndex recording = index_recording(found);
   const FrameRange frames = frames_of(part, recording);
-  // Absolute, because a list may name files by absolute paths: those come as ../../...
+  // The folder is absolute, because a list may name files by absolute paths: their names become ../../...
   const fs::path place = fs::absolute(found);
   const fs::path folder = fs::is_directory(place) ? place : place.parent_path();
   std::map<std::string, fs::path> files;

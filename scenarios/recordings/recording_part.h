@@ -12,8 +12,8 @@
 
 namespace remote_touch {
 
-// Part of a recording, as named in settings. The file system is not searched, so that a sweep can list the
-// parts of all its cells at no cost.
+// Part of a recording, as named in settings. Making one does not search the file system, so that a sweep can
+// list the parts of all its cells at no cost.
 struct RecordingPart {
   std::string path;
   int first_frame = 0;
@@ -21,35 +21,38 @@ struct RecordingPart {
   auto operator<=>(const RecordingPart&) const = default;
 };
 
-// A recording that is not on this machine: figures that need it are reported as not run. A damaged one is an
-// error.
+// The recording is not on this machine. Figures that need it are reported as not run. A damaged recording
+// throws an InputError that is no MissingRecording.
 class MissingRecording : public InputError {
  public:
   using InputError::InputError;
 };
 
-// The folder below which relative paths are searched that do not exist here; empty (the default): none. It
-// holds for the whole program and is set before the first search: the command line takes REMOTE_TOUCH_DATA.
+// Sets the data folder, below which relative paths are searched that do not exist in the current folder.
+// Empty (the default) means that there is none. The setting holds for the whole program and must precede the
+// first search. The Python package sets it to REMOTE_TOUCH_DATA.
 void set_data_folder(const std::string& folder);
 
-// Finds a recording: the path itself, else below the data folder. Throws MissingRecording when it is in
-// neither place.
+// Returns the path itself if it exists, else the path below the data folder. Throws MissingRecording if
+// neither exists.
 std::string find_recording(const std::string& path);
 
-// The searched locations, in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
+// Returns the searched locations, in the words of the command line: "here or below REMOTE_TOUCH_DATA =
+// /data".
 std::string recording_places();
 
-// The frames of the part, first to last. Throws InputError when the recording has fewer.
+// The frames of the part, first to last. frames_of() throws InputError if the recording has fewer.
 struct FrameRange {
   int first = 0, last = 0;
 };
 FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording);
 
-// The files from which the part's frames are made, each once, sorted by name: a single PNG or mesh itself; or
-// the depth images or PCD files, the colour images registered to them, and those of camera.json, depth.txt
-// and rgb.txt that are used; or the files of a bag, as a whole: its frames are not counted here. Throws
-// InputError when the recording is not there, its lists or camera.json cannot be used, or it has fewer
-// frames; images and PCD files are not opened.
+// Returns the files from which the part's frames are made, each once, sorted by name. For a single file, such
+// as a PNG, a mesh or a live session, it is the file itself. For a recording in a folder they are the depth
+// images or PCD files of the part, the colour images registered to them, and those of camera.json, depth.txt
+// and rgb.txt that are used. For a bag they are all its files, because its frames are not counted here.
+// Throws InputError if the recording is not there, its lists or camera.json cannot be used, or it has fewer
+// frames. Images and PCD files are not opened.
 struct InputFile {
   std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
   std::filesystem::path file;  // path with which the file is opened

@@ -5,7 +5,7 @@
 namespace remote_touch {
 namespace {
 
-// Older programs write /camera for camera.
+// Removes the leading / that older programs write.
 std::string plain(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }

@@ -1,4 +1,5 @@
-// Fixed transforms between the coordinate frames of a robot, as tf_static has them: each frame has a parent.
+// Fixed transforms between the coordinate frames of a robot, as in tf_static: each frame has at most one
+// parent.
 #pragma once
 
 #include <map>
@@ -11,7 +12,8 @@ namespace remote_touch {
 
 class StaticTransforms {
  public:
-  // A frame that comes again moves to its new parent.
+  // A frame that is added again gets its new parent and transform. Once there are 10000 frames, all further
+  // transforms are ignored.
   void add(const std::vector<StampedTransform>& transforms);
   // p_to = X * p_from. Throws InputError about the subject when the two are not connected, or a frame is its
   // own ancestor.

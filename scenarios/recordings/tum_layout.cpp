@@ -11,10 +11,10 @@
 namespace remote_touch {
 namespace {
 
-constexpr double kMaxStamp_s = 1e12;  // some ten thousand years: differences of stamps are exact to 0.1 ms
+constexpr double kMaxStamp_s = 1e12;  // some 30000 years; differences of stamps are then exact to 0.1 ms
 
-// Seconds since an arbitrary origin; digits that from_chars does not take to the end, nan and inf are
-// refused. where: the list with ":line".
+// Returns seconds since an arbitrary origin. Throws InputError about `where`, the list with ":line", unless
+// the whole text is a finite number of at most kMaxStamp_s.
 double read_stamp(const std::string& where, const std::string& stamp) {
   double stamp_s = 0;
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
@@ -28,7 +28,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
   const std::string text = read_text_file(list, "expected lines 'timestamp filename'");
   std::istringstream stream{std::string(without_byte_order_mark(text))};
-  stream.exceptions(std::ios::badbit);  // throws if memory runs out; otherwise that would pass for the end
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would otherwise pass for the end
   std::vector<StampedFile> files;
   std::string line;
   // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.
@@ -64,7 +64,8 @@ std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& dept
   for (const StampedFile& image : depth) {
     RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
     double nearest_s = kMaxApart_s;
-    // Stamps rise: what is too early for this image is too early for all later ones.
+    // The stamps increase, so a colour image that is too early for this depth image is too early for all
+    // later ones.
     while (first != colour.end() && image.stamp_s - first->stamp_s > kMaxApart_s) ++first;
     for (auto other = first; other != colour.end() && other->stamp_s - image.stamp_s <= kMaxApart_s;
          ++other) {

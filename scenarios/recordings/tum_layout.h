@@ -14,13 +14,14 @@ struct StampedFile {
   std::filesystem::path file;
 };
 
-// Lines "timestamp_s filename", relative to the list's folder, and # comments. Throws InputError about a line
-// if it is anything else, the stamps do not strictly increase or the file does not exist; about the list if
-// it is empty.
+// Reads lines "timestamp_s filename", relative to the list's folder, and # comments. Throws InputError about
+// a line if it is anything else, if the stamps do not strictly increase or if the file does not exist. Throws
+// InputError about the list if it names no file.
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list);
 
-// A frame for each depth image, counted from the first; its colour image is the one with the nearest stamp
-// within 0.02 s (the last of equals), or none. Pre: depth is not empty.
+// Returns a frame for each depth image, with captured_s counted from the first one. Its colour image is the
+// one with the nearest stamp within 0.02 s (the last one of several equally near), or none. Pre: depth is not
+// empty.
 std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
                                             const std::vector<StampedFile>& colour);
 

@@ -1,4 +1,4 @@
-// A flat point cloud at y = 0, 4.3.1, that does not move.
+// A flat point cloud at rest at y = 0, see 4.3.1.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ class FlatGrid final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // The height; NaN below the plane beyond the grid.
+  // Height over the plane; NaN for a position that is below the plane and beyond the grid.
   double signed_distance(const Vec3& p_W, double) const override {
     return settings_.grid.signed_distance(p_W, 0);
   }

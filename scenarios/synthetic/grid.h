@@ -31,8 +31,8 @@ struct Grid {
     return px >= x(0) - kSame_m && px <= x(columns - 1) + kSame_m && pz >= z(0) - kSame_m &&
            pz <= z(rows - 1) + kSame_m;
   }
-  // Signed distance to a level surface that the grid samples: the height over it, m. NaN below the surface
-  // and beyond the border, see Scenario::signed_distance().
+  // Signed distance to a level surface that the grid samples: the height over it, m. NaN for a position that
+  // is below the surface and beyond the border, see Scenario::signed_distance().
   double signed_distance(const Vec3& p_W, double surface_y_m) const {
     const double height_m = p_W.y() - surface_y_m;
     return height_m < 0 && !covers(p_W.x(), p_W.z()) ? std::numeric_limits<double>::quiet_NaN() : height_m;

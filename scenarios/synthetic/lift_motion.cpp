@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// A time in updates. Quotients of times are rounded: what is meant to be at an update is nearly there.
+// Returns the nearest update if it is within 1e-6, else the time itself, in updates. Quotients of times are
+// rounded, so a time that is meant to be at an update may be slightly off.
 double at_update_if_near(double updates) {
   const double nearest = std::round(updates);
   return std::abs(updates - nearest) < 1e-6 ? nearest : updates;
@@ -63,7 +64,7 @@ double LiftMotion::risen_m(double updates) const {
   return -settings_.start_depth_m + updates * (settings_.start_velocity_m_per_s / settings_.update_rate_hz);
 }
 
-// Linear from update to update.
+// Returns the height for a motion that is linear from update to update.
 double LiftMotion::on_lines_m(double time) const {
   if (time < rise_begin_) return -settings_.start_depth_m;
   const bool rises = time <= rise_end_;

@@ -1,5 +1,5 @@
 // Motion of a surface that is lifted, 4.3.2: it waits, rises at constant velocity, accelerates and rests. It
-// is a function of time, which a camera only samples.
+// is a function of time, which a camera samples at its frames.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,13 @@
 
 namespace remote_touch {
 
-// 4.3.2 gives the heights at the frames: v_j = v_{j-1} + a / f_c and y_j = y_{j-1} + v_j / f_c. Here they are
-// the heights at the updates of the motion, which have a rate of their own. From one to the next it follows
-// the parabola with the acceleration a: with the time t from the end of the rise, where it is at y_0,
+// 4.3.2 gives the heights at the frames: v_j = v_{j-1} + a / f_c and y_j = y_{j-1} + v_j / f_c. This class
+// uses them as the heights at the updates of the motion, which have a rate of their own. The motion between
+// two updates is linear, or it follows the parabola with the acceleration a. With the time t since the end of
+// the rise and the height y_0 there, the parabola is
 //   y = y_0 + v_0 t + a t (t + 1 / update_rate_hz) / 2.
-// The way from frame to frame grows by a / f_c^2 with each frame, whatever the frame rate f_c. The parabola
-// begins one update before the end of the rise, there with a velocity that is a / 2 / update_rate_hz less.
+// The displacement from frame to frame then grows by a / f_c^2 with each frame, for any frame rate f_c. The
+// parabola begins one update before the end of the rise. The velocity drops there by a / (2 update_rate_hz).
 class LiftMotion {
  public:
   enum class BetweenUpdates { parabola, line };
@@ -32,21 +33,21 @@ class LiftMotion {
   explicit LiftMotion(const Settings& settings);
 
   double height_m(double time_s) const { return height_at_update(time_s * settings_.update_rate_hz); }
-  // The same at the time of a frame; exactly the height of an update if both rates are equal.
+  // Height at the time of a frame. It is exactly the height of an update if both rates are equal.
   double height_of_frame_m(int frame, double frame_rate_hz) const {
     return height_at_update(frame * (settings_.update_rate_hz / frame_rate_hz));
   }
-  // Number of frames up to the first at rest.
+  // Number of frames up to and including the first one at rest after the motion.
   int frame_count(double frame_rate_hz) const;
 
-  // The rise and the acceleration, if it has them.
+  // Returns the rise and the acceleration, if the motion has them.
   std::vector<Phase> phases() const;
 
  private:
-  // Times are in updates; 2.5 is in the middle between two.
+  // Times are in updates: 2.5 is in the middle between updates 2 and 3.
   double height_at_update(double time) const;
   double on_lines_m(double time) const;
-  double risen_m(double updates) const;  // height so long after the beginning of the rise
+  double risen_m(double updates) const;  // height at this time after the beginning of the rise
 
   const Settings settings_;
   const double rise_begin_, rise_end_, end_;

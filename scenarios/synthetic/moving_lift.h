@@ -34,12 +34,13 @@ class MovingLift final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane of the newest frame, because pop-through is judged against what the camera has
-  // seen; or (Truth::moving) over the plane as it moves. NaN below the plane beyond the grid.
+  // seen. With Truth::moving it is the height over the plane as it moves. NaN for a position that is below
+  // the plane and beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
   }
-  // The height of the plane as it moves, also between frames.
+  // Height of the plane as it moves, also between frames.
   double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
 

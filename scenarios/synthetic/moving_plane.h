@@ -25,7 +25,7 @@ class MovingPlane final : public Scenario {
   MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  // Number of frames up to the first one in which the plane has come to rest for good.
+  // Number of frames up to and including the first one in which the plane has come to rest for good.
   int frame_count() const override { return frame_count_; }
   std::vector<Phase> phases() const override {
     if (settings_.rise_height_m == 0) return {};
@@ -33,7 +33,8 @@ class MovingPlane final : public Scenario {
   }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Height over the plane as it is at that time, between frames too; NaN below it beyond the grid.
+  // Height over the plane at time_s, also between frames. NaN for a position that is below the plane and
+  // beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return settings_.grid.signed_distance(p_W, height(time_s));
   }

@@ -11,8 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Returns the height at which a vertical line through (x, z) meets the surface. Upwards along the line the
-// height above the surface only grows, because the surface is nowhere vertical.
+// Returns the height at which a vertical line through (x, z) meets the surface. The height above the surface
+// increases all along the line, because the surface is nowhere vertical, so bisection finds it.
 double height_over(double x, double z, const Shape& shape, const ShapePose& pose) {
   if (pose.sine == 0) return pose.y_m + shape.height(x - pose.x_m, z);
   const auto is_above = [&](double y) {
@@ -27,7 +27,7 @@ double height_over(double x, double z, const Shape& shape, const ShapePose& pose
   return high;
 }
 
-// The first frame from that time on; -1, no frame, if the time is negative.
+// Returns the first frame at or after that time, or -1 (no frame) if the time is negative.
 int first_frame_from(double time_s, double frame_rate_hz) {
   return time_s < 0 ? -1 : static_cast<int>(std::ceil((time_s - kSameTime_s) * frame_rate_hz));
 }

@@ -1,5 +1,5 @@
-// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: for comparing
-// renderers on more than the lifts of 4.3.2.
+// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish. It serves to
+// compare renderers on more motions than the lifts of 4.3.2.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace remote_touch {
 
-// The points are the grid's nodes on the shape, row by row, sheet by sheet, moved by the motion; noise is
-// added in the world frame, to the points and not to their normals. A small grid is a patch, its border an
-// edge to slide over. A flat lift has the same bits as a moving-lift of the same settings.
+// The points are the grid's nodes on the shape, row by row and sheet by sheet, moved by the motion. Noise is
+// added in the world frame, to the points and not to their normals. A small grid makes a patch, whose border
+// is an edge to slide over. A flat lift has the same bits as a moving-lift of the same settings.
 class MovingShape final : public Scenario {
  public:
   enum class Truth { newest_frame, moving };
@@ -36,26 +36,26 @@ class MovingShape final : public Scenario {
   MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  // Number of frames up to the last one that differs from the one before; noise is redrawn in those frames
-  // alone.
+  // Number of frames up to the last one that differs from its predecessor. Noise is redrawn in these frames
+  // only.
   int frame_count() const override;
-  // The loss of the points and the empty frame, then the motion, which comes last because a press may come
-  // after it.
+  // Returns the loss of the points and the empty frame, then the motion. The motion is last because a press
+  // may come after it.
   std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Empty if the frame is empty.
   PointCloud cloud(int frame) const override;
   // Distance to the first sheet, positive above it, see Shape::signed_distance(). The sheet is where the
-  // newest frame shows it (or, if that is empty, would have shown it), or, with Truth::moving, where it is at
-  // time_s, also between frames. NaN once it has vanished.
+  // newest frame shows it. If that frame is empty, the sheet is where the frame would have shown it. With
+  // Truth::moving the sheet is where it is at time_s, also between frames. NaN once the sheet has vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Known for the flat shape, until it vanishes.
+  // Returns the normal of the flat shape until it vanishes. Empty for other shapes.
   std::optional<Vec3> plane_normal(double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
   }
   // Height of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a
-  // surface to press; after it has vanished, the height that it had then.
+  // surface to press. After the sheet has vanished, it is the height at that time.
   double surface_height(double x, double z, double time_s) const override;
 
  private:

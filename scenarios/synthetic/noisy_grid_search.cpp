@@ -9,7 +9,7 @@ namespace {
 // Points are made within a margin around a query, so that the next queries of a moving proxy find their
 // points ready. A query larger than a proxy's gets no margin: such queries come once a frame.
 constexpr double kSpareMargin_m = 0.010, kMaxOfProxy_m = 0.025;
-// Far above the rounding of sums of metres.
+// Tolerance that is far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
 }  // namespace
 
@@ -23,7 +23,7 @@ bool NoisyGridSearch::Cylinder::holds(const Ball& ball) const {
   return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius + kRounding_m <= radius_m;
 }
 
-// The columns or rows whose undisturbed coordinate lies within reach of the centre.
+// Returns the columns or rows whose coordinate without noise lies within reach of the centre.
 NoisyGridSearch::Range NoisyGridSearch::within(double centre, double reach, double start, double spacing,
                                                int count) {
   const auto clamped = [count](double place) {
@@ -33,12 +33,12 @@ NoisyGridSearch::Range NoisyGridSearch::within(double centre, double reach, doub
           std::min(count - 1, clamped(std::floor((centre + reach - start) / spacing)))};
 }
 
-// First the points that can come into the cylinder at all, by their random words; then their noise.
+// Selects the points that can move into the cylinder, by their random words, and then computes their noise.
 void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) const {
   const double inner = cylinder.radius_m + kRounding_m, reach = inner + kMaxNormal * sigma_m_;
   const Range columns = within(cylinder.x, reach, grid_.x(0), grid_.spacing_m, grid_.columns);
   const Range rows = within(cylinder.z, reach, grid_.z(0), grid_.spacing_m, grid_.rows);
-  // The noise of a point at this offset from the axis must move it towards the axis.
+  // A point at this offset from the axis must be moved towards the axis by its noise, by `outside` or more.
   const auto bounds = [&](double offset) {
     const double outside = std::abs(offset) - inner;
     return outside > 0 ? word_bounds(outside / sigma_m_, -offset) : word_bounds(0, 0);
@@ -55,14 +55,14 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
   cached_cylinder_ = cylinder;
 }
 
-// The noisy points of the first indices; those outside the cylinder are dropped.
+// Computes the noisy points of the first `candidates` indices and keeps those inside the cylinder.
 void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylinder,
                                   const Kernels& kernels) const {
   constexpr std::size_t kChunk = 256;
   double nx[kChunk] = {}, ny[kChunk] = {}, nz[kChunk] = {};
   const double squared = cylinder.radius_m * cylinder.radius_m;
   const auto columns = static_cast<std::uint32_t>(grid_.columns);
-  std::uint32_t row_start = 0;  // the points rise, so that a new row is rare
+  std::uint32_t row_start = 0;  // indices increase, so that a new row is rare
   double row_z = 0;
   count_ = 0;
   for (std::size_t done = 0; done < candidates; done += kChunk) {
@@ -77,7 +77,7 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
       const double x = grid_.x(static_cast<int>(point - row_start)) + sigma_m_ * nx[i];
       const double z = row_z + sigma_m_ * nz[i];
       const double dx = x - cylinder.x, dz = z - cylinder.z;
-      // Every candidate is stored, and only those inside move the end on.
+      // Every candidate is stored at the end of the list. The end advances only for those inside.
       x_[count_] = x, y_[count_] = height_m_ + sigma_m_ * ny[i], z_[count_] = z;
       index_[count_] = point;
       count_ += dx * dx + dz * dz <= squared ? 1 : 0;

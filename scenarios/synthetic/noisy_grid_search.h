@@ -8,9 +8,10 @@
 namespace remote_touch {
 
 // Points (x, height, z) of the grid, each coordinate plus sigma times a standard normal. The result is
-// bit-identical to computing every point: a normal has a hard bound (kMaxNormal), so points that start too
-// far away cannot come near; of the others only those are computed whose random words let them move far
-// enough. Caches the points around the last query, so it serves one reader at a time.
+// bit-identical to computing every point. A normal has a hard bound (kMaxNormal), so a grid point that is too
+// far away cannot move near. Of the other points, only those are computed whose random words allow a
+// displacement that is large enough. The points around the last query are cached, so a search serves one
+// reader at a time.
 class NoisyGridSearch final : public NeighbourSearch {
  public:
   NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream);

@@ -9,9 +9,9 @@ namespace remote_touch {
 
 namespace {
 
-// A border that falls on a point of the grid counts, and distances that differ by rounding are equal.
+// Tolerance for a border that falls on a point of the grid, and for distances that differ only by rounding.
 constexpr double kSame_m = 1e-9;
-// Normals whose directions differ by less are those of one plane.
+// Normals whose directions differ by less than this belong to parallel planes.
 constexpr double kParallel = 1e-6;
 
 int first_index(double half_m, double phase_m, double spacing_m) {
@@ -47,9 +47,9 @@ int columns(const FlatPanel& panel, const PanelGrid& grid) {
 
 namespace {
 
-// True if the way from p to its nearest point q on the panels is a combination of the normals of the panels
-// that contain q: p lies over the inside of a panel, or over an edge or corner at which panels meet. False if
-// p lies beyond a border that no other panel continues.
+// Returns true if the vector from the nearest point q on the panels to p is a combination of the normals of
+// the panels that contain q: p lies over the inside of a panel, or over an edge or corner at which panels
+// meet. Returns false if p lies beyond a border that no other panel continues.
 bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Vec3& q) {
   Vec3 rest = p - q;  // p - q without its components along those normals
   std::array<Vec3, 3> axes;

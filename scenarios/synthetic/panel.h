@@ -16,12 +16,11 @@ struct FlatPanel {
   double half_u_m = 0.05, half_v_m = 0.05;
 
   Vec3 v() const { return normal.cross(u); }
-  // The point of the rectangle nearest to p.
+  // Returns the point of the rectangle nearest to p.
   Vec3 nearest(const Vec3& p) const;
 };
 
-// Coordinates of the points along u and v, from the centre, are whole multiples of the spacing plus the
-// phase.
+// The points' coordinates along u and v, from the centre, are whole multiples of the spacing plus the phase.
 struct PanelGrid {
   double spacing_m = 0.003;
   double phase_u_m = 0, phase_v_m = 0;
@@ -33,10 +32,10 @@ void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid);
 // Number of points in such a row.
 int columns(const FlatPanel& panel, const PanelGrid& grid);
 
-// Distance to the nearest of the panels, m, positive on the side that its normal points to. If several panels
-// are equally near, the side is that of the panel whose plane is farthest from p. Infinite without panels.
-// Beyond a border that no other panel continues there is no back: the distance to the border is positive in
-// front of the plane that ends there, and the result is NaN behind it.
+// Returns the distance to the nearest of the panels, m, positive on the side that its normal points to. If
+// several panels are equally near, the panel whose plane is farthest from p determines the side. Infinite
+// without panels. A border that no other panel continues has no back side: beyond it, the distance to the
+// border is positive in front of the plane that ends there, and the result is NaN behind that plane.
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p);
 
 }  // namespace remote_touch

@@ -17,10 +17,10 @@ class PanelScene : public Scenario {
   }
   // The panels as they are when the frame is captured.
   PointCloud cloud(int frame) const override;
-  // Distance to the panels as they are at that time, also between frames; NaN behind a panel and beyond its
-  // border.
+  // Distance to the panels at time_s, also between frames. NaN for a position that is behind a panel and
+  // beyond its border.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Known for a scene with one panel.
+  // Returns the normal of a scene with one panel. Empty for other scenes.
   std::optional<Vec3> plane_normal(double time_s) const override;
 
   virtual std::vector<FlatPanel> panels(double time_s) const = 0;

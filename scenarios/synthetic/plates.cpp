@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// A row of the list.
+// Columns of Settings::plates.
 struct PlateColumn {
   enum { x, y, z, size_x, size_z, velocity_x, velocity_y, from_s, until_s };
 };

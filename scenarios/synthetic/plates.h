@@ -1,5 +1,5 @@
-// Flat plates that a camera sees from above, where they hide each other: a nearer object passes or enters, or
-// two objects move apart.
+// Flat plates that hide each other from a camera above them: a nearer object passes or enters, or two objects
+// move apart.
 #pragma once
 
 #include <string>
@@ -20,8 +20,8 @@ class Plates final : public Scenario {
   struct Settings {
     Grid grid{80, 80, 0.0015, 0, 0};
     double frame_rate_hz = 30;
-    // Rows of x, y, z of the centre, size along x and along z, velocity along x and along y, and when the
-    // plate starts and stops to move.
+    // One row for each plate: x, y and z of the centre, size along x and along z, velocity along x and along
+    // y, and the times at which the plate starts and stops moving.
     std::vector<double> plates{0, 0, 0, 0.2, 0.2, 0, 0, 0, 0};
     double max_height_m = 10;
     double noise_sigma_m = 0;
@@ -33,12 +33,12 @@ class Plates final : public Scenario {
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
-  // The motion of each plate that moves, in the order of their ends.
+  // Returns the motion of each plate that moves, in the order of their end times.
   std::vector<Phase> phases() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Distance to the first plate, positive above it. Beyond its border: the distance to the border above the
-  // plane, and NaN below it.
+  // Distance to the first plate, positive above it. Beyond its border it is the distance to the border if p
+  // is above the plane, and NaN if p is below it.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.true_motion ? time_s : captured_s(newest_frame(time_s));

@@ -60,7 +60,7 @@ Shape::Shape(const Settings& settings, const Grid& grid)
   if (x1_ > 0 || x0_ >= 0) add_flank(std::max(0.0, x0_), x1_, slope_);
 }
 
-// The part from x0 to x1 of the plane y = slope x.
+// Adds the part from x0 to x1 of the plane y = slope x.
 void Shape::add_flank(double x0, double x1, double slope) {
   const double x = 0.5 * (x0 + x1), along = std::sqrt(1 + slope * slope);
   FlatPanel flank;
@@ -130,7 +130,8 @@ double Shape::signed_distance(const Vec3& p_S) const {
   const bool over = p_S.x() >= x0_ && p_S.x() <= x1_ && p_S.z() >= z0_ && p_S.z() <= z1_;
   if (settings_.kind == Kind::flat && over) return p_S.y();  // exact to the last bit
   const double distance_m = remote_touch::signed_distance(flanks_, p_S);
-  // Deep below a ridge its lower borders are nearest, and the ridge still covers p.
+  // Deep below a ridge, one of its lower borders is nearest. p is still below the ridge, so the sign is
+  // known.
   return std::isnan(distance_m) && covers(p_S) ? -distance_to_flanks(p_S) : distance_m;
 }
 
@@ -138,15 +139,15 @@ bool Shape::covers(const Vec3& p_S) const {
   return grid_.covers(p_S.x(), p_S.z());
 }
 
-// Distance to the nearest flank, without a sign.
+// Returns the distance to the nearest flank, without a sign.
 double Shape::distance_to_flanks(const Vec3& p_S) const {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const FlatPanel& flank : flanks_) nearest_m = std::min(nearest_m, (p_S - flank.nearest(p_S)).norm());
   return nearest_m;
 }
 
-// Above the plane through the ball's middle its skin is nearest, below it the rim: the dome covers only what
-// lies within the rim.
+// Above the plane through the ball's centre, the nearest point is on the half ball. Below it, the nearest
+// point is on the rim, and the dome covers only positions within the rim.
 double Shape::distance_to_dome(const Vec3& p_S) const {
   const double r = settings_.radius_m, y = p_S.y() + r;
   const double beside = std::sqrt(p_S.x() * p_S.x() + p_S.z() * p_S.z());
@@ -207,15 +208,16 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
   return has_foot || covers(p_S) ? -distance : kUnknown;
 }
 
-// Half the derivative along x of the squared distance from p to the wave at x, and the derivative of that.
+// Returns half the derivative along x of the squared distance from p to the wave at x, and the derivative of
+// that half along x.
 Shape::DistanceSlope Shape::distance_along_wave(const Vec3& p_S, double x) const {
   const Wave w = wave(x);
   const double up = w.height_m - p_S.y();
   return {x - p_S.x() + up * w.slope, 1 + w.slope * w.slope + up * w.bend_per_m};
 }
 
-// Finds the x at which that slope is 0, between low, where the distance falls, and high, where it rises. Uses
-// Newton's method, and halves the interval if a step would leave it.
+// Finds the x at which the slope of the distance is 0, between low, where the distance falls, and high, where
+// it rises. Uses Newton's method, and halves the interval if a step would leave it.
 double Shape::foot_on_wave(const Vec3& p_S, double low, double high) const {
   constexpr int kMaxSteps = 60;
   double x = 0.5 * (low + high);

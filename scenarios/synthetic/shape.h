@@ -10,10 +10,10 @@
 
 namespace remote_touch {
 
-// y = height(x, z) in S, metres, y up; the top of a ridge, corner or sphere, the bottom of a valley and a
-// zero of the ripple lie at the origin. Only sphere and corner vary along z. The surface reaches from the
-// first to the last point of a grid; that of the sphere is the upper half of a ball, and the three faces of
-// the corner reach on without end, however large the grid is.
+// y = height(x, z) in S, metres, y up. The top of a ridge, corner or sphere, the bottom of a valley and a
+// zero of the ripple lie at the origin. Only sphere and corner vary along z. The surface extends from the
+// first to the last point of a grid, with two exceptions for any grid: a sphere is the upper half of a ball,
+// and the three faces of a corner are unbounded.
 class Shape {
  public:
   enum class Kind { flat, ridge, valley, sphere, ripple, corner };
@@ -28,19 +28,19 @@ class Shape {
 
   Shape(const Settings& settings, const Grid& grid);
 
-  // Height, continued beyond the border: flanks and waves as they are, a sphere by the plane through its
-  // centre.
+  // Height, continued beyond the border: flanks and waves by their own formula, a sphere by the plane through
+  // its centre.
   double height(double x, double z) const;
   // Point that a sensor above measures at (x, z); NaN in all three coordinates beside a sphere.
   Vec3 point(double x, double z) const;
   // Unit normal, upwards; on a crease the normal of one of its sides.
   Vec3 normal(double x, double z) const;
-  // Distance to the surface, positive above. Beyond the border it is the distance to the border, positive
+  // Distance to the surface, positive above it. Beyond the border it is the distance to the border, positive
   // above the plane that ends there (sphere: the plane through its centre; ripple: the height at the border).
-  // NaN below that plane, where there is neither a front nor a back: p is not below the surface, and the
-  // border is the nearest part of it. For the corner, whose faces go on, NaN inside it if neither p nor the
-  // nearest point is within the grid. Exact; for the ripple by a search along x, within 1e-6 m where its
-  // curvature is about that of a circle around p.
+  // NaN below that plane if p is not below the surface and the border is the nearest part of it: p is then
+  // neither in front of the surface nor behind it. The corner has no border: inside it the distance is NaN if
+  // neither p nor the nearest point is within the grid. The distance is exact. For the ripple it is found by
+  // a search along x, within 1e-6 m where the ripple's curvature is about that of a circle around p.
   double signed_distance(const Vec3& p_S) const;
 
  private:

@@ -44,7 +44,7 @@ class ShapeMotion {
   ShapePose of_frame(int frame) const;
   ShapePose at(double time_s) const;
 
-  // Number of frames up to the first after the lift.
+  // Number of frames up to and including the first one at rest after the lift.
   int lift_frames() const { return lift_.frame_count(frame_rate_hz_); }
   // The phases of the lift, then one phase for all other motion, which never ends.
   std::vector<Phase> phases() const;

@@ -1,5 +1,5 @@
-// Two parallel walls. A bar rotated about y between them stops at an angle that is known in closed form: one
-// of 80 x 10 mm in a slot of 40 mm at 22.62 degrees, its corners at x = +-35 mm.
+// Two parallel walls. A bar between them that is rotated about y stops at an angle that is known in closed
+// form: a bar of 80 x 10 mm in a slot of 40 mm stops at 22.62 degrees, with its corners at x = +-35 mm.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ class Slot final : public PanelScene {
     double width_m = 0.040;
     double length_m = 0.12;
     double height_m = 0.06;
-    // Columns at even millimetres: +-35 mm lie half way between two, the worst place for a corner.
+    // The columns are at even millimetres: +-35 mm is half way between two, the worst position for a corner.
     double spacing_m = 0.002;
     double phase_m = 0;
   };

@@ -21,8 +21,8 @@ Parameters parameters(TriangleWave::Settings& s) {
 TriangleWave::TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings), key_(key), kernels_(kernels) {}
 
-// Corners every half period from the grid's start, at the envelope's height there: 0, +, -, +, ...; straight
-// between.
+// The corners are at every half period from the grid's start, at the envelope's height there: 0, +, -, +, ...
+// The wave is straight between them.
 double TriangleWave::surface_height(double x, double, double) const {
   const double start = settings_.grid.x(0), length = settings_.grid.x(settings_.grid.columns - 1) - start;
   const double half = 0.5 * settings_.period_m;

@@ -26,8 +26,8 @@ class TriangleWave final : public Scenario {
   int frame_count() const override { return 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Distance to the wave, which continues along z. NaN below it if p lies beyond the border along z, or
-  // beyond an end along x that is the nearest part of the wave.
+  // Distance to the wave, positive above it; the wave is continued along z. NaN below the wave if p lies
+  // beyond the border along z, or beyond an end along x that is the nearest part of the wave.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 

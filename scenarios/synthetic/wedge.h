@@ -1,5 +1,5 @@
-// Two walls that lean apart and close on a tool between them, until no motion obeys all constraints: (6.8)
-// infeasible.
+// Two walls that lean apart and close on a tool between them, until no motion obeys all constraints and (6.8)
+// is infeasible.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ class Wedge final : public PanelScene {
   Wedge(const Settings& settings, const NoiseKey&, const Kernels&);
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override { return frame_count_; }
-  // The closing and the opening; none if the walls always have the same distance.
+  // Returns the closing and the opening of the walls. Empty if the gap is constant.
   std::vector<Phase> phases() const override;
   std::vector<FlatPanel> panels(double time_s) const override;  // wall at -z, then wall at +z
   // Distance between the lower edges of the walls, m; linear in time while it changes.

@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// True if the file's extension is the ending (lower case, with its dot), in small or capital letters: .png
-// and .PNG.
+// Returns true if the file's extension is the ending (lower case, with its dot), in small or capital letters:
+// .png and .PNG.
 inline bool has_ending(const std::filesystem::path& file, std::string_view ending) {
   const std::string extension = file.extension().string();
   const auto same = [](char a, char b) {
@@ -18,8 +18,8 @@ inline bool has_ending(const std::filesystem::path& file, std::string_view endin
   return std::equal(extension.begin(), extension.end(), ending.begin(), ending.end(), same);
 }
 
-// True if the name begins with a dot. Such files are not part of a recording: other systems write ._0001.png
-// beside 0001.png.
+// Returns true if the name begins with a dot. Such files are not part of a recording: other systems write
+// ._0001.png beside 0001.png.
 inline bool is_hidden(const std::filesystem::path& file) {
   return file.filename().string().starts_with('.');
 }

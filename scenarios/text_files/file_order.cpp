@@ -12,7 +12,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The digits at the beginning, and how many there are.
+// Returns the digits at the beginning of the text.
 std::string_view digits_of(std::string_view text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
   return text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -22,7 +22,7 @@ std::string_view without_zeros(std::string_view digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
 }
 
-// Below 0, 0 or above 0, for any number of digits.
+// Compares numbers with any number of digits. Returns a value below 0, 0 or above 0.
 int compare_numbers(std::string_view a, std::string_view b) {
   a = without_zeros(a), b = without_zeros(b);
   if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// Sees every value and key while it is parsed.
+// Checks every value and key while the text is parsed.
 class Watch {
  public:
   explicit Watch(const std::string& label) : label_(label) {}

@@ -15,13 +15,13 @@ inline constexpr int kMaxJsonDepth = 64;  // deeper values would exhaust the sta
 // Throws InputError, about the label, for text that is not JSON, nests deeper than kMaxJsonDepth, or has a
 // key twice in one object.
 Json parse_json(const std::string& text, const std::string& label);
-// None for text that is not JSON; otherwise throws as parse_json().
+// Returns none for text that is not JSON. Otherwise returns or throws as parse_json().
 std::optional<Json> json_or_none(const std::string& text, const std::string& label);
 
-// The content of a file; null if it is absent or not JSON.
+// Returns the content of a file, or null if the file cannot be read or parse_json() would refuse it.
 Json json_in_file(const std::filesystem::path& file);
 
-// The value as JSON, for a message: shortened, and always safe to print.
+// Returns the value as JSON, for a message: shortened, and always safe to print.
 std::string shown(const Json& value);
 
 }  // namespace remote_touch

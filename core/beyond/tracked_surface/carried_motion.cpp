@@ -12,7 +12,8 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Takes a displacement (t, lever w) of a body at one place to that of the same body at another, `by` from it.
+// Converts a motion (t, lever w) of a body about one position to the same motion about another, `by` away
+// from it.
 Matrix6 transport(const Vec3& by, double lever_m) {
   Matrix6 m = Matrix6::Identity();  // t' = t + w x by
   m.block<3, 3>(0, 3) << 0, by.z(), -by.y(), -by.z(), 0, by.x(), by.y(), -by.x(), 0;
@@ -38,7 +39,7 @@ CarriedMotion::Result CarriedMotion::about(const Vec3& about_W, const Vector6& e
   Result result;
   if (empty()) return result;
   const Vec3 middle = sum_m_ / weight_;
-  // Rows about the first place become rows about the middle: row . x = row . T^-1 x'.
+  // Rows about the first position are converted to rows about the mean: row . x = row . T^-1 x'.
   const Matrix6 back = transport(-middle, lever_m_);
   const Matrix6 a = back.transpose() * rows_ * back / weight_;
   const Vector6 b = back.transpose() * right_ / weight_;

@@ -16,8 +16,9 @@ constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
 
 constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
 constexpr double kConfidence = 3;                // half width of an interval, in standard errors
-constexpr double kTooUnsure = 0.25;              // larger standard errors determine no height, contact radii
-constexpr double kMinNoise = 0.01;               // deviations that the planes cannot follow count as noise
+constexpr double kTooUnsure = 0.25;              // a larger standard error does not limit wider windows,
+                                                 // contact radii
+constexpr double kMinNoise = 0.01;               // smallest noise, for deviations that planes cannot follow
 constexpr double kMinWindowPoints = 5;           // minimum number of points in a window
 
 int corner(double coordinate) {
@@ -89,7 +90,7 @@ PlaneFit HeightFit::plane_around(double u, double v, double half_side) const {
 
 double HeightFit::noise() const {
   constexpr double kEnough = 9, kMinOfBlock = 6, kLow = 0.4;
-  // The variance at that quantile in units of the mean variance, for a chi square with about 8 degrees of
+  // The ratio of the variance at that quantile to the mean variance, for a chi square with about 8 degrees of
   // freedom.
   constexpr double kOfMean = 0.85;
   double covered = 0;
@@ -131,7 +132,7 @@ void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const 
     const PlaneFit fit = plane(window(2 * i, 2 * j, half), u, v);
     if (!fit.valid) continue;
     const double error = sigma * std::sqrt(fit.variance);
-    if (node.known && error > node.error) continue;  // the window is one-sided: at the border of the points
+    if (node.known && error > node.error) continue;  // wider but less certain: beyond the points
     if (node.known && node.error > kTooUnsure) low = -kInfinity, high = kInfinity;
     low = std::max(low, fit.height - kConfidence * error);
     high = std::min(high, fit.height + kConfidence * error);

@@ -1,4 +1,4 @@
-// Fit of the heights of a sheet to points with noise: local planes of least squares.
+// Fit of the heights of a sheet to noisy points: local planes of least squares.
 #pragma once
 
 #include <array>
@@ -13,31 +13,33 @@ namespace remote_touch {
 // A plane through the points of a window.
 struct PlaneFit {
   double height = 0, slope_u = 0, slope_v = 0;  // values at the queried position
-  double variance = 0;                          // variance of the height, in units of the noise's variance
-  double residual = 0;                          // sum of squares
+  double variance = 0;                          // variance of the height divided by the variance of the noise
+  double residual = 0;                          // sum of squared residuals
   double count = 0;                             // number of points
-  bool valid = false;                           // the points do not lie on a line
+  bool valid = false;                           // false: too few points, or all nearly on a line
 };
 
-// Sums over the members of a patch, from which the sums over any window of whole cells follow in constant
+// Sums over the members of a patch. The sums over any window of whole cells follow from them in constant
 // time.
 class HeightFit {
  public:
   HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
-  // Sums over the members of points, which all lie on the map's square, after the trend is subtracted: planes
-  // are fitted to the rest.
+  // Computes the sums over the members of points after the trend is subtracted; planes are fitted to the
+  // rest. pre: the members lie on the map's square.
   void take(const PatchPoints& points, const Trend& trend = {});
 
-  // half_side of the window, in contact radii, is rounded to whole cells.
+  // Returns the plane through the points of a square window around (u, v). half_side, in contact radii, is
+  // rounded to whole cells.
   PlaneFit plane_around(double u, double v, double half_side) const;
-  // Standard deviation of the heights about the planes of small blocks, a low quantile over the blocks, so
-  // that blocks with edges have no effect.
+  // Returns the standard deviation of the heights about the planes of small blocks; 0 if no block has enough
+  // points. It is a low quantile over the blocks, so that blocks with edges have no effect.
   double noise() const;
   // Sets each node of the map to the plane of the widest window that differs from the narrower ones by no
   // more than noise of standard deviation sigma explains (Lepski's rule, by intersecting confidence
   // intervals: Goldenshluger and Nemirovski 1997). Windows too narrow to determine a height are skipped.
   void fit(double sigma, HeightMap& map) const;
-  // Number of members in a square of one contact radius, the median over the squares that have any.
+  // Returns the number of members per square of one contact radius: the median over the squares that have
+  // any.
   double typical_density() const { return density_; }
 
  private:

@@ -15,7 +15,7 @@ const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
   return node(along(u), along(v));
 }
 
-// The height at a corner between nodes is the mean of the planes of the known nodes beside it.
+// The height at a corner is the mean of the planes of the known nodes next to it; NaN if there is none.
 void HeightMap::fill_cells() {
   struct Mean {
     double sum = 0, count = 0;
@@ -25,7 +25,7 @@ void HeightMap::fill_cells() {
     }
     double value() const { return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN(); }
   };
-  constexpr double kUp = kCell, kDown = -kCell;  // offsets from the nodes before and behind
+  constexpr double kUp = kCell, kDown = -kCell;  // offsets of a corner from the nodes before and after it
   for (int j = 0; j < kCorners; ++j) {
     const bool between = j % 2 != 0;
     const Node *low = &node(0, j / 2), *high = &node(0, (j + 1) / 2);

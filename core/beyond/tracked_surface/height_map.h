@@ -9,8 +9,8 @@
 namespace remote_touch {
 
 // Heights over the square |u|, |v| <= kHalf around the patch's origin, in contact radii. Nodes, one contact
-// radius apart, carry local planes; corners of cells between them carry heights, and within a cell the map is
-// bilinear, so it is continuous.
+// radius apart, hold local planes. The corners of the cells between them hold heights. The map is bilinear in
+// each cell, so it is continuous.
 class HeightMap {
  public:
   static constexpr double kHalf = 8;
@@ -22,38 +22,39 @@ class HeightMap {
   struct Node {
     double height = 0, slope_u = 0, slope_v = 0;
     double error = 0;      // standard error of the height
-    bool known = false;    // there is a plane
-    bool covered = false;  // the sheet reaches this node; else the plane continues it beyond its border
+    bool known = false;    // true: the node has a plane
+    bool covered = false;  // true: the sheet reaches this node; false: the plane only extends it
   };
   static double node_at(int i) { return i * kNodePitch - kHalf; }
   Node& node(int i, int j) { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
   const Node& node(int i, int j) const { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
   const Node& nearest_node(double u, double v) const;
-  // Must be called after nodes were changed.
+  // Computes the heights of the corners. Must be called after nodes were changed.
   void fill_cells();
 
-  // Sets the map to a plane that is known within this number of contact radii of the origin.
+  // Sets the map to a plane that is known within `radius` contact radii of the origin.
   void set_plane(double height, double slope_u, double slope_v, double radius);
-  // Continues the map by this number of contact radii beyond its border, as planes.
+  // Extends the map by `rings` contact radii beyond its border, with planes.
   void extend(int rings);
-  // Reduces the change since an earlier map of the same patch to the part that the nodes' errors do not
-  // explain. Noise then moves the map much less from frame to frame, and a motion that is well above it
-  // appears hardly later.
+  // Reduces the change since an earlier map of the same patch to the part that the errors of the nodes do not
+  // explain. Then noise moves the map much less from frame to frame, and a motion well above the noise is
+  // hardly delayed.
   void steady(const HeightMap& earlier);
   // Adds a plane: the motion and rotation of the sheet.
   void add_plane(double height, double slope_u, double slope_v);
 
-  // Height at a position; NaN where no height is known. Beyond the map's border, it is that of the nearest
-  // position on it.
+  // Returns the height at a position; NaN if no height is known there. A position beyond the map's border has
+  // the height of the nearest position on the border.
   double height(double u, double v) const;
-  // The same heights, for kernels.
+  // Returns the same heights for the kernels.
   HeightGrid grid() const { return {corner_.data(), kCells, kHalf, 1 / kCell, kLast}; }
-  // Slopes of the cells; NaN where no height is known.
+  // The slopes at a position, from the heights half a cell away on either side; NaN if one of these is not
+  // known.
   struct Slopes {
     double u, v;
   };
   Slopes slopes(double u, double v) const;
-  // Mean slopes of the nodes that the sheet covers within that distance.
+  // Returns the mean slopes of the nodes within `radius` that the sheet covers; slopes() if there are none.
   Slopes mean_slopes(double u, double v, double radius) const;
   bool covers(double u, double v) const;
 

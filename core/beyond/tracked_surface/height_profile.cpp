@@ -20,7 +20,7 @@ double HeightProfile::max() const {
   return bins_ == 0 ? 0 : *std::max_element(count_.begin(), count_.begin() + bins_);
 }
 
-// A box twice, which is a triangle.
+// Applies a box filter twice, which is a triangular filter.
 HeightProfile HeightProfile::smoothed(double sigma) const {
   HeightProfile result = *this;
   const int half = std::max(1, static_cast<int>(std::round(1.2 * sigma / kBin)));
@@ -39,9 +39,9 @@ HeightProfile HeightProfile::smoothed(double sigma) const {
   return result;
 }
 
-// All shifts together, bin by bin, so that empty bins cost nothing.
+// Sums for all shifts together, bin by bin, so that empty bins cost nothing.
 double HeightProfile::shift_of(const HeightProfile& other, double reach) const {
-  constexpr double kNearness = 0.1;  // so much less counts what is at the end of the reach
+  constexpr double kNearness = 0.1;  // relative reduction of a sum at the end of the reach
   const int max = std::min(static_cast<int>(std::round(reach / kBin)), kMaxBins);
   const int offset = (other.bins_ - bins_) / 2;
   std::array<double, 2 * kMaxBins + 1> products;
@@ -49,7 +49,7 @@ double HeightProfile::shift_of(const HeightProfile& other, double reach) const {
   for (int b = 0; b < bins_; ++b) {
     const double here = count(b);
     if (here == 0) continue;
-    const int middle = b + offset;  // the same height in the other
+    const int middle = b + offset;  // bin of the same height in the other profile
     for (int k = std::max(-max, -middle); k <= std::min(max, other.bins_ - 1 - middle); ++k)
       products[static_cast<std::size_t>(max + k)] += here * other.count(middle + k);
   }

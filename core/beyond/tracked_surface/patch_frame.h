@@ -8,17 +8,18 @@
 
 namespace remote_touch {
 
-// A position in a patch: u and v along it, h along the normal, in contact radii.
+// A position in a patch: u and v along it, h along its normal, in contact radii.
 struct PatchPlace {
   double u, v, h;
 };
 
-// Coordinates are rounded to multiples of 2^-12 contact radii, so that sums of them, of their squares and
-// products are exact for any number of points that a patch can hold: no result depends on the points' order.
+// Coordinates are rounded to multiples of 2^-12 contact radii. So sums of the coordinates, of their squares
+// and of their products are exact for any number of points that a patch can hold, and no result depends on
+// the order of the points.
 class PatchFrame {
  public:
   PatchFrame() = default;
-  // The normal is a unit vector; the other axes follow from it alone.
+  // The normal is a unit vector. The other two axes are computed from it alone.
   PatchFrame(const Vec3& origin_W, const Vec3& normal_W, double contact_radius_m);
 
   PatchPlace place(const Vec3& p_W) const {
@@ -30,7 +31,7 @@ class PatchFrame {
   }
   const Vec3& origin_W() const { return origin_W_; }
   const Vec3& normal_W() const { return n_W_; }
-  // The unit normal of a surface that rises by these slopes along u and v.
+  // Returns the unit normal of a surface that rises with these slopes along u and v.
   Vec3 normal_W(double slope_u, double slope_v) const {
     return (n_W_ - slope_u * u_W_ - slope_v * v_W_).normalized();
   }

@@ -5,7 +5,7 @@
 namespace remote_touch {
 
 void PatchPoints::reserve(std::size_t points) {
-  const std::size_t capacity = points + kLanes;  // the padding of gathered points is looked at too
+  const std::size_t capacity = points + kLanes;  // the kernels also process the padding of the points
   for (Buffer<double>* column : {&u_, &v_, &h_, &residual_}) column->grow(capacity);
   source_.grow(capacity), member_.grow(capacity), bin_.grow(capacity);
 }

@@ -11,32 +11,35 @@
 
 namespace remote_touch {
 
-// Columns are allocated by reserve() alone.
+// Only reserve() allocates.
 class PatchPoints {
  public:
   explicit PatchPoints(const Kernels& kernels) : kernels_(kernels) {}
   void reserve(std::size_t points);
-  // The gathered points of a region; no members of the sheet yet. pre: reserve() for their frame.
+  // Replaces the points with the gathered points of a region; none is a member of the sheet yet. pre:
+  // reserve() was called for their frame.
   void take(const GatheredPoints& gathered, const PatchRegion& region);
-  // Or add points one by one, as members or not; these have no source.
+  // clear() and add() are the alternative to take(): they add points one by one, as members or not. These
+  // points have no source.
   void clear() { count_ = 0; }
   void add(const PatchPlace& place, bool is_member);
-  // Residual: how far each point lies above the height that a map predicts; NaN where it predicts none.
+  // Computes the residual of each point: its height above the height that a map predicts; NaN if the map
+  // predicts none.
   void set_residuals(const HeightMap& map);
 
   std::size_t size() const { return count_; }
   PatchPlace place(std::size_t i) const { return {u_[i], v_[i], h_[i]}; }
-  // Its row in the gathered points.
+  // Returns the row of the point in the gathered points.
   std::uint32_t source(std::size_t i) const { return source_[i]; }
   bool is_member(std::size_t i) const { return member_[i] != 0; }
   void set_member(std::size_t i, bool member) { member_[i] = member; }
   double residual(std::size_t i) const { return residual_[i]; }
 
-  // Profile of the residuals of points within reach of a place, measured along the patch.
+  // Returns the profile of the residuals of the points within reach of a position, measured along the patch.
   HeightProfile profile_near(const PatchPlace& place, double reach, double half_range) const;
-  // Sums of the residuals near a plane.
+  // Returns sums over the points whose residuals are near a plane.
   PlaneSums sums_near(const NearPlane& plane) const;
-  // Sums of the members' heights.
+  // Returns sums over the members within radius of the origin, with their heights.
   QuadraticSums sums_of_quadratic(double radius) const;
 
  private:
@@ -47,7 +50,7 @@ class PatchPoints {
   Buffer<double> u_, v_, h_, residual_;
   Buffer<std::uint32_t> source_;
   Buffer<std::uint8_t> member_;
-  Buffer<std::int32_t> bin_;  // work of profile_near()
+  Buffer<std::int32_t> bin_;  // work buffer of profile_near()
 };
 
 }  // namespace remote_touch

@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// A cylinder about the patch's normal, in contact radii.
+// A cylinder about the patch's normal; radius and half height in contact radii.
 struct PatchRegion {
   PatchFrame frame;
   double radius = 0, half_height = 0;
@@ -17,7 +17,7 @@ struct PatchRegion {
     return p.u * p.u + p.v * p.v < radius * radius && std::abs(p.h) <= half_height;
   }
   bool holds(const Ball& ball) const;
-  // The bounding ball, m, world frame.
+  // Returns the bounding ball, m, world frame.
   Ball around() const {
     return {frame.origin_W(), std::hypot(radius, half_height) * frame.unit_m() * (1 + 1e-9)};
   }

@@ -25,8 +25,8 @@ double gather_near(const NeighbourSearch& frame, const Vec3& p_W, double unit_m,
   return reach;
 }
 
-// (4.1) over a wide reach, with the Wendland function of the distance itself. The terms are rounded, so that
-// their sum does not depend on their order.
+// Returns the unit normal (4.1) over a wide reach, with the Wendland function of the distance itself; zero if
+// it is not determined. The terms are rounded, so that their sum does not depend on their order.
 Vec3 wide_normal(const GatheredPoints& gathered, const Vec3& p_W, double reach_m) {
   Vec3 sum = Vec3::Zero();
   const PointsView all = gathered.view();
@@ -41,7 +41,8 @@ Vec3 wide_normal(const GatheredPoints& gathered, const Vec3& p_W, double reach_m
   return length > 1e-6 ? Vec3(sum / length) : Vec3::Zero();
 }
 
-// Points around the foot of the perpendicular, in a circle wide enough to hold some.
+// Fills the profile with the heights of the points around the foot of the perpendicular, in a circle that is
+// wide enough to hold some. Returns the radius of the circle; 0 if it holds fewer than three points.
 double profile_of_column(const PatchPoints& points, double half_range, HeightProfile& profile) {
   for (double radius = 2.5;; radius *= 1.4) {
     profile.clear(half_range);
@@ -54,7 +55,8 @@ double profile_of_column(const PatchPoints& points, double half_range, HeightPro
   }
 }
 
-// The height of the mode nearest to the proxy's; small ones do not count.
+// Returns the height of the mode that is nearest to the height of the proxy. Small modes are ignored. NaN:
+// none.
 double nearest_mode(const HeightProfile& smooth, double proxy_height) {
   constexpr double kMinFraction = 0.4;
   const double min = kMinFraction * smooth.max();

@@ -1,4 +1,4 @@
-// Finding the sheet of surface that lies nearest to a proxy, from one frame alone.
+// Search for the sheet of surface that is nearest to a proxy, in one frame alone.
 #pragma once
 
 #include <memory>
@@ -13,19 +13,20 @@ namespace remote_touch {
 
 struct FoundSheet {
   PatchFrame frame;  // its origin lies on the sheet, its normal points to the proxy's side
-  double sigma = 0;  // noise, contact radii
-  double known = 0;  // radius around the origin in which it was seen, contact radii
+  double sigma = 0;  // standard deviation of the noise, contact radii
+  double known = 0;  // radius around the origin in which the sheet was seen, contact radii
 };
 
-// Scratch memory of a search.
+// Work buffers of a search.
 struct AcquisitionBuffers {
   GatheredPoints& gathered;
   PatchPoints& points;
   HeightFit& fit;
 };
 
-// Takes the nearest mode of the heights along a normal: first the normal (4.1) over a wide reach, then that
-// of the mode itself. None: too few points, or no surface that faces the proxy.
+// Searches for the mode of the heights along a normal that is nearest to the proxy. The first normal is (4.1)
+// over a wide reach; the next ones are those of the plane through the points of the mode. Returns no sheet if
+// there are too few points, or if no surface faces the proxy.
 std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
                                      double contact_radius_m, const Kernels& kernels,
                                      const AcquisitionBuffers& buffers);

@@ -9,21 +9,21 @@ namespace remote_touch {
 
 namespace {
 
-// Lengths in units of the patches (contact radii) unless they say otherwise.
-constexpr double kGroupRadius = 6.5;  // radius of the group of the tool's places for one patch
-constexpr double kShownBeyond = 0.8;  // points up to this distance around the tool must be in the patch
+// Lengths are in units of the patches (contact radii) unless the name has another unit.
+constexpr double kGroupRadius = 6.5;  // largest radius of a group of positions on the tool
+constexpr double kShownBeyond = 0.8;  // points up to this distance from the tool must be in the patch
 constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;      // motion of the tool until patches are queried anew
-constexpr double kOnSheet = 0.5;         // a contact further from a sheet does not belong to it
-constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
-constexpr double kSameDirection = 0.95;  // the same between contacts with a face
+                 kContactReach = 3;      // motion of the tool until patches are updated
+constexpr double kOnSheet = 0.5;         // largest distance of a contact from its sheet
+constexpr double kAlike = 0.7;           // minimum cosine between the normals of a contact and of its sheet
+constexpr double kSameDirection = 0.95;  // minimum cosine between the normals of contacts with one face
 constexpr int kEnoughAlike = 3;
-constexpr double kSameSheet = 0.85;  // the same between two patches of one sheet
-constexpr double kLeft = 2;          // a contact's patch ends when the tool is further away
+constexpr double kSameSheet = 0.85;  // minimum cosine between the normals of patches of one sheet
+constexpr double kLeft = 2;          // clearance of the tool at which the patch of a contact ends
 constexpr double kNearlyAsLow = 0.5;
-constexpr double kBehind = -0.5;      // a place deeper than this was not in front of the sheet
+constexpr double kBehind = -0.5;      // a position deeper than this was not in front of the sheet
 constexpr double kLever = 2;          // see CarriedMotion
-constexpr double kTouching_m = 5e-4;  // contacts further from the tool do not hold it
+constexpr double kTouching_m = 5e-4;  // contacts farther from the tool do not hold it
 
 Vec3 world(const ToolPose& pose, const Vec3& p_T) {
   return pose.p_W + pose.q_WT * p_T;
@@ -96,8 +96,8 @@ SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& po
   return low;
 }
 
-// Returns the position of a patch's proxy: a contact radius above the lowest place, over the middle of the
-// group if the sheet is seen there.
+// Returns the position of a patch's proxy. It is a contact radius above the lowest position on the tool, and
+// over the middle of the group if the sheet is seen there.
 ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, bool held) const {
   ProxyPlace place{world(pose, patch.middle_T), holds(patch, held)};
   if (!patch.tracker->tracks()) return place;
@@ -110,7 +110,7 @@ ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, b
   return place;
 }
 
-// Returns the number of the patch that a contact belongs to; -1: none.
+// Returns the index of the patch that explains a contact; -1 if none does.
 int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) const {
   const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
   double nearest = std::numeric_limits<double>::infinity();
@@ -132,8 +132,8 @@ void SheetPatches::count_contacts(const ToolHold& hold) {
   }
 }
 
-// Finds the deepest unexplained contact. Contacts at an edge of the tool have directions between those of its
-// faces: so several must have the same direction.
+// Finds the deepest unexplained contact and counts the contacts with its direction. Contacts at an edge of
+// the tool have directions between those of its faces, so a new patch needs several with the same direction.
 void SheetPatches::count_unexplained(const ToolHold& hold) {
   unexplained_.alike = 0, unexplained_.depth_m = -kTouching_m;
   for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
@@ -163,8 +163,8 @@ void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSea
                  patch.tracker->region().frame.normal_W().dot(patch.normal_W) >= kSameSheet;
 }
 
-// True if a sheet that was begun at a contact is a surface there and faces the tool. Points beside an edge of
-// the tool push it sideways, too, and so do those of a corner.
+// Returns true if a sheet that begins at a contact is really a surface there and faces the tool. Points
+// beside an edge or a corner of the tool also push the tool sideways, but are no such surface.
 bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
   constexpr double kAround = 3, kEnough = 0.4, kSteepest = 0.35;
   const HeightMap& map = tracker.map();
@@ -179,7 +179,7 @@ bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
          tracker.sigma() <= 1.4 * sigma + 0.05;
 }
 
-// Starts a patch at a contact that belongs to none of the tracked sheets.
+// Starts a patch at the unexplained contact, unless a tracked sheet is there.
 void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {
   const auto unused =
       std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
@@ -198,8 +198,8 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
   unused->in_use = !is_known && is_face(tracker, sigma);
 }
 
-// Computes the motion of the tool with the surfaces that hold it. Their velocity stays as it was, apart from
-// changes that noise does not explain.
+// Computes the motion of the tool with the surfaces that hold it. Their velocity is kept, apart from changes
+// that noise does not explain.
 ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
   CarriedMotion places(kLever * unit_m_);
   double interval_s = 0;
@@ -219,8 +219,8 @@ ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
   return {result.motion, rate_per_s_};
 }
 
-// Returns the displacement out of a sheet that swept over places of a tool that it does not hold. It is along
-// the sheet's normal, and no longer than the sheet's motion.
+// Returns the displacement that moves the tool out of a sheet that does not hold it but swept over it. It is
+// along the sheet's normal, and no longer than the motion of the sheet.
 Vec3 SheetPatches::out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const {
   const SheetTracker& tracker = *patch.tracker;
   double out = 0;
@@ -228,7 +228,7 @@ Vec3 SheetPatches::out_of_swept(const Patch& patch, const ToolPose& now, const T
     const Vec3 p_W = world(now, p_T), before_W = world(before, p_T);
     const PatchPlace p = tracker.region().frame.place(p_W);
     const double is = tracker.clearance(p_W), was = tracker.clearance(before_W) + tracker.moved(before_W);
-    if (!(is < 0) || !(was > kBehind) || !tracker.map().covers(p.u, p.v)) continue;  // NaN: not known
+    if (!(is < 0) || !(was > kBehind) || !tracker.map().covers(p.u, p.v)) continue;  // also skips NaN
     out = std::max(out, std::min(-is, was - is));
   }
   return out * unit_m_ * tracker.region().frame.normal_W();
@@ -293,7 +293,7 @@ Vector6 SheetPatches::requery(const ToolPose& pose, bool held) {
     patch.missing = false;
     note_query(patch, pose);
     if (!before.found || !tracker.changes_points() || before.clearance < kBehind) continue;
-    // Points without their noise lie elsewhere when the patch is seen from another position.
+    // Denoised points have other positions when the patch has moved, so the tool may now be inside the sheet.
     const Lowest after = lowest(patch, pose);
     const double in = std::min(-after.clearance, before.clearance - after.clearance);
     if (after.found && in > 0) out.head<3>() += in * unit_m_ * tracker.region().frame.normal_W();
@@ -317,8 +317,9 @@ bool SheetPatches::concerns(const BoundingSphere& sphere) const {
   });
 }
 
-// Moves a point onto the sheet that it lies nearest to. Where patches of that sheet overlap, the result lies
-// between them. Returns false for a stray point, which is not shown.
+// Moves a point onto the nearest sheet and sets its normal. If patches of that sheet overlap, the result is
+// their weighted mean. A point of another surface, or outside all patches, stays as it is. Returns false for
+// a stray point, which is not shown.
 bool SheetPatches::show(Point& point) const {
   const Vec3 measured_W = point.p_W;
   const auto each = [&](auto&& use) {
@@ -341,7 +342,8 @@ bool SheetPatches::show(Point& point) const {
   each([&](const SheetTracker& tracker, const ShownPoint& shown) {
     if (shown.kind != ShownPoint::Kind::sheet || shown.normal_W.dot(normal_W) < kSameSheet) return;
     const double w = shown.weight + 1e-9;
-    // If noise along the sheet disorders the points, their disks must be wider to leave no holes.
+    // Noise along the sheet makes the spacing of the points irregular, so their disks must be wider to leave
+    // no holes.
     const double spacing = 1 / std::sqrt(std::max(tracker.density(), 1.0));
     const double disorder = 1 + std::min(1.0, 2 * tracker.sigma() / spacing);
     sum.p_W += w * shown.p_W, sum.n_W += w * shown.normal_W;

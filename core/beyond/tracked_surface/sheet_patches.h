@@ -16,19 +16,20 @@
 
 namespace remote_touch {
 
-// Contact of the tool at the arrival of a frame.
+// The contact of the tool when a frame arrives.
 struct ToolHold {
   ToolPose pose;
   bool held = false;                      // points push the tool
-  std::span<const ToolContact> contacts;  // contacts near the tool, with the points of the frame before
+  std::span<const ToolContact> contacts;  // contacts near the tool, with the points of the previous frame
 };
 
-// Each group of places of the tool has one patch: its proxy is at the group's middle, a contact radius above
-// the lowest of the group's places. The other patches are for contacts that none of these explains, such as a
-// wall beside a tool on a floor: they begin there, and end when the tool has left them.
+// Each group of positions on the tool has one patch. The proxy of the patch is over the middle of the group,
+// a contact radius above the lowest position of the group. The other patches are for contacts that none of
+// these explains, such as a wall beside a tool on a floor. Another patch begins at its contact and ends when
+// the tool has left it.
 class SheetPatches final : public PointChange {
  public:
-  // unit_m: the contact radius of the trackers, their unit of length.
+  // unit_m: the contact radius of the trackers, which is their unit of length.
   SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches, const VoxelTool& tool,
                const Kernels& kernels);
   void reserve(std::size_t points);
@@ -42,20 +43,21 @@ class SheetPatches final : public PointChange {
   // Processes a new frame. Allocates nothing if reserve() was called for its size.
   Update on_frame(const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
                   double captured_s);
-  // True if the tool has left the middle of its patches.
+  // Returns true if the tool has moved too far from the position of the last query.
   bool must_requery(const ToolPose& pose) const;
-  // Searches for the sheets around the tool anew in the newest frame; drops those that are missing. Returns
-  // the displacement that brings the tool out of them.
+  // Updates the sheets around the tool from the points of the newest frame. A missing sheet is dropped, and
+  // its patch searches for a new one. Returns the displacement that moves the tool out of the sheets.
   Vector6 requery(const ToolPose& pose, bool held);
 
-  // True if points are shown at other positions than measured.
+  // Returns true if points are shown at other positions than the measured ones.
   bool changes_points() const;
-  // Radius around the tool's centre of mass within which points must be shown until the next requery.
+  // Returns the radius around the tool's centre of mass within which points must be shown until the next
+  // requery.
   double shown_radius_m() const { return shown_radius_m_; }
   bool concerns(const BoundingSphere& sphere) const override;
   bool show(Point& point) const override;
 
-  // Access for tests and pages.
+  // Access for tests and for pages that show the patches.
   std::size_t size() const { return patches_.size(); }
   bool tracks(std::size_t patch) const { return patches_[patch].in_use && patches_[patch].tracker->tracks(); }
   const SheetTracker& tracker(std::size_t patch) const { return *patches_[patch].tracker; }
@@ -65,8 +67,8 @@ class SheetPatches final : public PointChange {
     std::unique_ptr<SheetTracker> tracker;
     std::span<const Vec3> places_T;
     Vec3 middle_T = Vec3::Zero();
-    double reach_m = 0;     // distance that the tool may move before the patch shows too little
-    bool of_group = false;  // false: the patch of a contact
+    double reach_m = 0;     // distance that the tool may move until the next query
+    bool of_group = false;  // true: the patch of a group; false: of a contact
     bool in_use = false;
     Vec3 normal_W = Vec3::Zero();           // normal of that contact
     int contacts = 0;                       // number of contacts that it explains
@@ -77,8 +79,8 @@ class SheetPatches final : public PointChange {
   struct Lowest {
     bool found = false;
     double clearance = 0;  // height above the sheet, units
-    // The mean of the places that are nearly as low, or the lowest one if the sheet is not seen below the
-    // mean, as over a hole.
+    // The mean of the positions that are nearly as low. It is the lowest position itself if the sheet is not
+    // seen below the mean, for example over a hole.
     Vec3 p_W = Vec3::Zero();
   };
   bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
@@ -100,7 +102,7 @@ class SheetPatches final : public PointChange {
   const ToolPlaces places_;
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;
-  Vector6 rate_per_s_ = Vector6::Zero();  // rate of a held tool in the frame before
+  Vector6 rate_per_s_ = Vector6::Zero();  // rate of a held tool at the previous frame
   // The deepest contact that no patch explains, and the number of contacts with its direction. Another patch
   // begins there.
   struct {
@@ -108,7 +110,7 @@ class SheetPatches final : public PointChange {
     Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
     double depth_m = 0;
   } unexplained_;
-  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // one per contact; -1: none
+  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // per contact; -1: none
 };
 
 }  // namespace remote_touch

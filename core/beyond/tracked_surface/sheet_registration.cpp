@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// The plane of least squares through the residuals that lie within reach of the one before.
+// Returns the plane of least squares through the residuals that are within reach of the plane `before`. It is
+// only the mean height if there are few points.
 SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const SheetShift& before,
                    double reach) {
   constexpr double kSteepest = 0.5, kMinPoints = 12;

@@ -1,4 +1,4 @@
-// Registration of a frame's points to what the map of a sheet predicts.
+// Registration of the points of a frame to the map that predicts the sheet.
 #pragma once
 
 #include "core/beyond/tracked_surface/height_map.h"
@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// The sheet lies height + slope_u u + slope_v v above the prediction, in contact radii.
+// The height of the sheet above the prediction is height + slope_u u + slope_v v, in contact radii.
 struct SheetShift {
   double height = 0, slope_u = 0, slope_v = 0;
 };
@@ -15,8 +15,9 @@ struct SheetShift {
 // Only points within this distance of the proxy, along the patch, determine the shift; contact radii.
 inline constexpr double kRegistrationReach = 6;
 
-// The profiles give the shift, at most gate either way; a robust plane through the residuals refines it.
-// profile: of the frame before. pre: points.set_residuals() was called.
+// Computes the shift, at most gate in either direction, from the profiles of two frames. A robust plane
+// through the residuals then refines it. profile: that of the previous frame. pre: points.set_residuals() was
+// called.
 SheetShift register_sheet(const PatchPoints& points, const HeightProfile& profile, const PatchPlace& proxy,
                           double gate, double half_range, double sigma);
 

@@ -54,7 +54,7 @@ void SheetSearch::finish() {
 void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   if (!ball.centre.allFinite()) return;
   const Ball wide{ball.centre, ball.radius + max_fixture_radius_m()};
-  // Points lie in the cells of their rounded places.
+  // Points are sorted by their rounded positions, so the reach has a margin.
   const PatchPlace c = region_.frame.place(ball.centre);
   const double reach = wide.radius / region_.frame.unit_m() + 0x1p-10;
   const int first = cell_along(c.u - reach), last = cell_along(c.u + reach);

@@ -1,5 +1,5 @@
-// Search over the points of a frame that a tracked sheet shows: those of its patch without their noise, those
-// beyond unchanged.
+// Search over the points that a tracked sheet shows of a frame: the points in its region without their noise,
+// and the points outside it unchanged.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace remote_touch {
 
-// Filled anew for every frame, without allocating if reserve() was called for as many points. reserve() keeps
-// the points.
+// It is filled anew for every frame, without an allocation if reserve() was called for as many points.
+// reserve() keeps the points that it holds.
 class SheetSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
-  // Begins with no points in the region. buffer: scratch memory for points of the frame while gather() runs.
-  // It has columns for radius and stiffness even if the frame has none.
+  // Starts a new frame, with no points in the region. buffer: work buffer for points of the frame while
+  // gather() runs. It has columns for radius and stiffness even if the frame has none.
   void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
              std::shared_ptr<GatheredPoints> buffer);
-  // Adds a point of the frame, given by its row in `gathered`, at the position where it is to be shown.
+  // Adds a point of the frame, given by its row in `gathered`, at the position where it is shown.
   void add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row);
   void finish();
 

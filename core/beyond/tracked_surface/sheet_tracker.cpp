@@ -14,13 +14,13 @@ namespace remote_touch {
 
 namespace {
 
-// Lengths in contact radii.
-constexpr double kNoisePart = 3.5;  // points further from a sheet than this many sigma are not its noise
+// Lengths are in contact radii.
+constexpr double kNoisePart = 3.5;  // points farther from a sheet than this many sigma are not its noise
 constexpr double kThinnest = 0.5;   // half thickness of a sheet without noise
-constexpr double kLost = 0.2, kDoubtful = 0.5;  // shares of the members found again
-constexpr double kMiddle = 5;  // within this of the origin the patch shows all that the proxy touches
-constexpr double kResolution = 0x1p-12;  // resolution of positions: less is no motion
-constexpr double kTouching = 2.5;        // a proxy further away is held by another surface
+constexpr double kLost = 0.2, kDoubtful = 0.5;  // shares of members to find: at the widest gate; at others
+constexpr double kMiddle = 5;  // radius of the middle, in which the patch shows all that the proxy touches
+constexpr double kResolution = 0x1p-12;  // resolution of positions: a smaller motion counts as none
+constexpr double kTouching = 2.5;        // a pressing proxy farther away is held by another surface
 
 double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
@@ -37,7 +37,7 @@ void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiff
   sheet_.reserve(points);
   gathered_->reserve(points, with_radius, with_stiffness);
   if (shows_ == Shows::points) return;
-  buffer_->reserve(points, true, true);  // the shown frame may have other columns than the newest
+  buffer_->reserve(points, true, true);  // the columns of the shown frame may differ from those of the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
 }
 
@@ -45,7 +45,7 @@ void SheetTracker::swap_buffers() {
   reserve(newest_->size(), newest_->has_fixture_radius(), newest_->has_stiffness());
 }
 
-// Half height of the region that is searched, without the gate.
+// Returns the half height of the region that is searched, without the gate.
 double SheetTracker::half_height() const {
   return std::max(4.0, 2 + kNoisePart * sigma_);
 }
@@ -96,7 +96,8 @@ void SheetTracker::begin(const Vec3& foot_W, const Vec3& normal_W, double sigma)
   show(proxy_W);
 }
 
-// True if the hand moved to another surface, or if the tracked sheet is not the one that holds the proxy.
+// Returns true if the hand moved to another surface, or if the tracked sheet is not the one that holds the
+// proxy.
 bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
   const PatchPlace p = patch().place(proxy.p_W);
   if (!(p.u * p.u + p.v * p.v < region_.radius * region_.radius)) return true;
@@ -106,7 +107,7 @@ bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
   return !map_.covers(p.u, p.v) || nearer_stray_;
 }
 
-// Rebuilds the map around another middle, or along another normal, from the members of the frame before.
+// Rebuilds the map around another middle, or along another normal, from the members of the previous frame.
 void SheetTracker::recentre(const Vec3& middle_W) {
   constexpr double kOff = 1.5, kSteep = 0.2, kTooSteep = 2;
   const PatchPlace p = patch().place(middle_W);
@@ -130,8 +131,8 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   fit_.fit(0.3 * sigma_, map_);
 }
 
-// Moves the origin back to a sheet that has moved away from it, unforeseen, so far that it would soon leave
-// the region.
+// Moves the origin back onto a sheet that has moved away from it without being predicted, before the sheet
+// leaves the region.
 void SheetTracker::level() {
   constexpr double kFar = 2;
   const double height = PatchFrame::rounded(map_.height(0, 0));
@@ -141,7 +142,8 @@ void SheetTracker::level() {
   for (PatchPlace& q : sheet_) q.h -= height;
 }
 
-// Predicts the next shift from the last two: their change counts only as far as it is not noise.
+// Predicts the next shift from the last two. Their difference is used only as far as noise does not explain
+// it.
 double SheetTracker::predicted_shift(double interval_s) const {
   if (age_ == 0 || !(interval_s_ > 0)) return 0;
   const double ratio = interval_s / interval_s_;
@@ -149,8 +151,8 @@ double SheetTracker::predicted_shift(double interval_s) const {
   return shift_ * ratio + surely(change, 1.5 * shift_error_) * ratio * ratio;
 }
 
-// Selects the points that belong to the sheet that the map predicts: those within its noise, and nearer to it
-// than to another sheet. Returns their number.
+// Selects the points that belong to the sheet that the map predicts: they are within its noise and nearer to
+// it than to another sheet. Returns their number.
 double SheetTracker::find_members(const PatchPlace& proxy) {
   points_.set_residuals(map_);
   const HeightProfile smooth = points_.profile_near(proxy, kRegistrationReach, region_.half_height)
@@ -199,7 +201,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
   return false;
 }
 
-// Returns the distance at which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
+// Returns the distance at which a resting proxy is kept from the sheet: r_c + r_f, in contact radii.
 double SheetTracker::contact_distance(const PatchPlace& proxy) const {
   if (missed_ > 0) return pressed_distance_;
   const PointsView all = gathered_->view();
@@ -245,7 +247,7 @@ ShownPoint SheetTracker::shown(const Vec3& p_W) const {
   const PatchPlace p = patch().place(p_W);
   if (!region_.holds(p)) return shown;
   shown.residual = p.h - map_.height(p.u, p.v);
-  if (!(shown.residual <= up_ && shown.residual >= -down_)) {  // NaN is no member
+  if (!(shown.residual <= up_ && shown.residual >= -down_)) {  // true for NaN
     shown.kind = strays_.is_surface(p) ? surface : stray;
     return shown;
   }
@@ -259,8 +261,8 @@ ShownPoint SheetTracker::shown(const Vec3& p_W) const {
   return shown;
 }
 
-// Points without their noise lie elsewhere when the patch is seen from another position. Returns the distance
-// by which the proxy must then move along the normal, so that it is not in the sheet.
+// Returns the distance by which the proxy must move along the normal to leave the sheet. Denoised points have
+// other positions when the patch has moved, so the proxy may be inside the sheet.
 double SheetTracker::exit_distance(const Vec3& proxy_W) const {
   const PatchPlace p = patch().place(proxy_W);
   const double now = clearance(proxy_W);
@@ -269,7 +271,7 @@ double SheetTracker::exit_distance(const Vec3& proxy_W) const {
 }
 
 // Returns the displacement of the proxy along the normal, in contact radii. A proxy that the sheet holds back
-// keeps its clearance. A free proxy is moved only out of a sheet that swept over it, and no further than the
+// keeps its clearance. A free proxy is moved only out of a sheet that swept over it, and no farther than the
 // sheet moved.
 double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearance_before) const {
   const double now = clearance(proxy.p_W), moved = clearance_before - now;
@@ -279,7 +281,7 @@ double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearanc
   return map_.covers(p.u, p.v) ? std::clamp(contact_distance(p) - now, 0.0, std::max(0.0, moved)) : 0;
 }
 
-// Searches for a sheet anew. Its motion is 0, because it was not seen before.
+// Searches for a new sheet. Its motion is 0, because it was not seen before.
 SheetUpdate SheetTracker::reacquire(const Vec3& proxy_W) {
   restart(proxy_W);
   return {show(proxy_W), Vec3::Zero(), 0, Vec3::Zero()};
@@ -289,7 +291,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
                                    double interval_s) {
   const Vec3 ahead = last_proxy_W_ ? Vec3(0.5 * (proxy.p_W - *last_proxy_W_)) : Vec3::Zero();
   last_proxy_W_ = proxy.p_W;
-  // These are values of the frame before, whose points are still stored.
+  // These are values of the previous frame, whose points are still stored.
   const bool continues = tracks_ && !is_of_other_surface(proxy);
   const double held = continues ? contact_distance(patch().place(proxy.p_W)) : 1;
   newest_ = std::move(frame);
@@ -334,7 +336,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
 bool SheetTracker::must_requery(const Vec3& proxy_W) const {
   if (!newest_ || missed_ > 0) return false;  // a missing sheet cannot be queried
   if (!tracks_) return (proxy_W - query_position_W_).norm() > unit_m_;
-  const double near_m = 0.999 * kMiddle * unit_m_;  // distances along the patch are not larger than in space
+  const double near_m = 0.999 * kMiddle * unit_m_;  // distances along the patch are at most those in space
   if ((proxy_W - patch().origin_W()).squaredNorm() < near_m * near_m) return false;
   const PatchPlace p = patch().place(proxy_W);
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
@@ -355,7 +357,8 @@ SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
   return update;
 }
 
-// Shows the members without their noise, and from the other points those that are surfaces.
+// Shows the members without their noise, and the other points that belong to a surface. Stray points are left
+// out.
 std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
   query_position_W_ = proxy_W;
   nearer_stray_ = false;

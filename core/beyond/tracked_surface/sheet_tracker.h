@@ -1,5 +1,5 @@
 // Follows the sheet of surface in front of a proxy from frame to frame. A tool has several trackers, each
-// with a place of the tool as its proxy: sheet_patches.h.
+// with a position on the tool as its proxy: sheet_patches.h.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,13 @@
 
 namespace remote_touch {
 
-// Position of the proxy; pressing: a surface holds it back.
+// Position of the proxy. pressing: a surface holds the proxy back.
 struct ProxyPlace {
   Vec3 p_W = Vec3::Zero();
   bool pressing = false;
 };
 
-// The points of a frame to show, and the motion that the proxy has to follow; world frame.
+// The points of a frame to show, and the motion that the proxy must follow; world frame.
 struct SheetUpdate {
   std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet dropped
   Vec3 displacement_m = Vec3::Zero();
@@ -29,59 +29,61 @@ struct SheetUpdate {
   Vec3 normal_W = Vec3::Zero();
 };
 
-// The class that the tracker assigns to a point of the newest frame. In its region a point belongs to the
-// sheet, to another surface, or is a stray. A point of the sheet is moved onto it along the patch's normal.
+// The class of a point of the newest frame. A point in its region belongs to the sheet, to another surface,
+// or is a stray. A point of the sheet is moved onto it along the patch's normal.
 struct ShownPoint {
   enum class Kind { outside, sheet, surface, stray };
   Kind kind = Kind::outside;
-  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // values on the sheet
+  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // position and normal on the sheet
   double weight = 0;    // points of the sheet: 1 in the middle of the patch, falling to 0 at its border
   double residual = 0;  // height of the measured point above the sheet, contact radii
 };
 
 class SheetTracker {
  public:
-  // search: the points to show are a NeighbourSearch, and a fixture keeps the proxy at its distance.
-  // points: SheetUpdate::points is the frame as it came, or null, and shown() gives each point.
+  // search: SheetUpdate::points holds the points to show, and a proxy is kept at the distance of its
+  // fixtures. points: SheetUpdate::points is the frame itself, or null, and shown() classifies each point.
   enum class Shows { search, points };
 
   SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
                Shows shows = Shows::search);
-  // Reserves memory for frames of this number of points; allocates only if there was less capacity.
+  // Reserves memory for frames of this number of points. Allocates only if the capacity is smaller.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
   // Processes a new frame, interval_s after the one before.
   SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
                        double interval_s);
-  // Keeps a frame for requery() while the proxy has no position yet, and shows it as it is.
+  // Stores a frame for requery() while the proxy has no position yet. Returns the frame unchanged.
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
-  // True if the proxy has left the middle of the patch.
+  // Returns true if the proxy has left the middle of the patch; without a sheet, if it has moved by a contact
+  // radius. False while the sheet is missing.
   bool must_requery(const Vec3& proxy_W) const;
   // Drops a missing sheet and searches for one in the newest frame. No allocation.
   SheetUpdate reacquire(const Vec3& proxy_W);
-  // Begins with a sheet that is known to pass near a position with this normal, which the patch then keeps.
-  // Its noise is about sigma, contact radii. No allocation.
+  // Starts with a sheet that is known to pass near a position with this normal. The patch keeps the normal.
+  // sigma: estimate of its noise, contact radii. No allocation.
   void begin(const Vec3& foot_W, const Vec3& normal_W, double sigma);
   // Updates the patch around the proxy's new position, from the newest frame's points. No allocation.
   SheetUpdate requery(const ProxyPlace& proxy);
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
 
-  // The sheet in the newest frame in which it was seen, if the tracker has one; lengths in contact radii.
+  // The sheet in the newest frame in which it was seen, if there is one; lengths in contact radii.
   bool tracks() const { return tracks_; }
   const PatchRegion& region() const { return region_; }
   const HeightMap& map() const { return map_; }
   double sigma() const { return sigma_; }
-  // Height of a position above the sheet, along the patch's normal; NaN where the map has no height.
+  // Returns the height of a position above the sheet, along the patch's normal; NaN if the map has no height
+  // there.
   double clearance(const Vec3& p_W) const;
-  // Motion of the sheet at a position in the newest frame, along the patch's normal. It is 0 if it is less
-  // than the resolution of positions, and NaN if it is not known, for example because the sheet was not seen
-  // before.
+  // Returns the motion of the sheet at a position in the newest frame, along the patch's normal. It is 0 if
+  // it is below the resolution of positions. It is NaN if it is not known, for example because the sheet was
+  // not seen in the previous frame.
   double moved(const Vec3& p_W) const;
-  // Standard error of that motion.
+  // Returns the standard error of that motion.
   double moved_error(const Vec3& p_W) const;
   ShownPoint shown(const Vec3& p_W) const;
-  // Number of members in a square of one contact radius.
+  // Returns the typical number of members in a square of one contact radius.
   double density() const { return fit_.typical_density(); }
 
  private:
@@ -131,13 +133,13 @@ class SheetTracker {
   std::vector<PatchPlace> sheet_;  // the members at their shown positions
   HeightProfile profile_;
   double sigma_ = 0;
-  double up_ = 0, down_ = 0;  // members lie no further above and below the sheet than this
+  double up_ = 0, down_ = 0;  // largest distances of members above and below the sheet
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
   int age_ = 0, missed_ = 0;     // number of measured shifts; number of frames without the sheet
   double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen
   bool nearer_stray_ = false;
   Vec3 query_position_W_ = Vec3::Zero();
-  std::optional<Vec3> last_proxy_W_;  // position at the frame before
+  std::optional<Vec3> last_proxy_W_;  // position at the previous frame
 };
 
 }  // namespace remote_touch

@@ -7,10 +7,11 @@ namespace remote_touch {
 
 namespace {
 constexpr double kMinNeighbourFraction = 0.25;
-constexpr double kMinNeighbours = 2;  // besides itself
+constexpr double kMinNeighbours = 2;  // not counting the point itself
 }  // namespace
 
-// Columns of one contact radius, with a border on either side.
+// Returns the index of a column. Columns are one contact radius wide, with an empty one as a border on either
+// side.
 int StrayPoints::column(double coordinate) const {
   return 1 + static_cast<int>(std::clamp(coordinate + half_side_, 0.0, side_ - 3.0));
 }

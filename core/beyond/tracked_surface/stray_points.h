@@ -1,4 +1,4 @@
-// Points of a patch that are not of its sheet: other surfaces, or outliers.
+// Points of a patch that do not belong to its sheet: points of other surfaces, or outliers.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,15 @@
 
 namespace remote_touch {
 
-// Distinguishes the two by density: around each point of a surface, in a layer as thick as the noise, there
-// are at least a fair fraction of the sheet's points per area.
+// Distinguishes the two by density. A point belongs to a surface if the number of points per area around it,
+// in layers at least as thick as the noise, is at least a quarter of the sheet's, and if there are at least
+// two other points.
 class StrayPoints {
  public:
-  // per_unit_area: members in a square of one contact radius.
+  // Counts the points that are no members. per_unit_area: number of members in a square of one contact
+  // radius.
   void count(const PatchPoints& points, const PatchRegion& region, double sigma, double per_unit_area);
-  // pre: the point is no member.
+  // Returns true if the point belongs to a surface. pre: the point is no member.
   bool is_surface(const PatchPlace& p) const;
 
  private:

@@ -9,7 +9,8 @@ namespace remote_touch {
 
 namespace {
 
-// Returns the vertices, and points of triangles no farther apart than spacing_m.
+// Returns the vertices, and points of the triangles no farther apart than spacing_m, or than a hundredth of
+// the longest side of a very large triangle.
 std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m) {
   std::vector<Vec3> points = mesh.vertices;
   for (const auto& corners : mesh.triangles) {
@@ -73,7 +74,7 @@ ToolPlaces::ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::siz
   }
 }
 
-// Divides the places into groups around places that are far from each other.
+// Divides the positions into groups around positions that are far from each other.
 void ToolPlaces::divide(std::size_t groups) {
   FarthestPoints seeds(places_T_);
   std::size_t seed = 0;

@@ -1,4 +1,5 @@
-// Places on the surface of a tool, in a few groups, each small enough for one patch of a tracked sheet.
+// Positions on the surface of a tool, in a few groups. Each group is small enough for one patch of a tracked
+// sheet.
 #pragma once
 
 #include <span>
@@ -8,19 +9,19 @@
 
 namespace remote_touch {
 
-// Places in the tool frame. Made once; nothing allocates afterwards.
+// The positions are in the tool frame. Nothing is allocated after construction.
 class ToolPlaces {
  public:
   struct Group {
     Vec3 middle_T = Vec3::Zero();
-    double radius_m = 0;  // distance of the farthest of its places from the middle
+    double radius_m = 0;  // distance of its farthest position from the middle
     std::size_t first = 0, count = 0;
   };
 
-  // Selects places on the mesh's surface, spread evenly (each the farthest from those before it), at most
-  // kMax, until all of the surface is within half of group_radius_m / 4 of one. Makes the smallest number of
-  // groups that have that radius, but no more than max_groups. pre: the mesh has a vertex, group_radius_m and
-  // max_groups are above 0.
+  // Selects at most kMax positions on the surface of the mesh, spread evenly: each one is the farthest from
+  // those before it. It stops when every sampled position of the surface is within group_radius_m / 8 of a
+  // selected one. Then it divides them into the smallest number of groups with radii up to group_radius_m,
+  // but at most max_groups groups. pre: the mesh has a vertex; group_radius_m and max_groups are positive.
   static constexpr std::size_t kMax = 256;
   ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups);
 

@@ -7,7 +7,8 @@
 namespace remote_touch {
 
 namespace {
-// The velocity is measured, and r_c is the tracker's unit of length.
+// The velocity is measured, so it is not estimated, and the radii are fixed, because r_c is the tracker's
+// unit of length.
 Parameters of_a_sheet(Parameters list) {
   std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
   return with_fixed_radii(std::move(list));
@@ -54,15 +55,15 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
     captured_s_ = frame.captured_s, has_frame_ = true;
     usual_interval_.add(interval_s);
     hold_until_s_ = std::numeric_limits<double>::infinity();
-  } else if (std::isinf(hold_until_s_)) {  // the sheet is missing: what was shown stays for a while
+  } else if (std::isinf(hold_until_s_)) {  // the sheet is missing: the shown points stay for a while
     hold_until_s_ = frame.arrives_s + max_hold_frames_ * usual_interval_.without_pause(interval_s);
   }
   proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
                   {update.displacement_m, update.velocity_m_per_s, update.normal_W});
 }
 
-// A proxy without a place has none until the first HIP; one that moved far needs the newest frame's points
-// where it is now.
+// The proxy has no position until the first finite position of the HIP. A proxy that has moved far needs the
+// newest frame's points around its new position.
 RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s) {
   if (!placed_ && has_frame_ && device.position_W.allFinite()) {
     placed_ = true;

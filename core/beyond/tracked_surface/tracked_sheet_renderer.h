@@ -1,10 +1,11 @@
 // 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
-// frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
+// frame and denoised. The method is not in the dissertation; its inputs are those of the proxy, points and
+// times.
 //
-// The sheet in front of the proxy is found again in each frame, where its motion predicts it, and registered
-// to the frame before. A proxy that it holds back moves with it; a free one moves only if the sheet swept
-// over it. The sheet's points are moved onto the local planes that fit them, as far as noise explains. Ticks
-// are those of the proxy, with the measured velocity in (4.15).
+// The sheet in front of the proxy is found again in each frame at its predicted position, and is registered
+// to the previous frame. A proxy that the sheet holds back moves with it; a free proxy moves only if the
+// sheet swept over it. The sheet's points are moved onto the local planes that fit them, as far as noise
+// explains their distances. The ticks are those of the proxy, with the measured velocity in (4.15).
 #pragma once
 
 #include <limits>
@@ -23,14 +24,15 @@ struct TrackedSheetParameters {
 
 Parameters parameters(TrackedSheetParameters& p);
 std::string validate(const TrackedSheetParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
+// It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const TrackedSheetParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }
 
 class TrackedSheetRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
   TrackedSheetRenderer(const TrackedSheetParameters& parameters, double haptic_rate_hz,
                        const Kernels& kernels);
   void reserve(std::size_t points) override;

@@ -56,7 +56,7 @@ void TrackedToolRenderer::reserve(std::size_t points) {
   for (auto& cloud : changed_) cloud->reserve(padded);
 }
 
-// Returns the measured points, or a cloud in which those around the tool are without their noise.
+// Returns the measured points, or a cloud in which the points around the tool are denoised.
 std::shared_ptr<const TiledCloud> TrackedToolRenderer::shown_points(const ToolPose& pose) {
   if (!patches_.changes_points()) return measured_;
   present_ ^= 1;
@@ -100,8 +100,8 @@ void TrackedToolRenderer::requery(const ToolPose& pose, bool held) {
   if (placed_) tool_.displace(out);
 }
 
-// A tool without a position gets one at the first pose. A tool that moved far needs the newest frame's points
-// around its new position.
+// The tool has no position until the first valid pose of the device. A tool that has moved far needs the
+// newest frame's points around its new position.
 RenderOutput TrackedToolRenderer::step(const DeviceState& device, double time_s) {
   if (has_frame_) {
     if (!placed_) {

@@ -1,10 +1,10 @@
 // 6-DOF rendering of tracked sheets: the tool of chapter 6 on surfaces that are followed from frame to frame
-// and freed of their noise. Not in the dissertation; its inputs are those of the tool, points and times.
+// and denoised. The method is not in the dissertation; its inputs are those of the tool, points and times.
 //
-// The sheets around the tool are found again in each frame, where their motion predicts them. A tool that
-// they hold moves with them, rotation included; a free one moves only if a sheet swept over it. The sheets'
-// points are moved onto the sheets and get normals from them. Ticks are those of the tool on these points,
-// with the measured velocity and rotation rate in (4.15).
+// The sheets around the tool are found again in each frame at their predicted positions. A tool that they
+// hold moves with them, rotation included; a free tool moves only if a sheet swept over it. The points of the
+// sheets are moved onto the sheets and receive the normals of the sheets. The ticks are those of the tool on
+// these points, with the measured velocity and rotation rate in (4.15).
 #pragma once
 
 #include <limits>
@@ -26,14 +26,14 @@ struct TrackedToolParameters {
 
 Parameters parameters(TrackedToolParameters& p);
 std::string validate(const TrackedToolParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
 inline double max_stiffness_N_per_m(const TrackedToolParameters& p) {
   return max_stiffness_N_per_m(p.tool);
 }
 
 class TrackedToolRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. For contact_rule = continuous the tool is made with outer_field.
+  // pre: validate(parameters) is empty. The tool was built with outer_field if contact_rule = continuous.
   TrackedToolRenderer(const TrackedToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                       const Kernels& kernels);
   void prepare(Frame& frame) const override;

@@ -7,11 +7,11 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kTerms = 6, kPlane = 3;  // number of terms of the quadratic; the first kPlane are its plane
+constexpr int kTerms = 6, kPlane = 3;  // number of terms; the first kPlane are those of a plane
 
-// Solves a x = b in place by Cholesky's method. Returns false if the matrix is not safely positive.
+// Solves a x = b in place by Cholesky's method. Returns false if the matrix is not clearly positive definite.
 bool solve(double a[kTerms][kTerms], double b[kTerms]) {
-  constexpr double kMinFraction = 1e-4;  // smallest part of a diagonal element that may be left
+  constexpr double kMinFraction = 1e-4;  // smallest fraction of a diagonal element that may be left
   for (int i = 0; i < kTerms; ++i) {
     const double own = a[i][i];
     for (int j = 0; j <= i; ++j) {
@@ -38,7 +38,7 @@ bool solve(double a[kTerms][kTerms], double b[kTerms]) {
 
 // Returns the fraction of the curvature to keep (James and Stein's rule). The improvement of the fit by the
 // curvature, in units of the noise's variance, is a chi square of 3 degrees of freedom if there is no
-// curvature: then nothing of it is kept. a: the Cholesky factor.
+// curvature. No curvature is kept if the improvement is below kOfChance. a: the Cholesky factor.
 double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
   constexpr double kOfChance = 6;
   double betters = 0;
@@ -54,11 +54,12 @@ double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], 
 
 Trend fit_trend(const PatchPoints& points, double sigma) {
   constexpr double kMinPoints = 30;
-  // Factors are multiples of 2^-12 below 2^6, so sums of up to 2^17 of their products are exact.
+  // The factors are multiples of 2^-12 below 2^6, so sums of up to 2^17 of their products are exact.
   const QuadraticSums sums = points.sums_of_quadratic(kTrendRadius);
   Trend trend;
   if (sums.power[0] < kMinPoints) return trend;
-  // Degrees of u and v in each term. Products of the same degree follow each other, in falling powers of u.
+  // Degrees of u and v in each term. Products of the same degree are stored one after the other, in falling
+  // powers of u.
   constexpr int of_u[kTerms] = {0, 1, 0, 2, 1, 0}, of_v[kTerms] = {0, 0, 1, 0, 1, 2};
   double a[kTerms][kTerms], b[kTerms];
   for (int i = 0; i < kTerms; ++i) {

@@ -1,4 +1,4 @@
-// The curvature of a whole patch, which planes in wide windows would flatten.
+// The curvature of a whole patch. Planes in wide windows would flatten it.
 #pragma once
 
 #include "core/beyond/tracked_surface/patch_points.h"
@@ -16,9 +16,9 @@ struct Trend {
   double slope_v(double u, double v) const { return c[2] + c[4] * u + 2 * c[5] * v; }
 };
 
-// Least squares through the members within kTrendRadius of the origin; zero where they are too few or lie too
-// much to one side. sigma: of the noise; curvature that noise explains is ignored. Sums are exact, so the
-// order of the points has no effect.
+// Fits the trend by least squares to the members within kTrendRadius of the origin. The trend is zero if they
+// are too few or lie too much to one side. sigma: standard deviation of the noise; the part of the curvature
+// that noise explains is removed. The sums are exact, so the order of the points has no effect.
 inline constexpr double kTrendRadius = 6;  // contact radii
 Trend fit_trend(const PatchPoints& points, double sigma);
 

@@ -9,17 +9,18 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMaxHalf = 7;  // half width of a window
-// Number of rows that one thread processes at a time. The weights of the window above are computed anew for
-// each band; bands of only 60 rows cost 3 %.
+constexpr int kMaxHalf = 7;  // largest half width of a window, pixels
+// Smallest number of rows in a band, if the frame has as many. One thread processes a band at a time. Each
+// band computes the weights of the window above its first row again; this costs 3 % if bands have only 60
+// rows.
 constexpr int kBandRows = 60;
 
 int half(int window) {
   return window / 2;
 }
 
-// Memory for the weights of a band. At most as many parts are in use as there are threads, so that they stay
-// in the cache.
+// Memory for the weights of the bands, in parts of equal size. No more parts are in use than there are
+// threads, so those in use stay in the cache.
 class ScratchPool {
  public:
   ScratchPool(float* first, std::size_t size, int count) : first_(first), size_(size), free_(all(count)) {}
@@ -80,8 +81,8 @@ bool fits(int first, int count, int all) {
 
 }  // namespace
 
-// The border is the widest region that the kernels touch around the requested pixels. With sharp_edges it is
-// wider, because normals are also computed beside these pixels.
+// The border is the widest region that the kernels touch around the requested pixels. It is wider with
+// sharp_edges, because normals are also computed beside these pixels.
 DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
     : DepthProcessor(settings), kernels_(kernels), border_((settings.sharp_edges ? 5 : 3) * kMaxHalf) {}
 
@@ -115,13 +116,14 @@ void DepthPipeline::process_frame(const DepthFrame& whole, PointCloud& cloud) {
   run(frame, cloud);
 }
 
-// Returns the given column of row 0 in each of three planes that lie one after another.
+// Returns pointers to row 0 and the given column in each of three planes (x, y, z) that are stored one after
+// another.
 PointPlanes DepthPipeline::planes(std::vector<float>& values, int column) const {
   float* const first = values.data() + first_pixel() + column;
   return {first, first + plane_size_, first + 2 * plane_size_, stride_};
 }
 
-// Empty unless sharp_edges is set.
+// Returns the same pointers into the planes of the fits; null pointers unless sharp_edges is set.
 FitPlanes DepthPipeline::fit_planes(int column) {
   if (!settings_.sharp_edges) return {};
   float* const first = fits_.data() + first_pixel() + column;
@@ -166,7 +168,7 @@ void DepthPipeline::clear_beside(const PointPlanes& to, const Frame& frame, int 
   }
 }
 
-// Writes one row of points, either with the filter's changes or as measured. Pixels outside the image get no
+// Writes one row of points, either with the filter's changes or as measured. A pixel outside the image has no
 // point.
 void DepthPipeline::write_points(const Frame& frame, int row, int reach, double scale, bool changed,
                                  const PointPlanes& to) {
@@ -212,7 +214,7 @@ void DepthPipeline::normals_band(const Frame& frame, int first, int last, float*
     kernels_.depth.inverse_depth_normals(band, points, rays, step, normals, fit_planes(-beside));
 }
 
-// normals points to column 0 of row 0.
+// Writes one row of the cloud. normals: pointers to column 0 of row 0.
 void DepthPipeline::row_to_cloud(const Frame& frame, int row, const PointPlanes& normals, PointCloud& cloud) {
   const int width = frame.at.width;
   const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);

@@ -1,21 +1,23 @@
 // Makes a cloud with normals from a depth frame: filter (7.1), (7.2) and the normals of 6.2.1.
 //
-// The filter smooths depths spatially: v0' = sum v_k phi(k) / sum phi(k) over a window of pixels, with
-// phi(k) = exp(-|p_k - p_0|^2 / (2 sigma_f^2)) of the Cartesian distances between the points as measured.
-// Then the points are unprojected again. The normal of each point is that of a plane of weighted total least
-// squares through its filtered neighbours: weights psi of (4.2) fall from 1 at the point to 0 at the radius,
-// and the normal is the eigenvector of the smallest eigenvalue of the covariance, turned towards the sensor.
+// The filter smooths depths spatially: v0' = sum v_k phi(k) / sum phi(k) over a window of pixels, where
+// phi(k) = exp(-|p_k - p_0|^2 / (2 sigma_f^2)). The distances |p_k - p_0| are Cartesian distances between the
+// points as measured. The filtered depths are then unprojected to points again. The normal of each point is
+// that of the plane which fits its filtered neighbours by weighted total least squares: the weights psi of
+// (4.2) fall from 1 at the point to 0 at the radius, and the normal is the eigenvector of the smallest
+// eigenvalue of the covariance, turned towards the sensor. NormalFit has a faster alternative.
 //
 // sharp_edges (not in the dissertation): a pixel may use the normal of one of eight windows around its own.
 // Each of them is shifted by half the width of the normal's window plus half that of the filter's. The pixel
 // uses the window that fits best, provided that it fits clearly better than its own: its mean square error
 // plus the squared distance of the pixel's own point from its plane is less than a quarter of the own
-// window's error. At an edge the own window averages both sides; a window that ends there has one side only.
+// window's error. The own window of a pixel averages both sides of an edge; a window that ends at the edge
+// has one side only.
 //
 // A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: it gives no point and has no
 // influence. The pipeline computes in single precision in the camera frame: normals are within 0.05 degrees
-// of those in double. The result has the same bits on every machine, for any number of threads, and for a
-// rectangle as for the whole frame.
+// of those in double. The result has the same bits on every machine and for any number of threads. A
+// rectangle has the same bits as these pixels have in the whole frame.
 #pragma once
 
 #include <cstdint>
@@ -38,9 +40,9 @@ class DepthPipeline final : public DepthProcessor {
   DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
 
   using DepthProcessor::process;
-  // Processes only the pixels of the rectangle, at their cost alone. The result is the same as in the whole
-  // frame, bit for bit. The image layout is that of a camera with these pixels alone. pre: the rectangle lies
-  // in the image.
+  // Processes only the pixels of the rectangle; the time depends on their number, not on that of the image.
+  // The result is the same as in the whole frame, bit for bit. The image layout is that of a camera with
+  // these pixels alone. Throws std::invalid_argument if the rectangle is not in the image.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                const PixelRectangle& rectangle, PointCloud& cloud);
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
@@ -70,8 +72,9 @@ class DepthPipeline final : public DepthProcessor {
   const int border_;  // width of the border of a plane around the requested pixels
   std::ptrdiff_t stride_ = 0;
   std::size_t plane_size_ = 0;
-  // Planes with a border. raw_: points in units of the filter; smooth_: points in units of the normals;
-  // normals_.
+  // Planes with a border. raw_: measured points in units of the filter, later overwritten with the sharp
+  // normals. smooth_: points of the normals in units of the normals: the filtered ones, or the measured ones
+  // without the filter. normals_: unit normals.
   std::vector<float> raw_, smooth_, normals_, fits_, change_, rays_x_, rays_y_, scratch_;
   std::vector<double> wide_rays_x_, wide_rays_y_;
   std::vector<std::uint8_t> valid_;

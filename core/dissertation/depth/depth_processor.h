@@ -14,9 +14,9 @@
 
 namespace remote_touch {
 
-// Method of computing a normal: the plane of total least squares, or the faster fit of the inverse depth. On
-// every plane the inverse depth is an affine function of the pixel; its fit has weights (1 - q^2)^2 in place
-// of psi(q).
+// Method of computing a normal. total_least_squares fits a plane with the weights psi(q). inverse_depth is
+// faster: every plane has an inverse depth that is an affine function of the pixel, and this function is
+// fitted with the weights (1 - q^2)^2 in place of psi(q).
 enum class NormalFit { total_least_squares, inverse_depth };
 
 struct DepthPipelineSettings {
@@ -32,8 +32,8 @@ struct DepthPipelineSettings {
   bool operator==(const DepthPipelineSettings&) const = default;
 };
 
-// The fast setting: it needs a quarter to a third of the default's time. Filter and steps together use every
-// pixel of 11 x 11.
+// The fast setting: it needs a quarter to a third of the default's time. The normal uses only every second
+// pixel of its window, but the filter fills the gaps: together they use every pixel of 11 x 11.
 inline constexpr DepthPipelineSettings kFastDepthPipeline{
     true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth, true};
 
@@ -59,29 +59,30 @@ struct RawDepth {
   std::span<const std::uint32_t> colour = {};  // 0xRRGGBB of each pixel; empty: no colours
 };
 
-// Reuses its memory: after the first frame of a size nothing is allocated if the caller passes the same cloud
-// again. For one thread at a time. Throws std::invalid_argument if sizes do not match. Constructors of
-// implementations throw it for settings that validate() rejects.
+// A processor reuses its memory: after the first frame of a size it allocates nothing if the caller passes
+// the same cloud again. Only one thread may use it at a time. It throws std::invalid_argument if sizes do not
+// match. Constructors of implementations throw it for settings that validate() rejects.
 class DepthProcessor {
  public:
   virtual ~DepthProcessor() = default;
 
-  // Writes points, normals and image layout into cloud, and removes its other columns. X_WC is the
-  // registration of the camera in the base frame. Points are NaN where nothing was measured, normals also
-  // where there is no plane.
+  // Writes points, normals and image layout into cloud, and clears its other columns. X_WC is the
+  // registration of the camera in the base frame. Points and normals are NaN where nothing was measured.
+  // Normals are also NaN where there is no plane.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                PointCloud& cloud);
   PointCloud process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC);
-  // Processes an organised cloud in place: its depth image is computed from the points, and all other columns
-  // stay.
+  // Processes an organised cloud in place. Its depth image is computed from its points. The normals are
+  // written, and the filtered points if the filter is on; all other columns stay as they are. Throws
+  // std::invalid_argument if the cloud has no image layout or not the camera's size.
   void process(PointCloud& cloud);
 
-  // Processes a whole frame in one call, for a processor to which copying takes long: process(cloud), then
-  // the columns of r_f and k_s from the steps and the cloud's colours. Returns false, with the cloud
-  // unchanged, if this processor does not support it.
+  // Does the work of process(cloud) and then writes the columns of r_f and k_s, from the steps and the
+  // cloud's colours. One call does both because copying to some processors takes long. Returns false, with
+  // the cloud unchanged, if this processor does not support it.
   virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
-  // The same from a sensor's image, which first becomes a cloud with its colours, as by cloud_from_depth().
-  // Without steps (null) the columns of r_f and k_s are not written.
+  // Does the same for a sensor's image, which first becomes a cloud with its colours, as cloud_from_depth()
+  // would make it. If steps is null, the columns of r_f and k_s are not written.
   virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
     return false;
   }
@@ -105,8 +106,9 @@ class DepthProcessor {
   std::vector<double> depth_m_;
 };
 
-// Gives the cloud the columns x, y, z and the layout of an image of this camera, and removes all others. The
-// caller writes the values of the columns.
+// Makes the columns x, y, z as long as an image of this camera, sets the image layout, and clears the columns
+// of r_f, k_s and colour. The caller writes the values of x, y, z and the columns of the normals, which are
+// not changed here.
 void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const RigidTransform& X_WC);
 // Throws std::invalid_argument if the depth image does not have the camera's size.
 void check_sizes(const DepthImage& depth, const CameraIntrinsics& camera);

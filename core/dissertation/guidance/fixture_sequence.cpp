@@ -49,7 +49,8 @@ void FixtureSequence::set_buttons(std::uint32_t buttons) {
   down_ = buttons;
 }
 
-// True if the button was pressed in this tick. One press is used by one step only.
+// Returns true if the button was pressed in this tick and no step has used that press yet. The press counts
+// as used then.
 bool FixtureSequence::takes_press(int button) {
   const std::uint32_t bit = std::uint32_t{1} << button;
   const bool pressed = (pressed_ & bit) != 0;

@@ -1,5 +1,5 @@
-// A task as a sequence of steps that lock and unlock forbidden regions and activate and release guidance
-// fixtures: the sequential tasks of 8.2.
+// A task as a sequence of steps, the sequential tasks of 8.2. A step locks or unlocks a forbidden region, or
+// activates or releases a guidance fixture.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,19 @@
 
 namespace remote_touch {
 
-// lock enables and unlock disables a forbidden region. activate starts a guidance fixture and stops every
-// other one; release stops it. wait does nothing.
+// lock enables a forbidden region, and unlock disables it. activate starts a guidance fixture and stops all
+// others. release stops a guidance fixture. wait does nothing.
 enum class FixtureAction { lock, unlock, activate, release, wait };
 enum class StepStart { previous, button };
 enum class StepEnd { immediately, reached, button };
 
-// A step begins when the one before has ended and not_before_s has passed; with StepStart::button it then
-// waits for a press of the button. It performs its action and ends immediately, when the tool has reached the
-// fixture's goal, or at a press of the button. A step that exceeds its deadline ends as missed.
+// A step begins when the previous one has ended and not_before_s has passed. If its start is
+// StepStart::button, it then also waits for a press of the button. It performs its action when it begins. It
+// ends immediately, when the tool has reached the fixture's goal, or when the button is pressed. A step that
+// is not done at its deadline ends and counts as missed.
 struct SequenceStep {
   FixtureAction action = FixtureAction::wait;
-  std::string fixture;  // label of the fixture; empty for wait, unless the step waits for its goal
+  std::string fixture;  // label of the fixture; wait has one only with StepEnd::reached
   StepStart start = StepStart::previous;
   double not_before_s = 0;
   StepEnd done = StepEnd::immediately;
@@ -40,7 +41,8 @@ class FixtureSequence {
  public:
   explicit FixtureSequence(std::vector<SequenceStep> steps) : steps_(std::move(steps)) {}
 
-  // The buttons that are down in this tick, one bit each. Call it once a tick, before begins() and ends().
+  // Sets the buttons that are down in this tick, one bit each. Call it once a tick, before begins() and
+  // ends().
   void set_buttons(std::uint32_t buttons);
   // Begins the current step if its conditions hold. Returns true if it begins now.
   bool begins(double time_s);

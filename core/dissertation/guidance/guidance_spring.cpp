@@ -6,7 +6,8 @@ namespace remote_touch {
 
 namespace {
 
-// Turns one unit vector into another by the shortest way; between opposite ones any half-turn is as short.
+// Returns the shortest rotation that turns one unit vector into another. If the vectors are opposite, every
+// half-turn about a perpendicular axis is the shortest, and one of them is returned.
 Eigen::Quaterniond shortest_rotation(const Vec3& from, const Vec3& to) {
   constexpr double kOpposite = 1e-9;
   const double w = 1 + from.dot(to);

@@ -31,10 +31,10 @@ struct GuidanceSettings {
 Parameters parameters(GuidanceSettings& s);
 std::string validate(const GuidanceSettings& s);
 
-// Returns the goal pose of the tool, base frame; empty if the target has fewer than min_points points.
-// Orientation: rotation_deg (fixed), followed by the shortest rotation that turns the approach axis against
-// the normal of the target's plane (plane, if the target is flat). Position: the target's mean, moved back by
-// standoff_m along the approach axis, plus both offsets.
+// Returns the goal pose of the tool, base frame; nullopt if the target has fewer than min_points points. The
+// position is the target's mean, moved back by standoff_m along the approach axis, plus both offsets. The
+// orientation is rotation_deg. If GuidedOrientation is plane and the target is flat, it is followed by the
+// shortest rotation that turns the approach axis against the normal of the target's plane.
 std::optional<ToolPose> guidance_goal(const GuidanceSettings& settings, const GuidanceTarget& target,
                                       const Vec3& more_offset_m = Vec3::Zero());
 

@@ -184,8 +184,8 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
   }
 }
 
-// Adds the guidance wrench to the output. While there is no valid device pose, nothing pulls and the level of
-// the force falls; it rises from there when the device is back.
+// Adds the guidance wrench to the output. While there is no valid device pose, no fixture pulls and the level
+// of the force falls. When the device is valid again, the level rises from there.
 void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
   for (Guide& guide : guides_) {
     const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;

@@ -1,5 +1,5 @@
-// Guidance on top of any renderer, 7.4: the wrench towards the active fixture's goal is added to its own, and
-// the steps of a task switch fixtures on and off.
+// Guidance on top of any renderer, 7.4. The wrench towards the active fixture's goal is added to the
+// renderer's own wrench, and the steps of a task switch fixtures on and off.
 #pragma once
 
 #include <memory>
@@ -16,16 +16,17 @@
 
 namespace remote_touch {
 
-// Describes the first mistake in a task with these fixtures in one line; empty if there is none. Labels must
-// be unique and known; only forbidden fixtures can be locked, only guidance can be activated; at most one
-// guidance fixture may be used by no step.
+// Returns one line that describes the first mistake in a task with these fixtures; an empty string if there
+// is none. Labels must be unique and known. Only forbidden fixtures can be locked and unlocked; only guidance
+// fixtures can be activated, released and waited for. There may be one guidance fixture, but no more, that no
+// step activates or releases.
 std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
 
 class GuidedRenderer final : public Renderer {
  public:
   // fixtures: all fixtures of the experiment, in order. switches: the switches that its FixtureAssignment
-  // reads. A fixture starts disabled if the first step that uses it enables it. Otherwise, and if no step
-  // uses it, it starts enabled. pre: validate(fixtures, steps) is empty.
+  // reads. A fixture starts disabled if the first step that acts on it enables it. Otherwise it starts
+  // enabled, also if no step acts on it. pre: validate(fixtures, steps) is empty.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);
@@ -45,7 +46,7 @@ class GuidedRenderer final : public Renderer {
     bool active;
     GuidancePresence presence;
     Vec3 offset_m = Vec3::Zero();  // offset of the step that activated it
-    // The goal of the force and the strength of the rule. Both are kept while the force falls.
+    // The last goal of the force and the last strength of the rule. The force uses them while it falls.
     ToolPose goal = {};
     double strength = 0;
   };

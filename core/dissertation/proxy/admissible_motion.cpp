@@ -23,7 +23,8 @@ bool comes_before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-// The regions that hold a motion back: two leave a line, three at most a corner.
+// Normals of the regions that hold a motion back. One normal leaves a plane to move in, two leave a line, and
+// three leave no motion.
 struct Barriers {
   std::array<Vec3, 3> normal{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::size_t count = 0;
@@ -37,8 +38,8 @@ Vec3 less(const Vec3& v, const Vec3& by) {
   return v - (v.dot(by) / by.squaredNorm()) * by;
 }
 
-// Finds the normal of the touching region that s goes against most. Returns false if there is none. The
-// regions are not stored, because a proxy may touch very many.
+// Finds the normal, among those of the touching regions, that the motion s violates most. Returns false if s
+// violates none by more than the slack. The regions are not stored, because a proxy may touch very many.
 bool find_most_violated_normal(const PointsView& points, const Vec3& p_W, double r2, const Vec3& s,
                                double slack, Vec3& normal) {
   double min = -slack;
@@ -84,14 +85,14 @@ class Projection {
     one.add(a);
     offer(all, u_ - u_.dot(a) * a, one, best);
   }
-  // The sum and the difference of the two normals span the directions that are removed, with the same bits
-  // whichever normal comes first. The shorter of the two has the less accurate direction, so its component
-  // along the longer one is removed.
+  // The motion loses its components along both normals. The sum and the difference of the normals span the
+  // same plane, and give the same bits whichever normal comes first. The shorter of the two has the less
+  // accurate direction, so its component along the longer one is removed.
   void on_line(const Barriers& all, std::size_t i, std::size_t j, Best& best) const {
     const Vec3 &a = all.normal[i], &b = all.normal[j];
     Vec3 longer = a + b, shorter = a - b;
     if (longer.squaredNorm() < shorter.squaredNorm()) std::swap(longer, shorter);
-    if (!(shorter.norm() > kRounding)) return;  // the plane of one is that of the other
+    if (!(shorter.norm() > kRounding)) return;  // the normals are parallel: one plane
     shorter = less(shorter, longer);
     const double to_a = u_.dot(a), to_b = u_.dot(b), between = a.dot(b);
     const double push_a = between * to_b - to_a, push_b = between * to_a - to_b;

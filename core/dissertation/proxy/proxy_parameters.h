@@ -9,8 +9,8 @@ namespace remote_touch {
 
 enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
 enum class FreeRoot { ahead, smallest_magnitude };  // root of (4.9); the second is the printed text
-// tangent_plane: (4.6), (5.16). regions: every touching region by itself. creases: regions in creases,
-// tangent_plane elsewhere.
+// Motion in contact. tangent_plane: (4.6), (5.16). regions: each touching region limits the motion by itself.
+// creases: as regions in a crease, as tangent_plane elsewhere.
 enum class ContactRule { tangent_plane, regions, creases };
 enum class ExitRule { towards_hip, out_of_contact };  // step in contact with the HIP outside: (4.7) or (5.17)
 enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
@@ -48,11 +48,13 @@ struct ProxyParameters {
 };
 
 Parameters parameters(ProxyParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
+// Returns one line that describes the first invalid combination of settings; an empty string if there is
+// none.
 std::string validate(const ProxyParameters& p);
 // Returns the list with r1, r2 and r3 fixed during a run, for methods that derive lengths from these radii.
 Parameters with_fixed_radii(Parameters list);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
+// of the HIP, N/m. It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {
   return p.stiffness_N_per_m;
 }

@@ -72,13 +72,13 @@ void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
   has_local_query_ = false;
 }
 
-// The surface counts as at rest while the estimate is off, in (4.15) too. The estimate starts anew when it is
-// switched on again.
+// Applies changed settings. The surface counts as at rest while the estimate is off, also for (4.15). When it
+// is switched on again, the estimate starts from zero.
 void ProxyRenderer::parameters_changed() {
   set_radii(p_.r1_m, p_.r2_m, p_.r3_m);
   is_clear_ = false;
-  coupling_.release();  // the next finite difference would be one of settings
-  if (contact_stiffness_N_per_m_ == own_stiffness_N_per_m_)  // the points have none
+  coupling_.release();  // or a change of settings would enter the next rate
+  if (contact_stiffness_N_per_m_ == own_stiffness_N_per_m_)  // not the k_s of points
     contact_stiffness_N_per_m_ = p_.stiffness_N_per_m;
   own_stiffness_N_per_m_ = p_.stiffness_N_per_m;
   if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
@@ -127,14 +127,14 @@ const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
   return local_query_;
 }
 
-// pre: the points are those of the present list of neighbours.
+// pre: the points are the present list of neighbours, because sum_grid() belongs to that list.
 ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) const {
   const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
   return kernels_.proxy.contact_query(points, p_W.data(), regions);
 }
 
-// The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
-// bit for bit: every further step would do the same.
+// Runs the proxy movement algorithm, 4.2.3, and returns the number of steps. It ends before its budget when a
+// step leaves the proxy where it is, bit for bit, because every further step would do the same.
 int ProxyRenderer::move(const Vec3& hip_W) {
   bool touched = false;
   for (int k = 1; k <= p_.steps_per_tick; ++k) {
@@ -157,7 +157,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
     velocity_.on_step(s);  // (4.13)
     const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
     if (here.state == ContactState::free && moved == hip_W)
-      in_contact_ = false;  // the proxy is free and nothing holds it back
+      in_contact_ = false;  // the proxy reaches the HIP freely
     const bool settled = moved == proxy_W_;
     proxy_W_ = moved;
     if (settled || k == p_.steps_per_tick) {
@@ -168,10 +168,11 @@ int ProxyRenderer::move(const Vec3& hip_W) {
   return 0;
 }
 
-// Moves an entrenched proxy out of overlapping regions, where the way out of one region may end in another,
-// and so may the budget of steps. Not in the dissertation. First up to max_exit_steps more steps of (5.11)
-// are made. If the proxy is still entrenched, it returns to its last position outside all regions. If a frame
-// has made that position invalid, it leaves along a straight line. Returns the number of steps.
+// Moves an entrenched proxy out of overlapping regions; not in the dissertation. A tick can end inside a
+// region, because the way out of one region may end in another one, or because the budget of steps is used
+// up. First up to max_exit_steps more steps of (5.11) are made. If the proxy is still entrenched, it returns
+// to its last position outside all regions. If a newer frame has made that position invalid, the proxy leaves
+// along a straight line, if there is one. Returns the number of steps of (5.11).
 int ProxyRenderer::leave_regions(const Vec3& hip_W) {
   if (p_.max_exit_steps == 0) return 0;
   int steps = 0;
@@ -188,8 +189,9 @@ int ProxyRenderer::leave_regions(const Vec3& hip_W) {
   return steps;
 }
 
-// True if touching regions hold the proxy each by itself. A crease is entered at a larger angle than it is
-// left, or the two rules would alternate.
+// Returns true if the step in contact uses each touching region by itself, not the tangent plane. Updates
+// in_crease_. The angle at which a crease begins is larger than the angle at which it ends, because the two
+// rules would alternate otherwise.
 bool ProxyRenderer::takes_regions(const LocalQuery& here) {
   if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
   constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
@@ -235,9 +237,9 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
     out.status = RenderStatus::degenerate_normal;
 }
 
-// Returns the commanded position of the slave robot. A frame shows the surface at the time of its capture.
-// Like (4.15), the prediction assumes that the surface continues along v_hat. A predicted position that lies
-// in a region of the newest frame is not sent.
+// Returns the commanded position of the slave robot. A frame shows the surface at the time of its capture, so
+// slave_prediction adds the motion since then. The prediction assumes, like (4.15), that the surface
+// continues along v_hat. A predicted position that lies in a region of the newest frame is not sent.
 Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
   if (p_.slave_command == SlaveCommand::hip) return hip_W;
   if (!p_.slave_prediction || !in_contact_) return clear_W_;
@@ -257,12 +259,13 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
     return Vec3::Zero();
   }
   const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
-  // The time is bounded: if frames stop coming, the surface is no longer assumed to continue.
+  // The time is bounded, because the surface cannot be assumed to continue if frames stop coming.
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
   return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_, ticks);
 }
 
-// Returns (5.8) as a weighted mean if the points have a stiffness, else the renderer's own stiffness.
+// Returns (5.8) as a weighted mean over the points that have a stiffness; the renderer's own stiffness if
+// none has.
 double ProxyRenderer::stiffness(const ContactQuery& query) const {
   return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : p_.stiffness_N_per_m;
 }

@@ -1,5 +1,5 @@
-// 3-DOF rendering of streaming point clouds with a spherical proxy: chapter 4, and with fixture radii in the
-// cloud chapter 5. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
+// 3-DOF rendering of streaming point clouds with a spherical proxy: chapter 4, or chapter 5 if the cloud has
+// fixture radii. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
 #pragma once
 
 #include <optional>
@@ -29,14 +29,14 @@ class ProxyRenderer final : public Renderer {
 
   void reserve(std::size_t points) override { near_.reserve(points, true, true); }
   void on_frame(const Frame& frame) override;
-  // The same with a motion that was measured by other means, in place of (4.3) and (4.13).
+  // Adds a frame with a motion that was measured by other means and replaces (4.3) and (4.13).
   void on_frame(const Frame& frame, const SurfaceMotion& motion);
   // Replaces the newest frame's points.
   void replace_points(std::shared_ptr<const NeighbourSearch> points);
   // Moves the proxy with a surface, world frame.
   void displace(const Vec3& displacement_m);
-  // stop: a tick also ends when the proxy in contact has converged (4.8). It always ends when a step changes
-  // nothing or steps_per_tick are made.
+  // Selects whether a tick also ends when the proxy in contact has converged (4.8). A tick always ends when a
+  // step changes nothing or after steps_per_tick steps.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
   // Sets r1, r2 and r3 of Table 4.2, for methods that adapt them to the points. pre: as for the constructor.
   void set_radii(double r1_m, double r2_m, double r3_m);
@@ -83,11 +83,11 @@ class ProxyRenderer final : public Renderer {
   bool is_clear_ = false;                  // clear_W_ is outside all regions of the newest frame
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy was placed at the first HIP
-  bool in_contact_ = false;                // stays true until the proxy is free and nothing holds it back
+  bool in_contact_ = false;                // stays true until a free tick, or until free at the HIP
   bool in_crease_ = false;                 // last result of takes_regions() under ContactRule::creases
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
-  double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // before the newest change
+  double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // k_s before the newest change
   FrameOrder order_;
   double frame_arrived_s_ = 0;
   double force_time_s_ = 0;                 // time of the tick whose force was computed last

@@ -7,14 +7,15 @@ namespace remote_touch {
 
 namespace {
 
-// A weighted sum of unit vectors shorter than this has no direction: what remains is rounding.
+// A weighted sum of unit vectors that is shorter than this has no direction, because it consists of rounding
+// errors.
 constexpr double kNoDirection = 1e-10;
 
 // A shorter distance to the next region is rounding: a region so near touches already.
 constexpr double kNoMotion_m = 1e-12;
 
-// sin(theta)^2 by series, for std::sin may differ in the last bit between machines; exact to 1e-16 below 1
-// rad and monotonic up to 90 degrees.
+// Returns sin(theta)^2. It is computed as a series, because std::sin may differ in the last bit between
+// machines. It is exact to 1e-16 below 1 rad and monotonic up to 90 degrees.
 double sine_squared(double degrees) {
   const double a = 2 * degrees * (3.14159265358979323846 / 180), a2 = a * a;  // sin^2 t = (1 - cos 2t) / 2
   double term = 1, sum = 0;
@@ -25,8 +26,9 @@ double sine_squared(double degrees) {
   return 0.5 * sum;
 }
 
-// Returns the printed reading of (4.9): the root of smallest magnitude of each point, ahead or behind, and
-// the smallest step of these. Roots beyond the distance to the HIP, in either direction, are ignored.
+// Returns the step of (4.9) as printed. Each point has the root of smallest magnitude, ahead or behind, and
+// the step is the smallest of these roots. Roots beyond the distance to the HIP, in either direction, are
+// ignored.
 double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& u, double radius,
                          double limit) {
   double step = limit;
@@ -46,8 +48,8 @@ Vec3 along(const Vec3& direction, double length, double norm) {
   return norm > 0 ? Vec3(direction * (length / norm)) : Vec3::Zero();
 }
 
-// (4.11), (4.12): share gamma of the way when it is shorter than r1, else xi r1. The fixed rule of [1]: small
-// steps.
+// Returns the step towards a goal, (4.11), (4.12): the fraction gamma of the way if the way is shorter than
+// r1, else the length xi r1. The fixed rule of [1] makes small steps of one length.
 Vec3 step_towards(const Vec3& goal, const ProxyParameters& p) {
   const double distance = goal.norm();
   if (p.step_rule == StepRule::fixed) return along(goal, std::min(p.fixed_step_m, distance), distance);
@@ -106,9 +108,9 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
   // again.
   const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
   double path_length = near.first_hit(p_W, step / length, reach, length);
-  // A region that ended an earlier step lies exactly at this distance, and a motion along it can meet it
-  // again at once by rounding. The proxy would then stay forever. The goal enters no touching region, so the
-  // distance is computed again with a smaller radius.
+  // A region that ended an earlier step lies exactly at this distance. Rounding can make a motion along this
+  // region meet it again at once, and the proxy would then stay forever. The goal enters no touching region,
+  // so the distance is computed again with a smaller radius.
   if (path_length < kNoMotion_m)
     path_length = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
   return step * (path_length / length);

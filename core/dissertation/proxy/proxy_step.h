@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// 4.2.1: entrenched below r1, contact from r1 to r2 with both ends, free above.
+// Returns the state of 4.2.1: entrenched below r1, contact from r1 to r2 (both included), free above r2.
 ContactState classify(double nearest_distance_m, const ProxyParameters& p);
 
 // Returns the unit vector of (4.1), or `previous` if the sum has no direction (no points, or symmetric ones).
@@ -19,27 +19,28 @@ Vec3 unit_normal(const ContactQuery& query, const Vec3& previous);
 // Returns the free step (4.4), (4.9): towards the HIP, up to the first point met. u = HIP - P.
 Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p);
 
-// Returns the step (4.5), (4.10) along the normal until no point entrenches the proxy. Without a normal the
-// step leads away from the HIP; if u is zero too, the step is zero.
+// Returns the step (4.5), (4.10): along the normal, until no point entrenches the proxy. If the normal is
+// zero, the step leads away from the HIP. If u is zero too, the step is zero.
 Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
                      const Vec3& u, const ProxyParameters& p);
 
 // Returns the step (4.6), (4.7), (4.11), (4.12): in the tangent plane if the HIP is below it (u.n < 0), else
-// straight to the HIP. (4.7) leaves d_k undefined; the rule of (4.11), (4.12) is applied to the length of u.
-// The exit rule (5.17): a HIP that is not below the plane, nor at P, frees the proxy by r2 - r1 along the
-// normal.
+// straight to the HIP. (4.7) does not define d_k; here the rule of (4.11), (4.12) is applied to the length of
+// u. If the exit rule is (5.17) and the HIP is neither below the plane nor at P, the step is r2 - r1 along
+// the normal, which frees the proxy.
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p);
 
-// Replaces contact_step() under ContactRule::regions: towards goal, the admissible_motion(), by the step size
-// of (4.11), (4.12), but only up to the first other point met. If nothing is in the way, goal = u, it is the
-// step of free motion.
+// Returns the step that replaces contact_step() when each region limits the motion by itself. goal: the
+// admissible_motion() for u. The step leads towards goal with the length of (4.11), (4.12), but only up to
+// the first other point that it meets. If nothing is in the way (goal = u), it is the step of free motion.
 Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
                  const ProxyParameters& p);
 
-// (4.8) in contact: the angle between -u and the normal is below theta. Free: P is the HIP.
+// Returns true if the proxy has converged. A proxy in contact has converged if the angle between -u and the
+// normal is below theta, (4.8). A free proxy has converged if P is the HIP. An entrenched proxy has not.
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p);
-// The same for a goal from admissible_motion(): the angle between -u and the cone of the touching regions'
-// normals.
+// Returns the same for a goal from admissible_motion(): true if the angle between -u and the cone of the
+// touching regions' normals is below theta.
 bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p);
 
 }  // namespace remote_touch

@@ -27,8 +27,8 @@ std::array<Vec3, 9> directions(const Vec3& normal_W, const Vec3& u) {
   return {n, kHalfWay * (n + a), kHalfWay * (n - a), kHalfWay * (n + b), kHalfWay * (n - b), a, -a, b, -b};
 }
 
-// Returns the distance along a line to the first position outside all regions. Infinite if it is max_m or
-// more, or if kMaxExits regions do not suffice.
+// Returns the distance along a line to the first position outside all regions. Returns infinity if that
+// distance is max_m or more, or if the line is not outside after kMaxExits regions.
 double exit_along(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W, const Vec3& direction,
                   double max_m, const ProxyParameters& p) {
   const auto outside = [&](const PointsView& points, const Vec3& q_W) {

@@ -4,8 +4,8 @@ namespace remote_touch {
 
 Vec3 VirtualCoupling::force(const Vec3& u, double since_frame_s, const Vec3& velocity,
                             double stiffness_N_per_m, double ticks) {
-  // The surface continues along v_hat between updates, and the proxy would continue with it. With u = HIP - P
-  // the term is therefore subtracted.
+  // The surface continues along v_hat between updates, and the proxy would continue with it. The term is
+  // subtracted, because u = HIP - P.
   Vec3 u_hat = u;
   if (p_.velocity_force == VelocityForce::minus) u_hat -= since_frame_s * velocity;
   if (p_.velocity_force == VelocityForce::plus) u_hat += since_frame_s * velocity;

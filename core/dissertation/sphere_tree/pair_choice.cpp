@@ -15,9 +15,9 @@ void PairChoice::begin() {
   rated_ = 0;
 }
 
-// No motion of half the look-ahead violates a pair with a larger gap. Nor does it violate, since normals
-// differ by 2 at most, a pair whose gap is larger than the deepest one's by twice that motion. The result
-// grows with the gap, so that an upper bound of the gap is enough.
+// A motion of half the look-ahead cannot violate a pair whose gap is larger than that. It also cannot violate
+// a pair whose gap is larger than the deepest one's by twice that motion, because normals differ by 2 at
+// most. The result grows with gap_m, so an upper bound of the deepest gap is enough.
 double PairChoice::within_m(double gap_m) const {
   if (gap_m > motion_m_) return std::min(gap_m, look_ahead_m_);
   return std::min(motion_m_, std::max(gap_m + 2 * motion_m_, 0.5 * gap_m));
@@ -40,7 +40,8 @@ std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Fou
   return deepest;
 }
 
-// The pairs of a leaf are sorted in chosen_: the deepest comes first.
+// Computes motion_m of the pairs that were added last. The pairs of a leaf are sorted: the deepest comes
+// first.
 void PairChoice::rate() {
   std::size_t first = rated_;
   for (; rated_ < chosen_.size(); ++rated_) {

@@ -36,7 +36,7 @@ void RegionContacts::reserve(std::size_t points) {
   collision_.reserve(points, points / RegionTree::kPatchPoints + 1);
 }
 
-// Returns an upper bound of the smallest gap of a leaf: its gap to one region.
+// Returns an upper bound of the smallest gap of a leaf: its gap to this region; infinity for kNone.
 double RegionContacts::bound_m(const CloseLeaf& leaf, std::uint32_t region) const {
   if (region == kNone) return kInfinite;
   const Sphere& other = regions_->spheres().leaves()[region];
@@ -50,9 +50,10 @@ ToolContact RegionContacts::contact(const ChosenPair& pair, const Eigen::Quatern
   return {leaf.centre - leaf.radius_m * n_T, n_T, -pair.gap_m, 1};
 }
 
-// The region in which a leaf was deepest at the last query, or its neighbour is deepest now, gives an upper
-// bound of its smallest gap. This limits the search: deep inside, to half of all pairs. The choice of pairs
-// does not depend on it.
+// The gap to any region is an upper bound of a leaf's smallest gap. Two regions give good bounds: the one in
+// which the leaf was deepest at the last query, and the one in which the leaf before it is deepest now. The
+// bound limits the query; deep inside the regions, to half of all pairs. It does not change the choice of
+// pairs.
 NearContacts RegionContacts::near(const ToolPose& pose, double, double) {
   choice_.begin();
   std::uint32_t neighbours = kNone;
@@ -71,8 +72,8 @@ NearContacts RegionContacts::near(const ToolPose& pose, double, double) {
   return {contacts_, -min_m};
 }
 
-// If there are too many pairs, half of the room is for the most urgent ones, which all hold a tool that is
-// wedged.
+// Makes the contacts. If there are too many pairs, half of the contacts are the most urgent pairs, because
+// these hold a tool that is wedged.
 void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
   constexpr std::size_t kHalf = ContactThinning::kMaxCount / 2;
   const std::span<const ChosenPair> chosen = choice_.chosen();
@@ -84,7 +85,8 @@ void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
   contacts_.insert(contacts_.end(), others_.begin(), others_.end());
 }
 
-// Once a pair that touches is known, or one that is nearly as near, pairs farther away have no effect.
+// The query needs no pairs beyond the smallest gap found so far, unless they touch, because they change no
+// result.
 RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N_per_m) {
   RegionTouch touch{kInfinite, 0, 0, own_stiffness_N_per_m};
   double weights = 0, weighted = 0;

@@ -22,15 +22,16 @@ struct RegionTouch {
 };
 
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless
-// another makes it redundant: see PairChoice. If more pairs remain than the motion can handle, and no leaf is
-// deep, those are dropped that only the longest motions can violate. While one is deep, half of the contacts
-// are the deepest, and for the other half ContactThinning keeps the deepest of every cell and octant of
-// directions, so that they are spread over the tool. The result does not depend on the kernels' level.
-// Allocates on construction and in on_frame() only.
+// another pair makes it redundant: see PairChoice. The motion program can handle only some of the remaining
+// pairs. If there are more and no leaf is deep, the pairs are dropped that only the longest motions can
+// violate. If a leaf is deep, half of the contacts are the most urgent pairs, the deepest first. The other
+// half are the deepest pairs of every cell and octant of directions, which ContactThinning selects, so that
+// they are spread over the tool. The result does not depend on the kernels' level. Allocates on construction
+// and in on_frame() only.
 class RegionContacts final : public NearContactSource {
  public:
-  // A pair with a gap of this or less touches. Its weight rises linearly from 0 at this gap to 1 at minus
-  // this.
+  // A pair with a gap of this or less touches. Its weight in the stiffness rises linearly from 0 at this gap
+  // to 1 at a gap of minus this.
   static constexpr double kTouch_m = 1e-4;
 
   // tool: in the tool frame.

@@ -8,7 +8,8 @@
 
 namespace remote_touch {
 
-// Most points of most frames have none.
+// Adds the regions of points first .. first + count - 1 to the present patch. The radius is tested first,
+// because most points of most frames have no region.
 void RegionTree::gather(const PointCloud& cloud, std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t point = first; point < first + count; ++point) {
     const double radius_m = cloud.fixture_radius_m[point];

@@ -9,9 +9,10 @@
 
 namespace remote_touch {
 
-// Every measured point with r_f above 0 has a leaf of that radius, in the world frame. Every patch of 16 x 16
-// pixels with such points has a node of the lowest level, in blocks of 4 x 4 patches. In a cloud without an
-// image, every kPatchPoints of them along a space-filling curve have one.
+// Every measured point with r_f above 0 has a leaf of that radius, in the world frame. The points of a patch
+// form a node of the lowest level. A patch is 16 x 16 pixels of an image, and patches follow each other in
+// blocks of 4 x 4. If the cloud has no image, a patch is kPatchPoints such points along a space-filling
+// curve.
 class RegionTree {
  public:
   static constexpr int kPatchSide_px = 16;

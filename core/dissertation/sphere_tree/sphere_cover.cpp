@@ -12,7 +12,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kMaxCellsOfBox = 1e7;  // a slim body across its box would have far more
+constexpr double kMaxCellsOfBox = 1e7;  // a slim body along the diagonal of its box would need far more
 
 }  // namespace
 
@@ -36,7 +36,7 @@ SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, d
       [&](std::size_t i, std::uint32_t to) { points_[to] = points[i]; });
 }
 
-// Clamped into the grid.
+// Returns the cell along an axis that contains x, or the nearest cell if x is outside the grid.
 std::int64_t SphereCover::cell_along(int axis, double x) const {
   const double cell = std::clamp((x - low_[axis]) / cell_m_, 0.0, static_cast<double>(cells_[axis] - 1));
   return static_cast<std::int64_t>(cell);
@@ -61,8 +61,8 @@ void SphereCover::within(const Sphere& sphere, const Act& act) const {
     }
 }
 
-// A sphere never covers more than it did before, so a count from an earlier round is a bound: only what is on
-// top of the heap has to be counted again.
+// A sphere never covers more points than before, so a count from an earlier round is an upper bound. Only the
+// sphere on top of the heap has to be counted again.
 SphereCover::Result SphereCover::cover(double inflation_m, std::size_t max) const {
   struct Entry {
     std::uint32_t count, sphere;

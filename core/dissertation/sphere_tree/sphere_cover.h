@@ -15,9 +15,9 @@ class SphereCover {
   // about the size of a sphere.
   SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m);
 
-  // Selects spheres of the choice, grown by inflation_m, until all points are covered that any of them
-  // covers, or until there are more than max. If two cover equally many, the one that comes first is
-  // selected.
+  // Selects spheres of the choice, grown by inflation_m. It ends when every point is covered that any of them
+  // covers, or when more than max are selected. If two spheres cover equally many points, the one that comes
+  // first is selected.
   struct Result {
     std::vector<Sphere> spheres;
     std::size_t left = 0;  // points that are not covered

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRounding = 1 + 1e-12;  // factor on distances: a bounding sphere is never too small
 
-// Bounding sphere (7.3) of count items; item(i) -> const Sphere&.
+// Returns the bounding sphere (7.3) of count items; item(i) returns a const Sphere&.
 template <class Item>
 Sphere around(std::size_t count, const Item& item) {
   Sphere all;

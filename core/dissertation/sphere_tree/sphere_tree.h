@@ -1,4 +1,5 @@
-// Spheres under bounding spheres, 7.3.2 and 7.4: everything that is far away is skipped with one test.
+// A tree of bounding spheres over spheres, 7.3.2 and 7.4: one test skips everything below a node that is far
+// away.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +17,8 @@ struct Sphere {
   double radius_m = 0;
 };
 
-// Bounding sphere around the mean of the centres, (7.3): fast to compute, but not the smallest. pre: not
-// empty.
+// Returns the bounding sphere around the mean of the centres, (7.3). It is fast to compute, but not the
+// smallest. pre: not empty.
 Sphere bounding_sphere(std::span<const Sphere> spheres);
 
 // A box around the centres of spheres, and their largest radius: tighter than a bounding sphere if many large
@@ -44,12 +45,13 @@ struct SphereNode {
 // NOLINTNEXTLINE(bugprone-reserved-identifier): a name that the compiler gives in a comparison of arrays
 class SphereTree {
  public:
-  // Number of nodes in each node above the lowest level, as long as there are more.
+  // Number of children of a node above the lowest level; the last node of a level can have fewer. The top
+  // level has no more nodes than this.
   static constexpr std::size_t kBranching = 8;
 
   void clear();  // keeps the memory
-  // Adds a node of the lowest level. Nodes added one after the other should be near each other, because they
-  // share a node of the next level. Without leaves no node is added.
+  // Adds a node of the lowest level with these leaves; no node if there are none. Nodes added one after the
+  // other should be near each other, because they share a node of the next level.
   void add(std::span<const Sphere> leaves);
   // Makes the levels above. To be called once, after the last add().
   void finish();
@@ -72,8 +74,8 @@ class SphereTree {
   std::vector<Sphere> leaves_;
   std::vector<std::vector<SphereNode>> levels_;  // the first level_count_ are in use
   std::size_t level_count_ = 0;
-  // The leaves once more, in the layout of SphereRun: the leaves of each node, and boxes around kLanes of
-  // them.
+  // The leaves once more, in the layout of SphereRun: each node's leaves in columns, and a box around each
+  // kLanes of them.
   struct RunStart {
     std::size_t leaf, group;
   };

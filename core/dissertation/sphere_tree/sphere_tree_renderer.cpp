@@ -65,7 +65,7 @@ void SphereTreeRenderer::on_frame(const Frame& frame) {
   updated_ = true;
 }
 
-// One tick of the quasi-static motion, 7.4.2, and the springs of 7.4.3.
+// Moves the tool by one tick of the quasi-static motion, 7.4.2.
 void SphereTreeRenderer::follow(const ToolPose& device, RenderOutput& out) {
   const ToolMotionReport report = motion_.move(pose_, device, contacts_, std::exchange(updated_, false));
   take_report(report, normal_W_, out);
@@ -77,7 +77,7 @@ RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
   out.tool.emplace();
   const std::optional<ToolPose> target = device_pose(device);
   if (!target) {
-    out.status = RenderStatus::device_not_finite;  // hold still and let go
+    out.status = RenderStatus::device_not_finite;  // the tool rests and the force is zero
   } else {
     if (!placed_) pose_ = *target, placed_ = true;
     if (order_.newest() < 0) {

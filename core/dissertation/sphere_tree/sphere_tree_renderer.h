@@ -15,11 +15,11 @@
 namespace remote_touch {
 
 // The device holds the tool by its centre of mass. Only points with r_f above 0 have a region. If a point has
-// a k_s, it is the stiffness of the coupling while its region holds the tool, (5.3).
+// a k_s, it is the stiffness of the coupling while the tool touches its region, (5.3).
 //
-// Outputs: nearest_distance_m is the smallest gap between a leaf of the tool and a region, infinite beyond
-// the look-ahead; contact_count is the number of leaf pairs that touch, contact_clusters that of the tool's
-// leaves among them; tool_penetration_m is the depth of the deepest leaf in a region.
+// Outputs: `nearest_distance_m` is the smallest gap between a leaf of the tool and a region; infinite beyond
+// the look-ahead. `contact_count` is the number of touching pairs of leaves. `contact_clusters` is the number
+// of the tool's leaves in these pairs. `tool_penetration_m` is the depth of the deepest leaf in a region.
 class SphereTreeRenderer final : public Renderer {
  public:
   // Uses only the parameters that region_parameters() lists. spheres: leaves of the tool, in its frame. pre:
@@ -50,7 +50,7 @@ class SphereTreeRenderer final : public Renderer {
   FrameOrder order_;
 };
 
-// The parameters of a tool that have an effect among regions.
+// Returns the parameters of a tool that have an effect on the motion among regions.
 Parameters region_parameters(ToolParameters& p);
 
 }  // namespace remote_touch

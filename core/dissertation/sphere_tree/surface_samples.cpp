@@ -15,8 +15,8 @@ Vec3 corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
   return mesh.vertices[static_cast<std::size_t>(mesh.triangles[triangle][i])];
 }
 
-// Adds samples in rows along the longest side a to a + base, up to the corner a + up. A fine mesh gets many
-// more than one for every square of side spacing_m.
+// Adds samples in rows that are parallel to the longest side, from a to a + base, up to the corner a + up. A
+// mesh of small triangles has many more samples than one for every square of side spacing_m.
 void add_rows(const Vec3& a, const Vec3& base, const Vec3& up, double spacing_m, std::vector<Vec3>& samples) {
   const double length = base.norm(), height = length > 0 ? base.cross(up).norm() / length : 0;
   const int columns = std::max(1, static_cast<int>(std::ceil(length / spacing_m))),

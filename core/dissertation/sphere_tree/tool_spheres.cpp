@@ -15,7 +15,7 @@ namespace remote_touch {
 
 namespace {
 
-// Approximate number of surface positions to be covered: it grows with the number of leaves.
+// Approximate number of surface positions to be covered: kSamples plus kSamplesOfLeaf for every leaf.
 constexpr double kSamples = 60000, kSamplesOfLeaf = 100;
 constexpr double kDenser = 0.4;      // relative spacing of the positions at which the result is measured
 constexpr double kDominated = 0.85;  // see inscribed_balls()
@@ -23,9 +23,9 @@ constexpr int kBisections = 12;      // steps of the search for the growth
 constexpr int kPlacesOfLeaf = 200;   // positions on a leaf at which its distance from the mesh is measured
 constexpr std::size_t kLeavesOfNode = 8;
 
-// Returns the largest balls inscribed in the tool: those around nodes of the field near its medial axis. From
-// any other node the distance to the surface grows towards one of the neighbours by nearly the full distance
-// between them, and the ball there holds the ball here.
+// Returns large balls inscribed in the tool: those around the nodes of the field that are near its medial
+// axis. Every other node has a neighbour whose distance to the surface is larger by nearly the distance
+// between the two nodes, so the neighbour's ball nearly contains this one.
 std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& triangles) {
   const VoxelGrid& grid = tool.grid;
   const int n[3] = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
@@ -57,8 +57,8 @@ std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& t
   return balls;
 }
 
-// Finds the least growth with which max_leaves cover the surface, by bisection between none and the whole
-// tool.
+// Finds the smallest growth with which max_leaves balls cover the surface, by bisection between zero and the
+// size of the tool.
 SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, std::size_t max_leaves,
                              double& inflation_m) {
   double low = 0, high = 2 * tool.reach_m;
@@ -76,8 +76,8 @@ SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, st
   return best;
 }
 
-// Sorts leaves so that those near each other follow each other: halves along the longest side, and halves of
-// these.
+// Sorts leaves so that those near each other follow each other: it halves the list along the longest side of
+// the box of the centres, and then halves each half.
 void sort_by_place(std::span<Sphere> leaves) {
   if (leaves.size() <= 2) return;
   BoundingBox box;
@@ -102,7 +102,8 @@ SphereTree tree_of(std::vector<Sphere> leaves) {
   return tree;
 }
 
-// Returns the largest distance of a sample of the surface outside all leaves.
+// Returns the largest distance between the leaves and a sample outside all of them; 0 if no sample is
+// outside.
 double max_surface_outside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
   double max_distance = 0;
 #pragma omp parallel for reduction(max : max_distance)
@@ -114,7 +115,8 @@ double max_surface_outside_m(std::span<const Vec3> samples, std::span<const Sphe
   return max_distance;
 }
 
-// Returns the largest distance of a position on a leaf outside the mesh, over positions spread evenly on it.
+// Returns the largest distance from the mesh of those positions on leaves that lie outside it. The positions
+// are spread evenly over each leaf. Returns 0 if none lies outside.
 double max_outside_m(const VoxelTool& tool, const TriangleTree& triangles, std::span<const Sphere> leaves) {
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
   double max_distance = 0;

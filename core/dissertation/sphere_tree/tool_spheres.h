@@ -14,16 +14,17 @@ struct ToolSpheres {
   SphereTree spheres;  // tree in the tool frame
   double inflation_m = 0;
   // Deviation of the union of the leaves from the mesh, measured on dense samples. outside_m: largest
-  // distance of a leaf outside the mesh, at most inflation_m. surface_outside_m: largest distance of the
-  // surface outside all leaves, which enlarging the leaves brought to 0 on these samples.
+  // distance between the mesh and a position of a leaf outside it, at most inflation_m. surface_outside_m:
+  // largest distance between the leaves and a position of the surface outside them; 0 but for rounding,
+  // because the leaves were enlarged until they contained these samples.
   double outside_m = 0, surface_outside_m = 0;
 };
 std::string text(const ToolSpheres& spheres);
 
 inline constexpr int kMinLeaves = 1, kMaxLeaves = 10000;
 
-// Makes at most max_leaves leaves, fewer if they suffice. pre: max_leaves is in the range above. Throws
-// InputError for a tool without a node of its grid inside.
+// Makes at most max_leaves leaves, or fewer if these suffice. pre: kMinLeaves <= max_leaves <= kMaxLeaves.
+// Throws InputError if no node of the tool's grid is inside the tool.
 ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);
 
 }  // namespace remote_touch

@@ -108,7 +108,7 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
   return found;
 }
 
-// Keeps a heap once there is no more room: the shallowest of the kept pairs is on top.
+// When `pairs` is full, it becomes a heap with the shallowest of the kept pairs on top.
 std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
   std::size_t count = 0;
   for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {

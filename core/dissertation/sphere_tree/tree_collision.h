@@ -1,4 +1,4 @@
-// Detection of near pairs of leaves of a tool's sphere tree and of the forbidden regions, 7.4.1.
+// Detects near pairs of a leaf of a tool's sphere tree and a forbidden region, 7.4.1.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,10 @@ class TreeCollision {
   void on_frame(const SphereTree& regions);
   void reserve(std::size_t leaves, std::size_t patches);  // numbers of leaves and patches of the regions
 
-  // Returns every leaf with a pair within margin_m, and some others, in the order of their numbers; valid
-  // until the next call. Descends the tool's tree depth first against the top level of the regions' tree,
-  // then the regions' tree against every node of the tool's lowest level, so that the search is shared by the
-  // leaves of a node.
+  // Returns every leaf of the tool that has a pair within margin_m, and some others, in the order of their
+  // numbers. Valid until the next call. The search first descends the tool's tree, depth first, against the
+  // top level of the regions' tree. Then it descends the regions' tree against every node of the tool's
+  // lowest level, so that the leaves of a node share this search.
   std::span<const CloseLeaf> close_leaves(const ToolPose& pose, double margin_m);
 
   // Returns all regions with gaps of margin_m or less to one of these leaves, in the order of their numbers;
@@ -46,14 +46,15 @@ class TreeCollision {
   };
   Found regions_near(const CloseLeaf& leaf, double margin_m);
 
-  // Writes all pairs with gaps of margin_m or less, ordered by the leaf of the tool, then the region. If
-  // `pairs` is too short, it gets the deepest, and among equally deep ones those with the smaller numbers.
-  // Returns the number of all pairs.
+  // Writes all pairs with gaps of margin_m or less, sorted by the leaf of the tool, then by the region. If
+  // `pairs` is too short, the deepest pairs are written; pairs with smaller numbers come first among equally
+  // deep ones. Returns the number of all pairs.
   std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
 
  private:
   void meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops);
-  // Returns those of the topmost regions that are near a sphere of the tool.
+  // Returns the nodes of the regions' top level, among those in the bits of `among`, that are near a sphere
+  // of the tool.
   std::uint32_t tops_near(const Sphere& sphere_W, std::uint32_t among) const;
   Sphere placed(const Sphere& sphere_T) const;
   void meet_regions(std::size_t level, std::uint32_t number, const Sphere& node_W);

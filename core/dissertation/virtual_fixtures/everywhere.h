@@ -1,4 +1,4 @@
-// Every point of a frame is protected, as in 5.3.3.
+// A rule that selects every measured point of a frame, as in 5.3.3.
 #pragma once
 
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// Moves `from` towards `to` by the weight. A weight of 1 returns exactly `to`.
+// Interpolates between `from` (weight 0) and `to` (weight 1). A weight of 1 returns exactly `to`.
 double drawn(double from, double to, double weight) {
   return weight == 1 ? to : from + weight * (to - from);
 }
@@ -34,7 +34,7 @@ void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
   }
 }
 
-// Calls act(). An InputError that it throws is thrown again as an error of rule i.
+// Calls act(). If it throws an InputError, another one is thrown that names rule i.
 template <class Act>
 void about_rule(std::size_t i, const Act& act) {
   try {

@@ -26,18 +26,19 @@ class FixtureAssignment {
   // Throws InputError if the cloud lacks data that a rule needs, even if that rule is off or has strength 0.
   void require(const PointCloud& cloud) const;
 
-  // Fills the columns of the cloud. They start with the cloud's own values; without a column r_f is 0 and k_s
-  // the renderer's own. Then each forbidden rule in turn moves the values of its points towards its own, by
-  // its weight for the point times its strength at captured_s, so a later rule overrides an earlier one. A
-  // point without its own stiffness takes the rule's at once. Without rules nothing is changed. Throws
-  // InputError as FixtureRule::weights().
+  // Writes the columns of r_f and k_s. They start with the cloud's own values; if the cloud lacks a column,
+  // r_f starts at 0 and k_s at the renderer's own. Then each forbidden rule in turn changes the values of the
+  // points that it selects: it interpolates between the present value and its own by the weight of the point
+  // times the strength of the rule at captured_s. So a later rule overrides an earlier one. A point that has
+  // no stiffness yet receives that of the rule without interpolation. If there are no rules, the cloud is not
+  // changed. Throws InputError like FixtureRule::weights().
   void assign(PointCloud& cloud, double captured_s) const { assign(cloud, captured_s, off()); }
-  // The same with these forbidden rules off, as off() returned them earlier.
+  // Does the same with these forbidden rules off, as off() returned them earlier.
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
   std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
 
-  // Returns the work of assign() as numbers that an OpenCL device can apply. Empty unless there are rules and
-  // every rule is a HueRange in the role forbidden.
+  // Returns the work of assign() as numbers that an OpenCL device can apply. Returns nullopt if there are no
+  // rules, or if a rule is not a HueRange or not in the role forbidden.
   std::optional<HueSteps> hue_steps(double captured_s, std::uint64_t off) const;
 
   // Returns the targets of all guidance rules in their order, each with the strength of its rule. A target of

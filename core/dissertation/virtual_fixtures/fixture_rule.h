@@ -13,15 +13,15 @@ namespace remote_touch {
 // The effect of a rule: it keeps the tool away from its points, or guides the tool to them.
 enum class FixtureRole { forbidden, guidance };
 
-// The values that every rule assigns to the points that it selects, and the schedule of its strength. A
-// guidance rule leaves r_f and k_s unchanged. Its points define a target, see GuidanceTarget; its radius is
-// the distance at which the goal counts as reached; its stiffness is that of the spring (-1: that of
-// GuidanceSettings).
+// The values that a rule assigns to the points that it selects, and the schedule of its strength. The members
+// have another meaning in a guidance rule, which leaves r_f and k_s unchanged. Its points define a target,
+// see GuidanceTarget. Its radius is the distance at which the goal counts as reached. Its stiffness is that
+// of the spring (-1: that of GuidanceSettings).
 struct FixtureValues {
-  double radius_m = 0.02;         // r_f of (5.2); -1: left as it is
-  double stiffness_N_per_m = -1;  // k_s of (5.3); -1: left as it is
-  // Rows of time in seconds and strength in [0, 1]: linear between them, a jump where two have the same time,
-  // constant before the first and after the last. Empty: always 1.
+  double radius_m = 0.02;         // r_f of (5.2); -1: not changed
+  double stiffness_N_per_m = -1;  // k_s of (5.3); -1: not changed
+  // Rows of time in seconds and strength in [0, 1]. The strength is linear between rows, jumps where two rows
+  // have the same time, and is constant before the first row and after the last. Empty: always 1.
   std::vector<double> schedule{};
   FixtureRole role = FixtureRole::forbidden;
   std::string label{};  // name of the rule in a sequence

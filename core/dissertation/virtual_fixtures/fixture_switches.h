@@ -1,4 +1,4 @@
-// The switches of the fixtures: a task locks and unlocks fixtures while it runs.
+// Switches that lock and unlock fixtures while a task runs.
 #pragma once
 
 #include <atomic>
@@ -7,8 +7,8 @@
 
 namespace remote_touch {
 
-// Fixtures are numbered by their index in the list. The switches are set in the haptic loop and read where
-// frames are processed. A change takes effect with the next frame that is processed.
+// A fixture is identified by its index in the list of rules. The switches are set in the haptic loop and read
+// where frames are processed. A change has an effect from the next processed frame on.
 class FixtureSwitches {
  public:
   static constexpr std::size_t kMaxCount = 64;

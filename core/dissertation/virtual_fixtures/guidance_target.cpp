@@ -6,8 +6,8 @@ namespace remote_touch {
 
 namespace {
 
-// True if the point has a share in the target. A point that was not measured has none, whatever its rule
-// says.
+// Returns true if the point contributes to the target. A point that was not measured does not, whatever
+// weight the rule gives it.
 bool counts(const PointCloud& cloud, const std::vector<double>& weights, std::size_t i) {
   return weights[i] > 0 && cloud.is_measured(i);
 }
@@ -28,7 +28,7 @@ Vec3 normal_of(const Eigen::Matrix3d& scatter, const Vec3& to_sensor_W) {
   const double across = axes.eigenvalues()[0], shorter = axes.eigenvalues()[1],
                longer = axes.eigenvalues()[2];
   constexpr double kFlat = GuidanceTarget::kFlat, kLine = GuidanceTarget::kLine;
-  // The plane of points in a line would be chosen by rounding alone.
+  // If the points lie in a line, rounding alone would choose the plane.
   if (!(shorter > kLine * kLine * longer) || across > kFlat * kFlat * shorter) return Vec3::Zero();
   const Vec3 normal = axes.eigenvectors().col(0).normalized();
   return normal.dot(to_sensor_W) < 0 ? Vec3(-normal) : normal;

@@ -13,11 +13,12 @@ namespace remote_touch {
 
 // The target of one fixture in one frame; world frame.
 struct GuidanceTarget {
-  std::size_t points = 0;      // number of points that the rule selects; 0: the frame shows no target
+  std::size_t points = 0;      // number of points that the rule selects; 0: no target in the frame
   Vec3 mean_W = Vec3::Zero();  // weighted mean of their positions
-  // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for fewer
-  // than three points, or if they are no plane: their standard deviation along the normal is above kFlat
-  // times that along the plane's shorter axis, or this is at most kLine times that along the longer axis.
+  // Unit normal of the plane that fits them by weighted total least squares, towards the sensor. It is zero
+  // for fewer than three points. It is also zero if they do not form a plane: if their standard deviation
+  // along the normal is above kFlat times that along the plane's shorter axis, or if the latter is at most
+  // kLine times that along the longer axis.
   Vec3 normal_W = Vec3::Zero();
   double strength = 1;  // strength of its rule when the frame was captured, 0 to 1
   static constexpr double kFlat = 0.25, kLine = 1e-3;
@@ -26,8 +27,9 @@ struct GuidanceTarget {
   bool is_flat() const { return !normal_W.isZero(0); }
 };
 
-// weights: weight of each point, 0 to 1, as FixtureRule::weights() returns it. Points that are not finite are
-// ignored. The sensor is at the camera of the cloud's image, else at the origin.
+// Returns the target. weights: weight of each point, 0 to 1, as FixtureRule::weights() returns it. Points
+// that are not finite are ignored. The sensor is assumed at the camera of the cloud's image; at the origin if
+// the cloud has no image.
 GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// The points on one side of a plane, as in 5.3.2.
+// A rule that selects the points on one side of a plane, as in 5.3.2.
 #pragma once
 
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
@@ -14,8 +14,8 @@ class HalfSpace final : public FixtureRule {
     double transition_m = 0;
   };
   explicit HalfSpace(const Settings& settings);
-  // The plane itself belongs to the half-space; with a transition the weight rises linearly from 0 at the
-  // plane.
+  // The plane itself belongs to the half-space. If transition_m is above 0, the weight rises linearly from 0
+  // at the plane to 1 at that distance.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

@@ -1,4 +1,4 @@
-// The points of a colour, 7.3.2: objects to protect or to guide to are marked by their hue.
+// A rule that selects points by their colour, 7.3.2: the hue marks objects to protect or to guide to.
 #pragma once
 
 #include <vector>
@@ -29,8 +29,8 @@ class HueRange final : public FixtureRule {
   const Settings settings_;
 };
 
-// A rule of forbidden regions at one moment. Such rules, applied in order, fill the columns of r_f and k_s as
-// FixtureAssignment::assign() does.
+// A HueRange in the role forbidden, with its strength at one moment. A list of these, applied in order, gives
+// the same columns of r_f and k_s as FixtureAssignment::assign().
 struct HueStep {
   HueRange::Settings range;
   double strength = 1;

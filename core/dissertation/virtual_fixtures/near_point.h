@@ -1,4 +1,5 @@
-// The points around a selected one: a position in the world, or the point of a pixel in each frame.
+// A rule that selects the points around a centre: a position in the world, or the point that a pixel has in
+// each frame.
 #pragma once
 
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
@@ -16,10 +17,11 @@ class NearPoint final : public FixtureRule {
     double falloff_m = 0;
   };
   explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
-  // If a pixel is set, the cloud must be an image that contains it.
+  // Throws InputError if a pixel is set and the cloud is not an image that contains it.
   void require(const PointCloud& cloud) const override;
-  // The weight is 1 up to inner_radius_m, then falls linearly to 0 over falloff_m. A selected pixel without a
-  // depth is replaced by the nearest one, in pixels, that has a depth. If there is none, all weights are 0.
+  // The weight is 1 up to inner_radius_m from the centre, and then falls linearly to 0 over falloff_m. If the
+  // selected pixel has no depth, the nearest pixel (in the image) that has one replaces it. If no pixel has a
+  // depth, all weights are 0.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

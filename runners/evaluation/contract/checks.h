@@ -1,4 +1,4 @@
-// The rules of each contract; README.md has the list. A rule reports what is wrong as failures of GoogleTest.
+// The rules of each contract; README.md has the list. A rule reports violations as failures of GoogleTest.
 #pragma once
 
 #include <span>
@@ -19,10 +19,11 @@ std::span<const ContractCheck<TrajectoryEntry>> trajectory_checks();
 std::span<const ContractCheck<RendererEntry>> renderer_checks();
 std::span<const ContractCheck<Measure>> measure_checks();
 
-// The defaults are in their ranges and valid together; names are different, and none is `name`.
+// Checks that the defaults are within their ranges and valid together, that every setting has a line of help,
+// and that the names of the settings differ from each other and from `name`.
 void check_settings(Configurable& factory);
 
-// A new factory of the entry, with its defaults and what fill adds.
+// Returns a new factory of the entry: its defaults, then the values that fill sets.
 template <class Entry>
 auto filled(const Entry& entry, const FillSettings& fill) {
   auto factory = entry.make();

@@ -1,5 +1,6 @@
-// The contracts of a catalog's entries as tests: a test program of yours holds your renderers, scenarios,
-// fixture rules, trajectories and measures to what every part of this program relies on.
+// Runs the contracts of a catalog's entries as tests. Your own test program checks with them that your
+// renderers, scenarios, fixture rules, trajectories and measures keep what every part of this program relies
+// on.
 //
 //   int main(int argc, char** argv) {
 //     testing::InitGoogleTest(&argc, argv);
@@ -7,7 +8,7 @@
 //     return RUN_ALL_TESTS();
 //   }
 //
-// What the contracts are, one line each: runners/evaluation/contract/README.md.
+// runners/evaluation/contract/README.md describes each contract in one line.
 #pragma once
 
 #include <functional>
@@ -17,11 +18,11 @@
 
 namespace remote_touch {
 
-// Gives settings that have no usable default a value, such as the file that `path` names. name: of the entry.
+// Sets the settings that have no usable default, such as the file that `path` names. name: the entry's name.
 using FillSettings = std::function<void(const std::string& name, const Parameters& settings)>;
 
 // Registers a test for every entry and every rule of its contract: RendererContract.NoForceInFreeSpace/NAME.
-// Before RUN_ALL_TESTS(). From then on the program uses the built-in catalog with these entries in addition.
+// Must be called before RUN_ALL_TESTS(). The program then uses the built-in catalog with these entries added.
 void contract_tests(const Catalog& catalog, const FillSettings& fill = {});
 
 }  // namespace remote_touch

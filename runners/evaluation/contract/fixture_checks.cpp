@@ -14,7 +14,8 @@ namespace remote_touch {
 
 namespace {
 
-// A wall 0.6 m away in 8 x 6 pixels, of all colours, the upper left of which saw nothing.
+// Returns an image of 8 x 6 pixels of a wall 0.6 m away, each pixel in another colour. The upper left 2 x 2
+// pixels measured nothing: their points are NaN.
 PointCloud coloured_image() {
   PointCloud cloud;
   cloud.image = ImageLayout{{8, 6, 10, 10, 3.5, 2.5}, RigidTransform::Identity(), 0};
@@ -95,7 +96,7 @@ void settings_survive_a_round_trip_through_an_experiment(const FixtureEntry& ent
   Json rule = {{"name", entry.name}};
   write_parameters(made->settings(), rule);
   Json json = Json::parse(Experiment::load("fig4.11").to_json());
-  json["fixtures"] = {rule, rule};  // a rule may come twice
+  json["fixtures"] = {rule, rule};  // an experiment may contain the same rule twice
   const Experiment experiment = Experiment::from_json(json);
   const std::string text = experiment.to_json();
   EXPECT_EQ(Json::parse(text)["fixtures"], json["fixtures"]);

@@ -9,7 +9,7 @@
 
 namespace remote_touch::scenes {
 
-// n x n points at a height y, centred.
+// Returns n x n points in the plane of height y, centred about the y axis.
 inline PointCloud flat_grid(int n, double spacing = 0.0015, double y = 0) {
   PointCloud cloud;
   cloud.grid_columns = n;

@@ -12,7 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-// A press, a press of a tool, a run with guidance, and a press against an unknown surface; each is run once.
+// Returns four traces: a press, a press of a tool, a run with guidance, and a copy of the first press whose
+// distances to the surface are unknown (NaN). The runs are simulated once.
 const std::vector<Trace>& traces() {
   static const std::vector<Trace> all = [] {
     std::vector<Trace> made;

@@ -19,14 +19,16 @@ std::unique_ptr<Renderer> build(const RendererEntry& entry, const FillSettings& 
   return filled(entry, fill)->build(1000, scenes::kernels());
 }
 
-// A flat cloud that holds the renderer: with regions, where it knows nothing else.
+// Returns a flat cloud that supports the proxy. A renderer of forbidden regions receives points with regions
+// of 5 mm, because it renders no others.
 PointCloud grid_for(const RendererEntry& entry, int n) {
   PointCloud cloud = scenes::flat_grid(n);
   if (entry.contact_model == ContactModel::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
   return cloud;
 }
 
-// A press into a flat cloud with a new frame every 33 ticks, and back out.
+// Presses the HIP 3 cm into a flat cloud and withdraws it again, with a new frame every 33 ticks. Returns the
+// output of each tick.
 std::vector<RenderOutput> press(const RendererEntry& entry, Renderer& renderer) {
   std::vector<RenderOutput> outputs;
   for (int tick = 0; tick < 200; ++tick) {
@@ -68,8 +70,8 @@ void pushes_the_hand_out_of_the_surface(const RendererEntry& entry, const FillSe
   EXPECT_GT(highest, 1) << entry.name;
 }
 
-// Holds the HIP at a height above a flat cloud for 300 ticks of 1 ms, until the force is steady too. Returns
-// the force along y, N.
+// Holds the HIP at a height over the plane of the cloud (m, negative below it) for 300 ticks of 1 ms, so that
+// the force is steady at the end. Returns the force along y, N.
 double resting_force(Renderer& renderer, double height, double start_s) {
   RenderOutput out;
   for (int tick = 0; tick < 300; ++tick) out = renderer.step({Vec3(0, height, 0)}, start_s + 0.001 * tick);
@@ -110,7 +112,7 @@ std::vector<std::string> names(const Parameters& parameters) {
   return all;
 }
 
-// Another value that is allowed together with the rest.
+// Returns another value of the parameter, which is valid together with the unchanged other parameters.
 double other_value(const Parameter& parameter) {
   const double value = number_of(parameter);
   if (std::holds_alternative<bool*>(parameter.value)) return 1 - value;
@@ -127,7 +129,8 @@ void its_live_parameters_are_those_that_are_marked(const RendererEntry& entry, c
         << entry.name << ": " << parameter.name;
 }
 
-// A press into an uneven cloud that rises by 2 mm a frame: every live parameter has an effect.
+// Presses the HIP into an uneven cloud that rises by 2 mm a frame, so that every live parameter has an
+// effect.
 std::vector<RenderOutput> press_on_rising(const RendererEntry& entry, Renderer& renderer) {
   std::vector<RenderOutput> outputs;
   for (int tick = 0; tick < 300; ++tick) {
@@ -207,7 +210,8 @@ void a_step_allocates_nothing(const RendererEntry& entry, const FillSettings& fi
   }
 }
 
-// Frames as a live loop hands them over: prepared elsewhere, and held elsewhere until after the next.
+// `live` receives its frames as in a live loop: another part of the program prepares them, and keeps each of
+// them at least until the next one has been handed over.
 void a_prepared_frame_gives_the_same_answers_and_is_taken_without_allocating(const RendererEntry& entry,
                                                                              const FillSettings& fill) {
   const auto plain = build(entry, fill), live = build(entry, fill);
@@ -269,7 +273,8 @@ void a_device_that_is_not_finite_gets_no_force_and_does_no_harm(const RendererEn
   const auto renderer = build(entry, fill);
   const double height = entry.contact_model == ContactModel::nothing ? 0.002 : -0.02;
   renderer->on_frame(scenes::frame(grid_for(entry, 60)));
-  // Pressed from 2 cm above, until it rests: some proxies move by millimetres a tick.
+  // The HIP is pressed from 2 cm above until the proxy rests, because some proxies move by only millimetres a
+  // tick.
   RenderOutput before;
   for (int tick = 0; tick < 100; ++tick)
     before = renderer->step({Vec3(0, tick == 0 ? 0.02 : height, 0)}, 0.001 * tick);

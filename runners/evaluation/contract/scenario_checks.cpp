@@ -38,7 +38,7 @@ void files_that_settings_name_are_told(const ScenarioEntry& entry, const FillSet
 void frames_are_pure(const ScenarioEntry& entry, const FillSettings& fill) {
   const auto one = scenario_of(entry, fill), other = scenario_of(entry, fill);
   const int last = std::min(3, one->frame_count() - 1);
-  one->cloud(last);  // asked in another order, it answers the same
+  one->cloud(last);  // a query in another order must give the same clouds
   for (const int frame : {0, last}) {
     const PointCloud a = one->cloud(frame), b = other->cloud(frame);
     EXPECT_GT(a.size(), 0u);

@@ -23,7 +23,7 @@ void poses_are_pure_and_finite(const TrajectoryEntry& entry, const FillSettings&
   const auto factory = filled(entry, fill);
   const auto one = factory->build(*scene), other = factory->build(*scene);
   for (int i = 0; i < 200; ++i) {
-    const double time_s = 0.01 * ((i * 37) % 200);  // asked in another order, it answers the same
+    const double time_s = 0.01 * ((i * 37) % 200);  // queries in any order must give the same poses
     EXPECT_TRUE(one->at(time_s).position_W.allFinite());
     EXPECT_TRUE(is_near_origin(one->at(time_s).position_W));
     EXPECT_EQ(one->at(time_s).position_W, other->at(time_s).position_W);

@@ -34,7 +34,7 @@ Criterion criterion_of(const LiftMap& lifts, double low, double high) {
 }
 
 Table criterion_table(const LiftMap& lifts) {
-  // Noise-free, and steps of half an r_c; no node lies on an edge.
+  // The first range is noise-free, the others are half an r_c wide. No node of the map lies on an edge.
   constexpr double kEdges[] = {0, 0.01, 0.51, 1.01, 1.51, 2.01, 2.51, 3.01};
   std::vector<double> from, holds_stays, holds_pops, fails_stays, fails_pops, agreement;
   for (std::size_t i = 0; i + 1 < std::size(kEdges); ++i) {
@@ -141,7 +141,7 @@ Table calibration_table(const MeasuredNoise& noise, const Table& map) {
     std::vector<double> mean_predicted, mean_observed, count;
     for (int bin = 0; bin < kBins; ++bin) {
       const auto slot = static_cast<std::size_t>(range * kBins + bin);
-      mean_predicted.push_back(predicted[slot] / cells[slot]);  // NaN where there is none
+      mean_predicted.push_back(predicted[slot] / cells[slot]);  // NaN for a bin without cells
       mean_observed.push_back(observed[slot] / cells[slot]);
       count.push_back(cells[slot]);
     }

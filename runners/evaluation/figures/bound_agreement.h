@@ -9,16 +9,16 @@
 
 namespace remote_touch {
 
-// Counts of the updates in which (4.17) agrees, or does not, with the outcome of the update. (4.18) is the
-// same, rewritten for a cloud that moves along its normal.
+// Number of updates by whether (4.17) holds and by their outcome: the proxy stays above the plane, or pops
+// through. (4.18) is the same criterion, rewritten for a cloud that moves along its normal.
 struct Criterion {
   double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
   double agreement() const {
     return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
   }
 };
-// Counts the updates with acceleration, until the proxy is below the plane, in lifts with noise in [low,
-// high), r_c.
+// Counts the updates during the acceleration, until the proxy is below the plane, in lifts with noise in
+// [low, high), r_c.
 Criterion criterion_of(const LiftMap& lifts, double low, double high);
 // The criterion for several ranges of noise.
 Table criterion_table(const LiftMap& lifts);
@@ -27,7 +27,7 @@ Table criterion_table(const LiftMap& lifts);
 struct AccelerationBound {
   std::string name, meaning;
   std::function<double(double noise_m)> at;
-  double max_noise_m = 1;  // drawn up to here: fits have no meaning beyond
+  double max_noise_m = 1;  // the curve ends here: fits are not valid beyond it
 };
 std::vector<AccelerationBound> bounds(const MeasuredNoise& noise);
 

@@ -24,7 +24,7 @@ TriangleMesh ball_of(double radius_m) {
   return mesh;
 }
 
-// A bar along z from the origin on.
+// Returns a bar that starts at the origin and extends along z.
 TriangleMesh bar_of(double length_m) {
   return box_mesh({kBar_m, kBar_m, length_m}, {0, 0, 0.5 * length_m});
 }
@@ -47,9 +47,10 @@ Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
                    row(hip_W, trace.force_N[tick])});
 }
 
-// Adds the chosen points, and a tick of a trace: the proxy as a ball of radius r_c, the HIP as a smaller one,
-// the normal as a pin in the proxy, and the force on the hand from the HIP on. Tables are NAME_cloud,
-// NAME_proxy, NAME_hip, NAME_triangles, NAME_poses, NAME_normal and NAME_force.
+// Adds the chosen points, and a tick of a trace: the proxy as a ball of radius r_c, the HIP as a smaller
+// ball, the normal as a pin in the proxy, and the force on the hand as a bar that starts at the HIP. Tables
+// are NAME_cloud, NAME_proxy, NAME_hip, NAME_ball_triangles, NAME_normal, NAME_force, NAME_bar_triangles and
+// NAME_poses.
 void add_proxy_tables(Figure& figure, const std::string& name, const PointCloud& cloud,
                       const std::vector<std::size_t>& chosen, const Trace& trace, std::size_t tick,
                       double force_m_per_N) {

@@ -25,7 +25,7 @@ Table heights_per_update(const Trace& trace) {
   return table;
 }
 
-// Share of lifts that did not pop through, over seeds 1 .. count.
+// Returns the share of lifts that did not pop through, over seeds 1 .. count.
 double survival(const FigureContext& context, int count, const std::vector<std::string>& overrides) {
   std::vector<Experiment> lifts;
   for (int seed = 1; seed <= count; ++seed) {
@@ -37,7 +37,8 @@ double survival(const FigureContext& context, int count, const std::vector<std::
   return 1 - std::accumulate(popped.begin(), popped.end(), 0.0) / count;
 }
 
-// Fraction of lifts without noise that did not pop through, over 16 positions of the grid under the proxy.
+// Returns the share of lifts without noise that did not pop through, over 16 positions of the grid under the
+// proxy.
 double survival_over_phases(const FigureContext& context, double acceleration,
                             const std::vector<std::string>& overrides = {}) {
   std::vector<Experiment> lifts;
@@ -80,9 +81,9 @@ Figure figure_4_12(const FigureContext& context) {
   };
   const SharedLifts other{second("survived"), second("survived") * (1 - second("survived")), 1,
                           second("lifts")};
-  // The last update, of (v_0 + 10 a / f_c) / f_c, decides if there is no estimate. It is compared with r_1
-  // less the depth by which the proxy sinks in the middle of four points, up to 0.113 mm. So the limit is
-  // from 0.139 to 0.149 m/s^2.
+  // The last update decides if there is no velocity estimate: it moves the plane by (v_0 + 10 a / f_c) / f_c.
+  // The proxy pops through if that is more than r_1 less the depth by which it sinks in the middle of four
+  // points, up to 0.113 mm. So the limit is from 0.139 to 0.149 m/s^2.
   figure.claims = {
       claim_agrees("4.12", noisy, "1 of 1", survival(context, kSeeds, {}), other, kSeeds),
       claim_at_least("4.12", "lifts at sigma = 0, a = 4.3 m/s^2 that did not pop through, 16 grid phases",

@@ -11,7 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// Shares of the same regions by the second implementation, and how far ours lie from them in standard errors.
+// Adds the survival of the same regions in the second implementation, and the difference from ours in
+// standard errors.
 Table with_second(Table regions) {
   const auto column = [](const char* name) { return second_column("chapter_4", "/map/regions", name); };
   const std::vector<double> second = column("survived"), variance = column("variance"),

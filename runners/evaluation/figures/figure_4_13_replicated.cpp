@@ -12,8 +12,9 @@ namespace remote_touch {
 
 namespace {
 
-// Acceleration at which half of the lifts survive, for each noise strength, from the falling curve nearest to
-// the shares; and the accelerations at which the ends of their Wilson intervals cross one half.
+// Returns, for each noise strength, the acceleration at which half of the lifts survive: there the falling
+// curve that is nearest to the measured shares crosses one half. Columns `low` and `high` are the
+// accelerations at which the lower and the upper ends of the Wilson intervals cross one half.
 Table contour(const std::string& name, const Table& map, std::size_t columns) {
   const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration");
   const std::size_t rows = noise.size() / columns;  // the map runs through the accelerations first
@@ -41,7 +42,7 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
   return table;
 }
 
-// The contour in the second implementation, and its distance from ours in standard errors.
+// Returns the contour in the second implementation, and its distance from ours in standard errors.
 Table second_table(const Table& contour) {
   const auto column = [](const char* name) { return second_column("chapter_4", "/map/contour/rows", name); };
   const std::vector<double> noise = column("noise"), second = column("acceleration"),

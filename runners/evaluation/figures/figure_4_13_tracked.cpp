@@ -1,4 +1,4 @@
-// Fig 4.13 again for the tracked sheet, and what it must not pay for it: beyond the dissertation.
+// Fig 4.13 again for the tracked sheet, and checks of what this must not cost. Not in the dissertation.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,7 +16,8 @@ namespace remote_touch {
 
 namespace {
 
-// The renderer's parameters were fixed with seeds 1 to 40; no run of these had been looked at then.
+// The renderer's parameters were fixed with seeds 1 to 40. No run with the reported seeds had been viewed
+// then.
 constexpr int kReportedSeeds[] = {101, 102, 103};
 
 const std::string kPaper = R"(renderer={"name": "proxy"})",
@@ -33,7 +34,7 @@ std::string noise(double sigma) {
 // --- lifts ---
 
 struct Lifts {
-  double survived = 1, survived_to_2 = 1, worst_region = 1, well_above = 1;  // the least of all seeds
+  double survived = 1, survived_to_2 = 1, worst_region = 1, well_above = 1;  // smallest over all seeds
 };
 
 double fraction_above(const SweepResult& result, double distance_m) {
@@ -58,13 +59,14 @@ void add_seed(Lifts& lifts, const SweepResult& result, const Table& map) {
 // --- noise under a sliding proxy ---
 
 struct Slide {
-  double mean = 0, sd = 0, jump_N = 0;  // heights above r_c, in r_c; rms over the updates
+  double mean = 0, sd = 0, jump_N = 0;  // mean and sd of the height above r_c, in r_c; rms jump
   double lateral = 0, lateral_95 = 0;   // ratio to the normal force: mean and 95th percentile
 };
 
 constexpr double kSettled_s = 0.5;
 
-// The trace with the true normals of the settled ticks: the flat cloud lies in the plane y = 0.
+// Returns the trace with the true normals of the settled ticks, and NaN before. The flat cloud lies in the
+// plane y = 0.
 Trace with_true_normals(Trace trace) {
   trace.true_normal.assign(trace.length(), Vec3::UnitY());
   for (std::size_t i = 0; i < trace.length() && trace.time_s[i] < kSettled_s; ++i)
@@ -89,7 +91,7 @@ Slide slide_of(const Trace& trace) {
 
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
 
-// The mean of the reported seeds at each noise.
+// Returns the mean over the reported seeds at each noise strength.
 std::vector<Slide> slides(const FigureContext& context, const std::string& renderer) {
   std::vector<Experiment> runs;
   for (const double sigma : kSlideNoise)
@@ -173,7 +175,7 @@ std::vector<Claim> lateral_claims(const std::string& figure, const std::vector<S
   return claims;
 }
 
-// --- where there is no noise, and where there are two sheets ---
+// --- runs without noise, and runs with two sheets ---
 
 double ticks_that_differ(const FigureContext& context, const char* experiment) {
   const Trace paper = context.run(Experiment::load(experiment, {kPaper})),

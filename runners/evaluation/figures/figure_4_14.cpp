@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSampling_m = 1e-5;  // sampling of the exact profile; its corners are multiples of it
 
-// The closing of the true profile, on samples from x = low.
+// The true profile and its closing with a ball of radius r_c, sampled from x = low on.
 struct Oracle {
   double low;
   std::vector<double> heights, closing;
@@ -89,8 +89,8 @@ Table surface_table(const PointCloud& cloud) {
   return table;
 }
 
-// The points of the row that the path lies over, and where the proxy of radius r_c sits in the last full
-// valley.
+// Returns the points of the grid row under the path, and the position of the proxy when it is nearest to
+// valley_x, the last full valley.
 std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace, double valley_x) {
   const PointCloud cloud = scenario.cloud(0);
   std::vector<double> x, y;

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// The part of the table that is shown; the colours of the lowest and the highest point.
+// The part of the table that is shown, and the colours of its lowest and highest point.
 constexpr double kAcross_4_15_m = 0.16, kFrom_4_15_m = -0.42, kTo_4_15_m = 0.28;
 constexpr double kHighest_4_15_m = 0.1;
 const Vec3 kLow_4_15(0x3B, 0x4C, 0x7A), kHigh_4_15(0xF2, 0xC1, 0x4E);
@@ -26,16 +26,16 @@ std::uint32_t colour_of_height(double height_m) {
 std::vector<std::size_t> points_of_4_15(const PointCloud& cloud) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 p = cloud.point(i);  // NaN is not shown
+    const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
     if (std::abs(p.x()) < kAcross_4_15_m && p.z() > kFrom_4_15_m && p.z() < kTo_4_15_m) chosen.push_back(i);
   }
   return chosen;
 }
 
-// Rms over the points of their distance to the true surface in units of the standard deviation of their error
-// along the ray. The error in depth is that of a Gaussian value which is then rounded to a step, and the true
-// surface is as far away as the place where the ray meets it, or nearer. So the result is at most 1, but for
-// chance: of N points one standard deviation is (2 N)^(-1/2), 0.3 % of 60 000.
+// Returns the rms distance of the points to the true surface, in units of the standard deviation of their
+// error along the ray. The error in depth is a Gaussian value that is then rounded to a step. The true
+// surface is at most as far away as where the ray meets it, so the result is at most 1, except for chance:
+// for N points one standard deviation is (2 N)^(-1/2), 0.3 % for 60 000.
 double error_in_sigmas(const Scenario& scenario, const PointCloud& cloud) {
   const DepthCameraSettings camera =
       CameraScene::Settings().camera;  // the experiment leaves them as they are

@@ -46,7 +46,8 @@ Table slice_table(const std::string& name, const PointCloud& cloud, int along, i
   return table;
 }
 
-// Share of the ticks in which the HIP is held back whose truth is known: of the others nothing is claimed.
+// Returns the share of the ticks in which the HIP is held back and the true side is known, among all ticks in
+// which it is held back. Nothing is claimed about the other ticks. NaN if the HIP is never held back.
 double known_fraction(const Trace& trace) {
   std::size_t pressed = 0, known = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
@@ -70,7 +71,7 @@ void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
                             known_fraction(trace), 0.7, "fraction")));
 }
 
-// Limits around a path, so that far points do not shrink it.
+// Returns the limits of an axis around a path, so that points far away do not shrink the path in the picture.
 std::pair<double, double> around(const Trace& trace, int axis) {
   double low = trace.hip_position_m[0][axis], high = low;
   for (std::size_t i = 0; i < trace.length(); ++i) {
@@ -110,7 +111,7 @@ Figure figure_4_16(const FigureContext& context) {
   add_panels(figure, "Paths over the table", "path", "slice", "z (m)", "y (m)");
   figure.panels[0].x_range = figure.panels[1].x_range = around(trace, 2);
   add_claims(figure, "", trace);
-  // A tick that has two steps and no more: in how many of them are they enough?
+  // The same run with a budget of two steps a tick: the share of the ticks in which two steps are enough.
   const Trace two = context.run(Experiment::load("fig4.16", {"renderer.steps_per_tick=2"}));
   figure.claims.push_back(claim_differs("4.16", "ticks that converge (4.8) in two proxy steps",
                                         "typically in 1 - 2 (4.3.4)", 1 - unconverged_fraction(two), 0.3, 0.5,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFixtureRadius_m = 0.1, kBoundary_m = 0.105;
 constexpr double kStiffness_N_per_m = 600;
-constexpr double kShell_5_5_m = 1e-5;  // r_2 - r_c: contact is anywhere in it
+constexpr double kShell_5_5_m = 1e-5;  // r_2 - r_c: a proxy in contact may rest anywhere in this shell
 
 // The point is the origin, so distances to it are lengths.
 Table distances(const Trace& trace) {
@@ -33,7 +33,7 @@ double entrenched_ticks(const Trace& trace) {
                                         static_cast<std::int32_t>(ContactState::entrenched)));
 }
 
-// Among the ticks with the HIP outside the region: how far the proxy is at most from it.
+// Returns the largest distance between proxy and HIP over the ticks in which the HIP is outside the region.
 double max_gap_outside(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
@@ -42,8 +42,9 @@ double max_gap_outside(const Trace& trace) {
   return max;
 }
 
-// Among the ticks with the HIP inside: the force against k_s times the way from the HIP to the contact point
-// of a proxy that stands where the region is nearest to the HIP.
+// Returns the largest difference between the force and k_s times the depth of the HIP in the region, over the
+// ticks in which the HIP is inside. The depth is the distance from the HIP to the contact point of a proxy
+// that rests where the region is nearest to the HIP.
 double max_force_error(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRegionRadius_m = 0.01;
 constexpr double kMin_N = 0.01;  // a force above this is felt
 
-// The part of a run in which the HIP moves along x, and where it stands then.
+// The ticks of a run in which the HIP moves towards larger x: positions, force, and force over stretch.
 struct Crossing {
   std::vector<double> hip_x, hip_y, proxy_y, contact_x, contact_y, force, stiffness;
 };
@@ -57,7 +57,7 @@ std::size_t row_of_max_force(const Crossing& c) {
   return static_cast<std::size_t>(std::max_element(c.force.begin(), c.force.end()) - c.force.begin());
 }
 
-// Mean force while the HIP is between from_x and to_x.
+// Returns the mean force over the rows with the HIP between from_x and to_x; NaN if there are none.
 double mean_force(const Crossing& c, double from_x, double to_x) {
   double sum = 0;
   int count = 0;
@@ -66,7 +66,7 @@ double mean_force(const Crossing& c, double from_x, double to_x) {
   return sum / count;
 }
 
-// The first points with r_f = 0.01 m, and the cloud near them.
+// Returns two tables: the points of the cloud near the step, and the first point with r_f = 0.01 m.
 std::vector<Table> point_tables() {
   std::vector<double> x, y;
   for (int i = -20; i < 20; ++i) x.push_back(0.0015 * (i + 0.5)), y.push_back(0);
@@ -113,7 +113,8 @@ Table stiffness_table(const Crossing& c) {
   return table;
 }
 
-// Away from the ends of the ramp and from the step by more than a ball of r_3 reaches.
+// Returns the largest relative error of the felt stiffness, over contact points that are farther from the
+// ends of the ramp and from the step than a ball of r_3 reaches.
 double max_stiffness_error(const Crossing& c) {
   double max = 0;
   for (std::size_t i = 0; i < c.contact_x.size(); ++i) {
@@ -125,8 +126,8 @@ double max_stiffness_error(const Crossing& c) {
   return max;
 }
 
-// Both take the same steps in double precision, so only rounding differs; a condition on it may hold a tick
-// later, 1e-5 m further on.
+// Both implementations make the same steps in double precision, so only rounding differs. A condition on the
+// result may hold one tick later, when the HIP is 1e-5 m farther on.
 constexpr double kForceAgrees_N = 1e-4, kPlaceAgrees_m = 1.1e-5;
 
 // Claims that a value agrees with the second implementation.

@@ -13,13 +13,14 @@ namespace remote_touch {
 namespace {
 
 constexpr double kInTouch_s = 1;                                // the approach is over long before
-constexpr double kGrows_s = 5, kGrown_s = 10, kSteady_s = 0.1;  // phases; and what the last frames need
+constexpr double kGrows_s = 5, kGrown_s = 10, kSteady_s = 0.1;  // starts of phases; settling of the last one
 constexpr double kMax_m = 0.02, kGrowth_m_per_s = kMax_m / (kGrown_s - kGrows_s);
-// A proxy sinks so far between four points 0.9 mm apart, as 0.47 m from the camera, and rests in a shell of
-// 0.01 mm.
+// The depth to which a proxy sinks between four points 0.9 mm apart (the spacing 0.47 m from the camera),
+// plus the shell of 0.01 mm in which it rests.
 constexpr double kSinks_m = 0.9e-3 * 0.9e-3 / 4 / 5e-3 + 1e-5;
 constexpr double kTick_s = 1e-3;
-// The last phase is no whole number of beats: the 6.5 mm of a part of a beat, half a frame late, in 4.9 s.
+// Error of a mean distance, because the last phase is no whole number of beats: the surface moves by up to
+// 6.5 mm in the incomplete beat and is seen half a frame late. Averaged over the 4.9 s of the phase.
 constexpr double kPartOfBeat_m = 0.0065 / 30 / 4.9 / 2;
 constexpr std::size_t kTableStride_5_8 = 5;  // ticks, in tables
 
@@ -27,18 +28,18 @@ constexpr std::size_t kTableStride_5_8 = 5;  // ticks, in tables
 const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
                                          "scenario.quantisation_per_m=0.00285"};
 
-// Distance of the proxy to the surface as the newest frame shows it, beyond r_f + r_c.
+// Returns the distance of the proxy to the surface as the newest frame shows it, less r_f + r_c.
 double from_seen_m(const FixtureRun& run, std::size_t i) {
   return run.scenario->signed_distance(run.trace.proxy_position_m[i], run.frame_captured_s(i)) -
          run.boundary_m(i);
 }
 
-// The same to the surface as it is in that very tick.
+// Returns the same for the surface as it is in that very tick.
 double from_moving_m(const FixtureRun& run, std::size_t i) {
   return run.trace.signed_distance_m[i] - run.boundary_m(i);
 }
 
-// Calls visit(i) for the ticks from one time until another.
+// Calls visit(i) for the ticks from from_s on and before until_s.
 template <class Visit>
 void each_tick(const FixtureRun& run, double from_s, double until_s, Visit&& visit) {
   for (std::size_t i = 0; i < run.trace.length(); ++i)

@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kContactShell_m = 1e-5;  // r_2 - r_c: contact is anywhere in it
+constexpr double kContactShell_m = 1e-5;  // r_2 - r_c: a proxy in contact may rest anywhere in this shell
 const char* const kTrackedSheet =
     R"(renderer={"name": "tracked-sheet", "exit_rule": "out_of_contact", "xi": 0.3333333333333333, "theta_deg": 1})";
 constexpr double kRecordedGrown_s = 10, kRecordedSteady_s = 0.1;
@@ -59,7 +59,7 @@ double known_side_fraction(const RecordedRun& r) {
   return static_cast<double>(known) / static_cast<double>(distance.size());
 }
 
-// Share of the frames for which it holds.
+// Returns the share of the frames for which holds(frame) is true.
 template <class Holds>
 double frame_fraction(const RecordedRun& r, Holds&& holds) {
   const auto count = std::count_if(r.frames.begin(), r.frames.end(), holds);
@@ -134,7 +134,7 @@ Table violation_table(const std::vector<RecordedRun>& runs) {
   return rows.table("violations", "how often and how far the fixture was violated");
 }
 
-// A column of panels, one for each run.
+// Adds a column of panels for one run.
 void add_panels(Figure& figure, const RecordedRun& r, int column) {
   const auto axis = [&](const std::string& title, const char* y_label, int row) {
     return Panel{title,   "time (s)",
@@ -180,7 +180,7 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
                          min_beyond_fixture_m(*r), 0, "m"));
     add_sound_claims(figure, r->title, r->run);
   }
-  // The plane is unknown at edges; what the proxy's own pixel sees is known nearly always.
+  // The plane is unknown at edges, but the measurement of the proxy's own pixel is nearly always known.
   for (const RecordedRun* r : {&still, &held})
     claim(
         set_up(claim_at_least(name, r->title + ": frames in which the pixel at the proxy measured something",
@@ -192,7 +192,7 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
 // Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it
 // moves with the tracked sheet as renderer.
 std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
-  std::vector<Experiment> experiments;  // the longest first: they go side by side
+  std::vector<Experiment> experiments;  // the longest first, because they run in parallel
   experiments.push_back(Experiment::load("fig5.8-moving"));
   experiments.push_back(Experiment::load("fig5.8-moving", {"fixtures.0.schedule=[]"}));
   experiments.push_back(Experiment::load("fig5.8-recorded"));

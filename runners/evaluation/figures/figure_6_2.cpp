@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kWide_m = 0.025, kNarrow_m = 0.010;  // sigma_f as 6.3 prints it, and a smaller one
 constexpr double kWall_m = 0.8, kStep_m = 0.025, kNoise_m = 0.0015;
-constexpr int kBorder_px = 12, kEdge_px = 12;  // left out where they disturb a measurement
+constexpr int kBorder_px = 12, kEdge_px = 12;  // pixels left out at the image's border and at the step
 constexpr double kNormal_m = 0.012;            // length of a drawn normal
-constexpr int kEnoughNeighbours = 10;          // more than lie on a line of the window
+constexpr int kEnoughNeighbours = 10;          // more than a line through the window contains
 constexpr double kHand_m = 0.62, kForearm_m = 0.66, kRight_m = 0.02;  // limits of the hand in the recording
 
 struct NormalCount {
@@ -31,7 +31,7 @@ bool has_neighbours(const PointCloud& cloud, int u, int v, const DepthPipelineSe
   const CameraIntrinsics& camera = cloud.image->camera;
   const int half = settings.normal_window / 2;
   const auto at = [&](int x, int y) { return cloud.point(static_cast<std::size_t>(y * camera.width + x)); };
-  int count = -1;  // itself
+  int count = -1;  // the pixel itself is counted below
   for (int y = std::max(0, v - half); y <= std::min(camera.height - 1, v + half); ++y)
     for (int x = std::max(0, u - half); x <= std::min(camera.width - 1, u + half); ++x)
       count += (at(x, y) - at(u, v)).norm() < settings.normal_radius_m ? 1 : 0;
@@ -50,13 +50,13 @@ NormalCount count_normals(const PointCloud& cloud) {
     const int pixel = static_cast<int>(i);
     if (!has_neighbours(cloud, pixel % width, pixel / width, settings)) continue;
     ++counted.with_neighbours;
-    const bool right = std::abs(n.norm() - 1) < 1e-5 && n.dot(cloud.point(i)) < 0;  // NaN is not right
+    const bool right = std::abs(n.norm() - 1) < 1e-5 && n.dot(cloud.point(i)) < 0;  // NaN counts as wrong
     if (!right) ++counted.wrong;
   }
   return counted;
 }
 
-// The hand and its forearm, not the person behind.
+// Returns the points of the hand and its forearm, without the person behind.
 std::vector<std::size_t> hand_points(const PointCloud& cloud, double max_depth_m) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -199,8 +199,8 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
   const double smears_m = second("wide/smear_m"),
                gain = second("narrow/noise_gain") / second("wide/noise_gain");
   constexpr double kAgrees_m = 1e-6;
-  // Pixels within a window share their noise, so the walls hold 300 000 / 81 values: the standard error of
-  // an rms over them is 1.2 %, that of the ratio of two filters on the same noise smaller.
+  // Pixels within a window share their noise, so the walls hold 300 000 / 81 independent values. The standard
+  // error of an rms over them is 1.2 %; that of the ratio of two filters on the same noise is smaller.
   constexpr double kAgrees = 0.012;
   figure.claims = {
       claim_differs(n, "error at a 25 mm step, sigma_f = 0.025 m", "discontinuities are preserved (6.2.1)",

@@ -58,7 +58,7 @@ bool agrees(const Trace& t, std::size_t i) {
   return lag_m(t, i) <= kAgree_m && lag_rad(t, i) <= kAgree_rad;
 }
 
-// True while the device is not turned: on its way into the box and out of it.
+// True while the device is not turned: it moves into the box or out of it.
 bool moves_along(const Trace& t, std::size_t i) {
   return rotation_vector(t.hip_orientation[i]).norm() < kAgree_rad;
 }
@@ -97,7 +97,7 @@ Table motion_table(const BoxRun& run) {
   return table_of(run.name, "contact rule " + run.rule + ", points 3 mm apart", columns, rows);
 }
 
-// Over all runs of a rule, one row for each.
+// Returns a table of all runs, one row for each.
 Table summary_table(const std::vector<BoxRun>& runs) {
   std::vector<std::string> tools, rules;
   std::vector<std::vector<double>> rows;
@@ -152,10 +152,10 @@ double max_gap_untouched_m(const Trace& t) {
 }
 
 // Returns how far before and behind the walls a corner of the tool may stop, in mm, compared with the outline
-// that the second implementation turns in closed form. The mesh has corners of 8 mm, cut by chords of 2.5 mm,
-// which makes 0.1 mm less. Its distance field is exact to a tenth of that. Voxels are 0.65 mm thick at the
-// angle at which the tool stops, so their surface is within half of that. A point may be a sub-step of 0.25
-// mm deep, and a corner sinks 0.14 mm between points 3 mm apart.
+// that the second implementation turns in closed form. The mesh replaces the round corners of 8 mm by chords
+// of 2.5 mm, which makes it up to 0.1 mm smaller. Its distance field is exact to a tenth of that. Voxels are
+// 0.65 mm thick at the angle at which the tool stops, so their surface is within half of that. A point may be
+// a sub-step of 0.25 mm deep, and a corner sinks 0.14 mm between points 3 mm apart.
 std::pair<double, double> plateau_slack_mm(const std::string& rule) {
   constexpr double kChord = 0.1, kField = 0.01, kVoxel = 0.65 / 2, kSubStep = 0.25, kSinks = 0.14;
   if (rule == "look-ahead") return {kField, kChord + kField};
@@ -254,7 +254,8 @@ void add_floor_claims(Figure& figure, const FigureContext& context) {
                                     "trajectory.poses.1.1=" + std::to_string(kDevice_m), "duration_s=2"}));
   const std::vector<Trace> traces = context.run(experiments);
   for (std::size_t r = 0; r < kRules.size(); ++r) {
-    // The printed rule has the floor in the shell, whose upper side is within half a voxel of the surface.
+    // The floor may lie in the tool's shell under the printed rule. The upper side of the shell is within
+    // half a voxel of the surface.
     const double deep_m = r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m + kSubStep_m;
     figure.claims.push_back(claim_between(figure.name,
                                           kRules[r].second + ": height at which the floor stops the block",

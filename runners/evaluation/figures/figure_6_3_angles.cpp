@@ -12,8 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kFreeDeg = 10;     // the walls are not reached
-constexpr double kBlockedDeg = 30;  // they hold the tool
+constexpr double kFreeDeg = 10;     // the tool does not reach the walls up to this angle
+constexpr double kBlockedDeg = 30;  // the walls hold the tool from this angle on
 
 // The runs of one rule and spacing, over the commanded angle.
 struct Turning {
@@ -25,7 +25,7 @@ struct Turning {
     return (rule == "voxels" ? "voxels_" : "look_ahead_") + std::to_string(std::lround(1e3 * spacing_m)) +
            "mm";
   }
-  // Minimum and maximum rotation of the tool where the walls hold it.
+  // Returns the minimum and maximum rotation of the tool, over the angles from kBlockedDeg on.
   std::pair<double, double> stop_deg() const {
     double min = std::numeric_limits<double>::infinity(), max = -min;
     for (std::size_t i = 0; i < commanded_deg.size(); ++i)
@@ -79,7 +79,7 @@ Panel panel(const std::vector<Turning>& runs, const std::string& title, const st
   return made;
 }
 
-// Over the runs of a rule, of what value(run) gives.
+// Returns the largest value(run) over the runs of a rule, or over all runs if `rule` is empty.
 template <class Value>
 double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Value&& value) {
   double max = -std::numeric_limits<double>::infinity();

@@ -16,7 +16,7 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kTableStride_6_4 = 5;        // ticks, in tables
-constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // phases of all three
+constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // start of sliding and of lifting, in all three runs
 constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // moments of the pictures
 constexpr double kVoxel_m = 5e-4;
 // A point in the shell is within 1.5 sqrt(3) voxels of the centre of a free voxel, which is outside the tool.
@@ -71,7 +71,7 @@ struct TouchRun {
   Trace trace;
 };
 
-// True for the rule as printed, false for the rule that is drawn.
+// True for the rule as printed. False for look-ahead, whose runs are drawn.
 bool is_printed(const TouchRun& run) {
   return run.rule == "voxels";
 }
@@ -110,12 +110,12 @@ Table touch_table(const TouchRun& run) {
   return table_of(table_name(run), run.shown->words + (", contact rule " + run.rule), columns, rows);
 }
 
-// Every second pixel, in a chequered pattern, of the points that are to be seen.
+// Returns every second pixel, in a chequered pattern, of the part of the recording that is shown.
 std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment& shown) {
   std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 p = cloud.point(i);  // NaN is outside
+    const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
     if ((i / width + i % width) % 2 == 0 && p.x() > shown.remaining_m && p.x() < shown.right_m &&
         p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m)
       chosen.push_back(i);
@@ -161,7 +161,8 @@ double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& ho
   return count / all;
 }
 
-// Largest penetration of the tool over the ticks without a new frame; NaN if one of them has no value.
+// Returns the largest penetration of the tool over the ticks without a new frame; NaN if one of them has no
+// value.
 double deepest_m(const Trace& trace) {
   double deepest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
@@ -169,7 +170,8 @@ double deepest_m(const Trace& trace) {
   return deepest;
 }
 
-// A tick says that it used up its detections exactly when it made so many and was not yet at rest.
+// Counts the ticks whose log contradicts itself. No tick may make more detections than the budget, and a tick
+// must report a used-up budget exactly if it is not at rest. It must then have made all its detections.
 double inconsistent_ticks(const TouchRun& run) {
   const auto renderer = nlohmann::json::parse(run.experiment.to_json()).at("renderer");
   const int budget = renderer.at("detections_per_tick");

@@ -13,8 +13,8 @@ namespace remote_touch {
 
 namespace {
 
-// Box around an object in the colour image, drawn by eye. It is no truth for a pixel, but a pixel picked
-// outside is wrong.
+// Box around an object in the colour image, drawn by eye. It does not define the truth of the pixels inside,
+// but a pixel that is picked outside is wrong.
 struct Box {
   int left, top, right, bottom;
   bool holds(int u, int v) const { return u >= left && u < right && v >= top && v < bottom; }
@@ -54,7 +54,7 @@ Vec3 mean_of(const PointCloud& cloud, const std::vector<char>& picked) {
   return sum / count;
 }
 
-// Numbers of pixels of each piece of a mask; pixels that share an edge are of one piece.
+// Returns the number of pixels of each piece of a mask. Pixels that share an edge belong to the same piece.
 std::vector<int> piece_sizes(std::vector<char> mask, int width) {
   std::vector<int> sizes;
   std::vector<std::size_t> open;
@@ -98,7 +98,8 @@ MaskNumbers measure_mask(const PointCloud& cloud, const std::vector<char>& picke
   return numbers;
 }
 
-// The image at a third of its light, with the masks and boxes over it.
+// Returns the image at a third of its brightness, with the masks and boxes over it; black where there is no
+// depth.
 std::vector<std::uint32_t> overlay(const PointCloud& cloud, const std::vector<std::vector<char>>& masks,
                                    const SegmentedFrame& shown) {
   const int width = cloud.image->camera.width;
@@ -116,8 +117,8 @@ std::vector<std::uint32_t> overlay(const PointCloud& cloud, const std::vector<st
   return picture;
 }
 
-// Largest distance between means of a mask while nothing moves. The target of a guidance fixture moves as
-// much.
+// Returns the largest distance between the means of a mask in the frames at rest. The target of a guidance
+// fixture moves by as much, because it is such a mean.
 double wander_m(const Scenario& scenario, const FixtureRule& rule) {
   std::vector<Vec3> means;
   for (int frame = 0; frame < kAtRest; ++frame) {

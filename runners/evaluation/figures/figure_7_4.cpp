@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kValveRegion_m = 0.04;
 constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // middles of the two pushes
-constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
+constexpr double kBetween_s = 4.5;                         // halfway between the pushes: no force
 constexpr double kStart_s = 0.25;
 
 // A push beside the left valve's middle, 6 cm deeper than the first.
@@ -21,7 +21,7 @@ const char* const kOffCentre =
     "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
     "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
 
-// Number of pushes: runs of ticks with force.
+// Returns the number of pushes: how often the force rises above 0.1 N.
 int pushes(const Trace& t) {
   int count = 0;
   for (std::size_t i = 1; i < t.length(); ++i)
@@ -29,7 +29,7 @@ int pushes(const Trace& t) {
   return count;
 }
 
-// Largest force while no leaf is within the look-ahead of a region.
+// Returns the largest force over the ticks in which no leaf is within the look-ahead of a region.
 double max_free_force_N(const Trace& t) {
   double max = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
@@ -78,7 +78,8 @@ void add_claims(Figure& figure, const ValveTask& task) {
   add_task_claims(figure, task);
 }
 
-// Off the middle and deep: the tool slips round what is in its way. No claim of the paper's: it is told.
+// Adds the claims about a deep push beside the middle, in which the tool slips round the valve. The
+// dissertation does not claim this; the behaviour is only reported.
 void add_slip(Figure& figure, const ValveTask& slip) {
   const Trace& t = slip.trace;
   const std::size_t last = t.length() - 1;
@@ -92,7 +93,7 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   add_task_claims(figure, slip);
 }
 
-// The four moments A to D of the caption.
+// Returns the ticks of the four moments A to D of the caption.
 std::vector<std::size_t> moments_7_4(const Trace& t) {
   return {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s), tick_of(t, kHeldRight_s), t.length() - 1};
 }

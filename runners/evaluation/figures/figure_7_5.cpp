@@ -1,4 +1,4 @@
-// Fig 7.5: the left valve is forbidden; guidance, put on by a button at 3 s, leads to the right one.
+// Fig 7.5: the left valve is forbidden; guidance, activated by a button at 3 s, leads to the right one.
 #include <algorithm>
 #include <cmath>
 
@@ -17,13 +17,13 @@ constexpr double kClamp_N = 4;       // guidance.max_force_N of the experiment
 constexpr double kLittle_Nm = 2e-3;  // torque caused by the noise of the target
 constexpr double kPushed_s = 2.8, kArrived_s = 5.9;
 
-// The first tick in which guidance pulls.
+// Returns the first tick in which guidance pulls; the length of the trace if it never does.
 std::size_t first_pull(const Trace& t) {
   const auto first = std::find(t.guidance_active.begin(), t.guidance_active.end(), 1);
   return static_cast<std::size_t>(first - t.guidance_active.begin());
 }
 
-// Mean magnitude of each component about the handle, over the last tenth of a second.
+// Returns the mean magnitude of each torque component about the handle, over the last tenth of a second.
 Vec3 residual_Nm(const Trace& t) {
   Vec3 sum = Vec3::Zero();
   const std::size_t from = tick_of(t, kArrived_s);

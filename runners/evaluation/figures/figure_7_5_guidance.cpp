@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// Over the stiffness of guidance.
+// Results at the end of the task for one device, one entry for each stiffness of guidance.
 struct Led {
   std::string name, label;
   std::vector<double> stiffness_N_per_m, error_mm, error_deg, clearance_mm;

@@ -15,9 +15,10 @@ namespace {
 
 constexpr double kOrganRegion_m = 0.02;
 constexpr double kButtonPressed_s = 3, kButtonPushed_s = 2.8;
-constexpr std::size_t kClearanceStride = 20;  // ticks, where the clearance is looked for
+constexpr std::size_t kClearanceStride = 20;  // ticks from one measurement of the clearance to the next
 
-// The frames with their regions, filtered as the renderer gets them; the recording plays them to and fro.
+// Frames as the renderer receives them: filtered and with their regions. The newest one is kept, because many
+// ticks use the same frame. The recording is played to and fro.
 class RegionFrames {
  public:
   RegionFrames(const Experiment& experiment, const Kernels& kernels)
@@ -39,7 +40,8 @@ class RegionFrames {
   PointCloud cloud_;
 };
 
-// Least distance of the tool's vertices to the points that have a region in the frame in use.
+// Returns the smallest distance of the tool's vertices to the points with a region in the frame in use, over
+// every 20th tick, if the tool touches in it. Infinite if it touches in none of them.
 double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   RegionFrames frames(task.experiment, kernels);
   const Trace& t = task.trace;
@@ -58,7 +60,7 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   return min;
 }
 
-// Largest distance of a goal of guidance from the first one.
+// Returns the largest distance of a goal of guidance from the first one; 0 if guidance is never active.
 double goal_wander_m(const Trace& t) {
   double wander = 0;
   Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -91,7 +93,7 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
                              kButtonPressed_s, kButtonPressed_s + 1e-9, "s")));
 }
 
-// Nearer than the wall behind, every second pixel of every second row.
+// Returns the points nearer than the wall behind, from every second pixel of every second row.
 std::vector<std::size_t> cloud_samples(const PointCloud& cloud) {
   std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);

@@ -1,4 +1,5 @@
-// The bounds (4.14) to (4.25): what they are made of, measured, and how far they agree with what happens.
+// The bounds (4.14) to (4.25): their ingredients as measured, and how well they agree with the simulated
+// lifts.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,8 @@ namespace remote_touch {
 
 namespace {
 
-// A refitted curve and the printed one, each with its band, where both are meant.
+// Returns a refitted curve and the printed one, each with its band, over the noise for which the fits are
+// valid.
 Table fit_table(const std::string& name, const std::string& unit, const PolynomialFit& fit,
                 const PrintedFit& printed) {
   std::vector<double> noise, value, low, high, print, print_low, print_high;
@@ -51,7 +53,7 @@ Table coefficient_table(const std::string& name, const PolynomialFit& fit, const
   return table;
 }
 
-// Over the noise for which the printed fits are meant.
+// Returns the rms difference of the refitted and the printed curve, over the noise of fit_table().
 double rms_from_print(const Table& fit) {
   const auto &refitted = numbers(fit, "refitted"), &printed = numbers(fit, "printed");
   double squares = 0;
@@ -106,11 +108,12 @@ std::vector<Panel> panels(const std::vector<AccelerationBound>& bounds) {
   return list;
 }
 
-// (4.19), v_hat = v, over lifts at 0.1 m/s. It holds without noise. With noise the first step after a frame
-// leads out of the outermost points; the later ones let the proxy sink back between them, and (4.13) does not
-// count these. At a constant velocity the way of a frame is v / f_c in the mean, so v_hat is too high by f_c
-// times the mean depth that the proxy sinks back. The range: 4 standard errors of the mean over 2800 updates
-// (0.106 m/s / 53, and 1.8 times as much as errors of successive updates are correlated by 0.53).
+// (4.19), v_hat = v, is checked over lifts at 0.1 m/s. It holds without noise. With noise, the first step
+// after a frame leads out of the outermost points, and the later steps let the proxy sink back between them.
+// (4.13) does not count the later steps. At a constant velocity the mean motion in a frame is v / f_c, so
+// v_hat is too high by f_c times the mean depth by which the proxy sinks back. The range is 4 standard errors
+// of the mean over 2800 updates: 0.106 m/s / 53, times 1.8 because errors of successive updates are
+// correlated by 0.53.
 std::vector<Claim> estimate_claims(const MeasuredNoise& noise) {
   constexpr double kKnown = 0.154, kStandardError = 0.0037, kRounding = 1e-9;
   const double bias = noise.at(kFitted_m).velocity_bias_m_per_s;
@@ -164,7 +167,7 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
 }  // namespace
 
 Figure figure_bounds(const FigureContext& context) {
-  constexpr int kSeed = 2;  // not the map that the bound with scatter was looked at while it was derived
+  constexpr int kSeed = 2;  // the bound with scatter was derived while a map of another seed was viewed
   const Phases phases = critical_over_phases(context);
   const MeasuredNoise noise = measured_noise(context);
   const LiftMap lifts = lift_map(context, kSeed);

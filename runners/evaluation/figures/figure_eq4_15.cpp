@@ -1,5 +1,5 @@
-// Equation (4.15): the force between the updates of a cloud that moves evenly, for the three readings of its
-// sign.
+// Equation (4.15): the force between the updates of a cloud that moves at a constant velocity, for the three
+// readings of its sign.
 #include "analysis/measures/force_change_measures.h"
 #include "runners/evaluation/figures/figures.h"
 
@@ -73,7 +73,8 @@ Figure figure_eq4_15(const FigureContext& context) {
     figure.tables.push_back(force_table(sign, trace));
     figure.panels[0].curves.push_back({sign, "time", "force", CurveStyle::line, label});
   }
-  // The plane jumps by v / f_c, in a tick in which the HIP goes v / f_h with it; the printed sign doubles it.
+  // The plane jumps by v / f_c, and in the same tick the HIP follows it by v / f_h. The printed sign doubles
+  // the jump.
   constexpr double kJump_N = 600 * 0.1 * (1.0 / 30 - 1.0 / 1000), kRounding_N = 1e-6;
   figure.claims = {
       claim_at_most("eq4.15", "force jump per frame at 0.1 m/s, working sign (minus)", "smooth", jump[2],

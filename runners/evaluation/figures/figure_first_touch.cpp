@@ -23,7 +23,7 @@ FirstTouch touch_at(double frame_rate_hz, Over over) {
           over == Over::point ? 0 : kSpacing_m / std::sqrt(2.0), frame_rate_hz};
 }
 
-// The fraction of start times at which the proxy was lost, over the speed of the surface.
+// The fraction of start times at which the proxy was lost, for each speed of the surface.
 struct Losses {
   std::string name, meaning;
   FirstTouch touch;
@@ -36,7 +36,8 @@ struct Losses {
       differences.push_back(std::abs(lost[i] - lost_at_first_touch(touch, speed_m_per_s[i])));
     return max_of(differences);
   }
-  // The largest fraction at the speeds up to a limit, and the smallest above it.
+  // The largest fraction lost at the speeds up to a limit (0 if there are none), and the smallest above it (1
+  // if there are none).
   double max_lost_up_to(double limit_m_per_s) const {
     double max = 0;
     for (std::size_t i = 0; i < lost.size(); ++i)
@@ -49,7 +50,7 @@ struct Losses {
       if (speed_m_per_s[i] > limit_m_per_s) min = min_or_nan(min, lost[i]);
     return min;
   }
-  // Speeds at which the formula lies between 0 and 1.
+  // Returns the number of speeds at which the formula lies between 0 and 1.
   int undecided_speeds() const {
     return static_cast<int>(std::count_if(speed_m_per_s.begin(), speed_m_per_s.end(), [&](double speed) {
       const double fraction = lost_at_first_touch(touch, speed);
@@ -73,8 +74,9 @@ Losses measured(const FigureContext& context, Losses losses, const std::vector<s
   return losses;
 }
 
-// The stored sweep is at 30 frames per second. At another rate the same ways from frame to frame are used,
-// and start times that are uniform over one interval between its frames.
+// The stored sweep is at 30 frames per second. At another rate the speeds are scaled so that the surface
+// moves the same distances from frame to frame, and the start times are again uniform over one interval
+// between frames.
 Losses at_rest(const FigureContext& context, double frame_rate_hz) {
   const SweepResult stored = Sweep::load("first-touch").plan();
   const double factor = frame_rate_hz / kLift.frame_rate_hz;
@@ -93,7 +95,7 @@ Losses over_a_point(const FigureContext& context) {
                   {"scenario.phase_x=0.5", "scenario.phase_z=0.5"});
 }
 
-// The hand presses onto the surface while it rises, 5 to 9 cm below the place where the hand waited.
+// The hand presses onto the surface while it rises, 5 to 9 cm below the position where the hand waited.
 Losses by_hand(const FigureContext& context) {
   const double last_s = (kHandPhases - 1.0) / kHandPhases / kLift.frame_rate_hz;
   return measured(
@@ -103,7 +105,7 @@ Losses by_hand(const FigureContext& context) {
        "axes.1.count=" + std::to_string(kHandPhases), "axes.1.to=" + nlohmann::json(last_s).dump()});
 }
 
-// One row for each speed of each.
+// Returns a table with one row for each speed of each element of the list.
 Table loss_table(const std::string& name, const std::string& title, const std::vector<Losses>& list) {
   std::vector<double> rate, beside, speed, lost, formula;
   for (const Losses& losses : list)
@@ -135,8 +137,8 @@ Table formula_table(const Losses& losses) {
   return table;
 }
 
-// The lost start times are one interval of all (first_touch.h), so the number of evenly spaced ones in it
-// differs from the formula by less than one.
+// The lost start times form one interval (first_touch.h). The number of evenly spaced start times in an
+// interval differs from the formula by less than one.
 Claim formula_claim(const Losses& losses, const std::string& where) {
   return claim_at_most(
       kTouchFigure,

@@ -54,7 +54,7 @@ Table threshold_table(const std::vector<Threshold>& list) {
   return table;
 }
 
-// The bound, for a curve.
+// Returns the bound over the frame rate, for a curve.
 Table curve_table() {
   std::vector<double> rate, bound;
   for (int hz = 10; hz <= 70; ++hz)
@@ -65,7 +65,8 @@ Table curve_table() {
   return table;
 }
 
-// The proxy sinks up to 0.113 mm between four points and the axis has steps of 1 %, see figure "bounds".
+// The range of 3 % has two reasons: the proxy sinks up to 0.113 mm between four points, and the axis has
+// steps of 1 %. See figure "bounds".
 std::vector<Claim> rate_claims(const std::vector<Threshold>& list) {
   std::vector<Claim> claims;
   int out_of_order = 0;

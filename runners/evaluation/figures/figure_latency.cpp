@@ -18,7 +18,7 @@ constexpr double kSpeed_m_per_s = 0.1, kLatency_s = 0.05;
 constexpr double kSettled_s = 1.5;
 
 // Largest depth of the slave's contact point inside the region of the surface as it is at that moment. The
-// slave is sent to the proxy.
+// slave is sent to the proxy, or ahead of it, see Measured.
 struct Violation {
   double max_m = 0;      // maximum of the whole run
   double settled_m = 0;  // maximum from kSettled_s on
@@ -34,13 +34,13 @@ Violation violation(const Trace& trace) {
   return {kLatencyRadius_m + kContactRadius_m - min, kLatencyRadius_m + kContactRadius_m - settled};
 }
 
-// A frame shows the surface as it was at its capture. It is older by one frame interval when the next one
-// comes.
+// Returns the predicted violation. A frame shows the surface as it was at its capture, latency_s before its
+// arrival. It is one frame interval older still when the next frame arrives.
 double predicted_m(double speed_m_per_s, double latency_s) {
   return speed_m_per_s * (latency_s + 1 / kFrameRate_hz);
 }
 
-// The runs of a stored sweep with the slave sent to the proxy, and again with it sent ahead.
+// Violations in the runs of a stored sweep, with the slave sent to the proxy (plain) and sent ahead of it.
 struct Measured {
   SweepResult plan;
   std::vector<Violation> plain, ahead;
@@ -48,7 +48,7 @@ struct Measured {
   const std::vector<double>& axis(std::size_t a) const {
     return std::get<std::vector<double>>(plan.axes.at(a).values);
   }
-  // The axis' value of each run.
+  // Returns the value of an axis for each run.
   std::vector<double> axis_of_runs(std::size_t a) const {
     std::vector<double> list;
     for (std::size_t run = 0; run < plan.run_count(); ++run)
@@ -58,7 +58,7 @@ struct Measured {
 };
 
 Measured measured(const FigureContext& context, const std::string& name) {
-  // Frames get older here than the default lets a prediction be trusted.
+  // Frames become older here than the default limit up to which a prediction is used.
   const std::string horizon = "renderer.max_prediction_s=0.4";
   const Sweep plain = Sweep::load(name, {horizon});
   const Sweep ahead = Sweep::load(name, {horizon, "renderer.slave_prediction=true"});
@@ -87,7 +87,8 @@ Table map_table(const Measured& m) {
   return table;
 }
 
-// The delays at which the prediction reaches the surface that the fixture is to protect.
+// Returns the curve of delays and speeds at which the predicted violation is r_f: the slave then reaches the
+// surface that the fixture protects.
 Table tissue_table() {
   Table table{"tissue", "where the slave reaches the surface itself"};
   std::vector<double> latency, speed;
@@ -100,7 +101,7 @@ Table tissue_table() {
   return table;
 }
 
-// Replicates as mean and largest; one row for each value of the only axis.
+// Returns mean and maximum over the replicates; one row for each value of the only axis.
 Table spread_table(const std::string& axis, const std::string& unit, double scale, const Measured& m) {
   const auto replicates = static_cast<std::size_t>(m.plan.replicates);
   std::vector<double> place, mean, highest, mean_ahead;
@@ -204,7 +205,8 @@ double fraction_known(const Table& map) {
   return agree / static_cast<double>(measured.size());
 }
 
-// Largest amount by which a jittered run is outside its bounds.
+// Returns the largest amount by which a mean is below, or a maximum above, the bounds of the jittered runs; 0
+// if none is.
 double max_outside(const Table& jitter) {
   double max = 0;
   for (std::size_t i = 0; i < numbers(jitter, "max").size(); ++i)
@@ -235,9 +237,9 @@ Figure figure_latency(const FigureContext& context) {
       "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation.",
       {map, tissue_table(), jitter, drops, heart},
       panels()};
-  // A proxy of r_f + r_c sinks so far between points 1.5 mm apart, in the middle of four, and rests within
-  // 0.01 mm of r_c. Frames come in every 33 1/3 ticks: the oldest is at most a third of a tick younger than
-  // the rule says, on the fastest surface (0.2 m/s); with jitter (0.1 m/s) a tick.
+  // kSinks_mm: a proxy of radius r_f + r_c sinks between points 1.5 mm apart, in the middle of four, and
+  // rests within 0.01 mm of r_c. Frames arrive every 33 1/3 ticks, so the oldest frame is at most a third of
+  // a tick younger than the rule states, on a surface of up to 0.2 m/s. With jitter it is a tick, at 0.1 m/s.
   constexpr double kSinks_mm = 1.5 * 1.5 / 4 / 25 + 0.01, kThirdOfTick_mm = 0.2 / 3, kTick_mm = 0.1;
   figure.claims = {
       claim_at_most("latency",

@@ -21,7 +21,7 @@ struct NoiseMeans {
   double thickness_m = 0, at_end = 0, in_time = 0;  // h; e_n before an update, and over all steps
 };
 
-// Means from the sixth update after the rise on, while the proxy is above the plane.
+// Returns the means from the sixth update after the rise on, while the proxy is above the plane.
 NoiseMeans noise_means(const Trace& t) {
   double frames = 0, ticks = 0;
   NoiseMeans sum;
@@ -34,7 +34,7 @@ NoiseMeans noise_means(const Trace& t) {
   return {sum.thickness_m / frames, sum.at_end / frames, sum.in_time / ticks};
 }
 
-// One machine: a row for each noise, the mean of the lifts.
+// One machine, with a row for each noise strength: the means over its lifts.
 struct Machine {
   int steps = 0;  // number of steps in a frame
   std::vector<double> noise_m, thickness_m, at_end, in_time;
@@ -53,7 +53,7 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
     double count = 0;
     for (int r = 0; r < plan.replicates; ++r) {
       const NoiseMeans& one = lifts[plan.run(cell, r)];
-      if (std::isnan(one.thickness_m)) continue;  // popped through before it counts
+      if (std::isnan(one.thickness_m)) continue;  // popped through before the first update that counts
       sum.thickness_m += one.thickness_m, sum.at_end += one.at_end, sum.in_time += one.in_time, ++count;
     }
     Machine& to = list.back();
@@ -72,12 +72,12 @@ std::vector<Machine> all_machines(const FigureContext& context) {
   return list;
 }
 
-// Noise from which the fits say most. The printed digits allow next to nothing below it, and (4.23) is up to
-// 0.2 mm above every machine there.
+// The lowest noise at which the fits are compared. Below it the printed digits allow almost no deviation, and
+// (4.23) is up to 0.2 mm above every machine.
 constexpr double kFromNoise_m = kContactRadius_m - 1e-9;
 constexpr int kStrengths = 6;  // noise strengths of the sweep from kFromNoise_m on
 
-// Noise strengths from r_c to 2 r_c at which the means lie in what the printed digits allow.
+// Returns the number of noise strengths from r_c on at which the means lie in what the printed digits allow.
 int strengths_in_band(const PrintedFit& printed, const std::vector<double>& noise_m,
                       const std::vector<double>& values) {
   int inside = 0;
@@ -89,7 +89,7 @@ int strengths_in_band(const PrintedFit& printed, const std::vector<double>& nois
   return inside;
 }
 
-// The smaller of the two counts, for h and for e_n.
+// Returns the smaller of the two counts, for h and for e_n.
 int strengths_as_printed(const Machine& m, const std::vector<double>& normal_error) {
   return std::min(strengths_in_band(printed_thickness(), m.noise_m, m.thickness_m),
                   strengths_in_band(printed_normal_error(), m.noise_m, normal_error));
@@ -128,7 +128,7 @@ std::vector<Predecessor> predecessors(const FigureContext& context, const std::v
   std::vector<Predecessor> list;
   for (const int count : steps) {
     for (const double step_m : {2e-5, 3.5e-5, 5e-5, 8e-5, 1e-4}) list.push_back({count, step_m});
-    // The step with which the proxy keeps up with 16 r_c/s and no more.
+    // The step whose sum over a frame is what 16 r_c/s need, and no more.
     list.push_back({count, kPrinted_rc_per_s * kContactRadius_m / kFrames_hz / count});
   }
   for (int halving = 0; halving < 8; ++halving) {
@@ -142,7 +142,8 @@ std::vector<Predecessor> predecessors(const FigureContext& context, const std::v
   return list;
 }
 
-// The proxy cannot climb faster than all its steps of a frame, and an update of more than r_1 is lost.
+// Returns the velocity that is expected. The proxy cannot climb faster than by all its steps of a frame, and
+// it is lost if an update moves the surface by more than r_1.
 double expected_rc_per_s(const Predecessor& p) {
   return std::min(p.steps * p.step_m, kLift.r1_m) * kFrames_hz / kContactRadius_m;
 }
@@ -215,7 +216,8 @@ Table summary_table(const std::vector<Machine>& list) {
   return table;
 }
 
-// The predecessor whose steps of a frame add up to so much.
+// Returns the claims about the predecessor [1]: its velocity limit follows from the sum of its steps in a
+// frame.
 std::vector<Claim> predecessor_claims(const std::vector<Predecessor>& list) {
   double max_apart = 0, least = 1e9, most = 0;
   const Predecessor* fast = nullptr;
@@ -225,8 +227,8 @@ std::vector<Claim> predecessor_claims(const std::vector<Predecessor>& list) {
     if (std::abs(expected_rc_per_s(p) - kPrinted_rc_per_s) > 1e-9) continue;
     least = min_or_nan(least, critical_rc_per_s(p)), most = max_or_nan(most, critical_rc_per_s(p));
   }
-  // A fixed step of 0.1 mm leaves the proxy that much too low, it sinks 0.11 mm between four points, and the
-  // bisection ends 0.16 r_c/s wide; a lag of r_1 in 3.5 s is 0.3 r_c/s more.
+  // Tolerances: a fixed step of 0.1 mm may leave the proxy that much too low, it sinks 0.11 mm between four
+  // points, and the bisection ends 0.16 r_c/s wide. A lag of r_1 in 3.5 s adds 0.3 r_c/s.
   constexpr double kApart = (1e-4 + 1.1e-4) * kFrames_hz / kContactRadius_m + 0.16, kSlow = 0.16 + 0.3;
   const std::string n = "proxy-rates";
   return {claim_at_most(n,

@@ -70,7 +70,7 @@ double about_z_rad(const DeviceState& device) {
   return rotation_vector(device.orientation_W).z();
 }
 
-// A block, turned as the plane is, pressed along its normal: k d, and no torque.
+// A block with the tilt of the plane, pressed along its normal. The exact force is k d, the exact torque 0.
 ModelPress on_plane(double tilt_deg) {
   const auto [sine, cosine] = sin_cos(tilt_deg * kRadiansPerDegree);
   const Vec3 normal(-sine, cosine, 0);
@@ -81,7 +81,7 @@ ModelPress on_plane(double tilt_deg) {
           }};
 }
 
-// A block that the hand turns, on a level plane.
+// A block on a level plane, tilted by the hand.
 ModelPress turned_block(double turn_deg) {
   const auto [sine, cosine] = sin_cos(turn_deg * kRadiansPerDegree);
   return {turn_deg, "slab-10", shape(R"("tilt_deg": 0)"),
@@ -105,7 +105,7 @@ ModelPress in_groove(double slope_deg) {
           }};
 }
 
-// A bar turned between two walls: no force, and the torque of its two corners.
+// A bar turned between two walls. The exact force is 0, and the exact torque is that of its two corners.
 ModelPress in_slot() {
   return {0, "bar", R"("name": "slot", "spacing_m": 0.002)",
           row(Vec3::Zero(), Vec3::Zero(), 0) + ", " + row(Vec3::Zero(), {0, 32, 0}, 0.5),
@@ -251,7 +251,7 @@ Claim at_least(const std::string& claim, double measured, double limit, const st
   return claim_at_least(kForcesFigure, claim, "-", measured, limit, unit);
 }
 
-// The gap of 0.05 mm that continuous rule and god-object keep is 1.7 % of the mean depth of a press.
+// The continuous rule and the god-object keep a gap of 0.05 mm, which is 1.7 % of the mean depth of a press.
 constexpr double kGapFraction = 0.02;
 
 std::vector<Claim> plane_claims(const Table& planes) {
@@ -274,9 +274,9 @@ std::vector<Claim> plane_claims(const Table& planes) {
                    max_in(planes, "voxmap_force_direction"), 5, "deg")};
 }
 
-// The torque at a corner has to be that of the force. The constrained motion (6.4) ends where the contacts
-// hold the displacement that is left, times M. The coupling gives the hand k times that displacement, and k
-// r^2 times the angle. Both agree if M is that of the coupling.
+// The torque at a corner must be that of the force. The constrained motion (6.4) ends when the contacts hold
+// the remaining displacement, multiplied by M. The coupling exerts on the hand k times that displacement, and
+// k r^2 times the angle. Both agree if M is that of the coupling.
 std::vector<Claim> block_claims(const Table& blocks, const Table& of_coupling) {
   return {at_most("god-object, M of the coupling, tilted block: deviation of the force",
                   max_in(blocks, "god_object_force"), kGapFraction, "1"),

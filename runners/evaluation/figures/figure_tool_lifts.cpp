@@ -1,5 +1,5 @@
-// Chapter 4's question for tools: up to which speed does a surface carry a plate that is pressed onto it, and
-// what do thickness, tilt, rotation and noise do to that? Simulated; not in the dissertation.
+// The question of chapter 4 for tools: up to which speed does a surface carry a plate that is pressed onto
+// it, and how do thickness, tilt, rotation and noise change that? Simulated; not in the dissertation.
 #include <algorithm>
 
 #include "analysis/statistics/extremes.h"
@@ -16,9 +16,9 @@ namespace {
 const std::string kLiftFigure = "tool-lifts";
 constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
 
-// Largest distance by which one frame may move a surface against a plate. Printed rule: 6.2.4, with the shell
-// on either side. Look-ahead: the whole plate, if the side of the last contact is known. Continuous rule: the
-// larger of that and the distance by which a held tool is moved out.
+// Returns the largest distance by which one frame may move a surface against a plate. Printed rule: 6.2.4,
+// with the shell on either side. Look-ahead: the whole plate, if the side of the last contact is known.
+// Continuous rule: the larger of the plate's thickness and the distance by which a held tool is moved out.
 double max_jump_m(Carrier rule, double thickness_m) {
   switch (rule) {
     case Carrier::voxels:
@@ -30,7 +30,8 @@ double max_jump_m(Carrier rule, double thickness_m) {
   }
 }
 
-// Limits over a setting, and bound(), the limit that is derived for it; each rule has columns of its own.
+// Returns the limits over a setting, and bound(), the limit that is derived for it. Each rule has its own
+// columns.
 template <class Bound>
 Table limit_table(const std::string& name, const std::string& title, const CarrySweep& sweep, Column setting,
                   const std::string& units, Bound&& bound) {
@@ -57,7 +58,7 @@ Table lift_limits(const FigureContext& context) {
                      [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); });
 }
 
-// The plate lies down on a tilted surface, which comes nearer along its normal by v cos(tilt) / f_c.
+// The plate lies flat on a tilted surface, which approaches along its normal by v cos(tilt) / f_c.
 Table tilt_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
   std::vector<double> tilt;
@@ -69,8 +70,8 @@ Table tilt_limits(const FigureContext& context) {
                      });
 }
 
-// The surface turns by A sin(2 pi f t): by 2 pi f A / f_c in the first frame. The end of the plate that is
-// nearer to the axis moves least, and the plate is lost where that passes through it too.
+// The surface turns by A sin(2 pi f t): by about 2 pi f A / f_c in the first frame. The end of the plate that
+// is nearer to the axis moves least, and the plate is lost if the surface passes through that end too.
 Table turn_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
   std::vector<double> lever;
@@ -94,7 +95,7 @@ Table noise_limits(const FigureContext& context) {
       [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); });
 }
 
-// No run is lost below the bound of a rule, or carried above that of another.
+// Claims that no run is lost below the bound of `rule`, and that none is carried above the bound of `upper`.
 Claim claim_bounded(const Table& table, Carrier rule, Carrier upper, const std::string& claim) {
   const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
   return claim_at_most(kLiftFigure, claim + ": number of settings where not", paper,

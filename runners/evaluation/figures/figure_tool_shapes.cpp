@@ -1,5 +1,5 @@
-// When does an edge, a corner, a ball or a wall pass through a plate that is pressed onto it? What one frame
-// may move it by is derived (tools/shape_jumps.h) and measured. Simulated; not in the dissertation.
+// Edges, corners, balls and walls that pass through a plate that is pressed onto them. The distance by which
+// one frame may move them is derived (tools/shape_jumps.h) and measured. Simulated; not in the dissertation.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -25,20 +25,21 @@ struct Scale {
 };
 const Scale kSpeed{"m/s", "speed (m/s)", kFirstSpeed_m_per_s, 1 / kJumpFrames_hz, kJumpFrames_hz};
 
-Scale sideways() {  // a wall comes nearer along its normal by less than it moves
+Scale sideways() {  // a wall approaches along its normal by less than it moves
   return {"m/s", "speed (m/s)", 0, 1, kJumpFrames_hz / sin_cos(kWallTilt_deg * kRadiansPerDegree).first};
 }
 
 struct Family {
   std::string table, title;
-  Column setting;  // axis of the sweep, from the setting `first` on
+  Column setting;  // axis of the sweep; its values begin at the setting `first`
   std::string x_label;
   std::size_t first = 0;
   Scale scale = kSpeed;
   std::function<Jump(Carrier, double setting)> jump;
 };
 
-// Runs in bins of strength / bound, and those certainly below the bound and above it.
+// Counts runs in bins of strength / bound, and the runs that are certainly below or certainly above the
+// bound.
 class Pool {
  public:
   static constexpr int kBins = 15;
@@ -166,7 +167,7 @@ std::vector<FamilySweep> turn_sweeps() {
        {{"edge_tilt", "Tilted edge", angle("tilt", "of the edge", tilts), "tilt (deg)", 0, kSpeed,
          [](Carrier rule, double deg) {
            Jump jump = on_edge(rule, kPlate_m, kSlope_deg, deg);
-           jump.most_m = std::numeric_limits<double>::infinity();  // the plate slides to its gentle side
+           jump.most_m = std::numeric_limits<double>::infinity();  // the plate slides to its gentler side
            return jump;
          }}},
        false}};
@@ -195,7 +196,8 @@ FamilySweep noise_sweep() {
 
 // --- claims ---
 
-// Claims that the limit is between the derived ones in every setting of several tables, and counts the rest.
+// Claims that the limit is between the derived ones in every setting of several tables. The measured value is
+// the number of settings in which it is not.
 Claim claim_bounded(const std::vector<Table>& tables, Carrier rule, const std::string& claim,
                     const std::string& paper = "-") {
   const std::string column = column_of(rule);
@@ -206,8 +208,9 @@ Claim claim_bounded(const std::vector<Table>& tables, Carrier rule, const std::s
   return claim_at_most(kShapeFigure, claim + ": number of settings where not", paper, apart, 0, "1");
 }
 
-// A row is apart if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins
-// at 0.51), or all are lost below it: by chance in at most 1 of 8, so that 3 of 12 are at most once in five.
+// A row counts if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins at
+// 0.51), or if all four are lost below it. By chance that happens in at most 1 of 8 rows, so 3 or more of 12
+// rows count at most once in five figures.
 Claim claim_bounded_noise(const std::vector<Table>& tables, Carrier rule, const std::string& label) {
   const std::string column = column_of(rule);
   double apart = 0;

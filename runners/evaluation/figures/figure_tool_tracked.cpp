@@ -1,5 +1,5 @@
-// A plate on noisy surfaces that accelerate, as Fig 4.13 has it for the proxy: by tracked sheets, and by the
-// three contact rules of the tool. Simulated; not in the dissertation.
+// Fig 4.13 for a plate in place of the proxy: noisy surfaces that accelerate, rendered by tracked sheets and
+// by the three contact rules of the tool. Simulated; not in the dissertation.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -23,8 +23,8 @@ struct TrackedMethod {
 };
 constexpr TrackedMethod kTrackedTool{"tracked", "tracked sheets",
                                      R"(renderer={"name": "tracked-tool", "tool_mesh": "slab-10"})"};
-// The rival rules with their default parameters, and with the velocity estimate that sweep tool-noise gives
-// them.
+// The rival rules with their default parameters, and with the velocity estimate that they have in sweep
+// tool-noise.
 constexpr TrackedMethod kToolRivals[] = {
     {"voxels", "as printed",
      R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "voxels", "velocity_estimate": true})"},
@@ -93,8 +93,8 @@ struct ToolJump {
   double force_N = 0, torque_Nm = 0, updates = 0;
 };
 
-// Squares of the change at a frame beyond that of the tick before, so that an even rise counts as none; over
-// the updates at which the plate is held before and after, from 0.5 s on.
+// Returns the sums of squares of the change at a frame beyond the change in the tick before, so that an even
+// rise counts as 0. The sums are over the updates at which the plate is held before and after, from 0.5 s on.
 ToolJump squared_jumps(const Trace& trace) {
   constexpr double kFrom_s = 0.5;
   ToolJump sum;
@@ -111,12 +111,13 @@ ToolJump squared_jumps(const Trace& trace) {
 }
 
 constexpr double kJumpNoise[] = {0.3, 1, 3};  // r_c
-// A plate that is not held tells nothing.
+// Minimum for an rms jump. With fewer updates, because the plate is rarely held, the result is NaN.
 constexpr double kMinUpdates = 10;
 constexpr int kJumpSeeds[] = {101, 102};
 
-// A surface at rest, whose noise is drawn anew in every frame; one that rises at 0.1 m/s with the hand; and
-// one that rises while the hand stays, so that the spring grows longer. Forces without a limit.
+// Three motions: a surface at rest, whose noise is drawn anew in every frame; one that rises at 0.1 m/s with
+// the hand; and one that rises while the hand stays, so that the spring grows longer. The limits of force and
+// torque are set so high that they do not act.
 struct JumpMotion {
   const char *table, *title;
   std::vector<std::string> overrides;
@@ -129,7 +130,7 @@ const std::vector<JumpMotion> kJumpMotions = {
       "trajectory.poses=[[0,0.03,0,0,0,0,0],[0,-0.002,0,0,0,0,0.2],[0,-0.002,0,0,0,0,0.2],[0,0.078,0,0,0,0,0.8]]"}},
     {"left", "Rises, the hand stays", {"scenario.rise_s=0.8333333333333334", "scenario.acceleration_s=0"}}};
 
-// Rms over the runs of each noise.
+// Returns the rms jump at each noise strength, over the updates of all seeds.
 std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& method,
                             const std::vector<std::string>& motion) {
   std::vector<Experiment> runs;
@@ -174,7 +175,8 @@ Table jump_table(const FigureContext& context, const JumpMotion& motion) {
   return table;
 }
 
-// The largest ratio to the smaller of the two of the look-ahead rule, with and without velocity estimate.
+// Returns the largest ratio of the tracked sheets' jump to the jump of the look-ahead rule, with or without
+// its velocity estimate, whichever is smaller.
 double max_ratio(const Table& table, const std::string& what) {
   const auto &ours = numbers(table, "tracked" + what), &with = numbers(table, "look_ahead" + what),
              &without = numbers(table, "look_ahead_plain" + what);
@@ -188,7 +190,7 @@ double max_ratio(const Table& table, const std::string& what) {
 constexpr const char* kToolShapes[] = {"flat", "ridge", "corner", "sphere", "valley"};
 constexpr double kShapeNoise[] = {0, 0.3, 1, 2};
 
-// Mean distance of the plate's centre of mass to the true surface, from 0.5 s on.
+// Returns the mean distance of the plate's centre of mass to the true surface, from 0.5 s on.
 double mean_height_over(const Trace& trace) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
@@ -196,7 +198,7 @@ double mean_height_over(const Trace& trace) {
   return sum / count;
 }
 
-// Height by which noise raises the plate, compared with the same renderer without noise; in r_c.
+// Returns the height by which noise raises the plate, compared with the same renderer without noise, in r_c.
 std::vector<double> raised_by_noise(const FigureContext& context, const TrackedMethod& method) {
   std::vector<Experiment> runs;
   for (const char* shape : kToolShapes)

@@ -25,7 +25,7 @@ constexpr PictureCrop kCrop{205, 195, 435, 290};
 constexpr std::uint32_t kBack = 0x3C4654, kNoDepth = 0x000000, kMissed = 0xFF00FF, kWrong = 0xFFFFFF;
 constexpr std::uint32_t kFound[] = {0xE03A30, 0xF0C020};
 
-// The rules of the experiment, and the valve that each is to find.
+// The valves that the two rules of the experiment must find, and their names.
 constexpr Valve kSought[] = {Valve::left, Valve::right};
 constexpr const char* kNames[] = {"red", "yellow"};
 
@@ -129,7 +129,7 @@ void add_pictures(Figure& figure, const std::vector<Level>& levels) {
   }
 }
 
-// Largest rise of the fraction from one level to the next; 0 if it never rises.
+// Returns the largest rise of the fraction from one level to the next; 0 if it never rises.
 double max_rise(const std::vector<Level>& levels, std::size_t k,
                 double (SegmentationScore::*fraction)() const) {
   double rise = 0;
@@ -145,7 +145,7 @@ double min_precision(const std::vector<Level>& levels, std::size_t k) {
   return min;
 }
 
-// The lowest level at which most of the valve is missed; infinite where there is none.
+// Returns the lowest level at which most of the valve is missed; infinite if there is none.
 double lost_at_per_m(const std::vector<Level>& levels, std::size_t k) {
   for (const Level& level : levels)
     if (level.score[k].recall() < 0.5) return level.turbidity_per_m;

@@ -20,8 +20,8 @@ namespace remote_touch {
 // r_c of every figure of chapters 4 and 5: Table 4.2.
 inline constexpr double kContactRadius_m = 0.005;
 
-// Runs the experiments of a figure. Independent runs go in parallel; results do not depend on the number of
-// threads.
+// Runs the experiments of a figure. Independent runs are made in parallel; results do not depend on the
+// number of threads.
 class FigureContext {
  public:
   // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all.
@@ -36,22 +36,23 @@ class FigureContext {
     inputs_.add(experiment.inputs());
   }
   const Kernels& kernels() const { return kernels_; }
-  std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // side by side
-  // The result of of(trace) for each run, in parallel. The first failure is thrown after all have ended.
+  std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // parallel runs
+  // Returns of(trace) for each run, in parallel. The first failure is thrown after all runs have ended.
   template <class Of>
   auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
     if (!experiments.empty()) note(experiments.front().to_json());
     for (const Experiment& experiment : experiments) inputs_.add(experiment.inputs());
     return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
   }
-  // A stored sweep that has thousands of runs, for the two calls below.
+  // Returns a stored sweep of thousands of runs, thinned by `coarse`, for the calls of sweep() and measure()
+  // below.
   Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // Over all calls of map(): number of runs of the full maps, and of those that are made.
+  // Number of runs of the full maps, and number of runs that are made, over all calls of map().
   std::size_t runs_of_maps() const { return runs_of_maps_; }
   std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
-  // Every run of a sweep; throws InputError when one failed.
+  // Makes every run of a sweep; throws InputError if one failed.
   SweepResult sweep(const Sweep& sweep) const;
-  // The result of of(trace) for each run of a sweep's plan, in its order.
+  // Returns of(trace) for each run of a sweep's plan, in its order.
   template <class Of>
   auto measure(const Sweep& sweep, Of&& of) const {
     const SweepResult plan = sweep.plan();
@@ -61,10 +62,10 @@ class FigureContext {
       return of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
     });
   }
-  // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
-  // JSON list.
+  // Returns the resolved configuration of every run(), uses() and sweep, and of the first experiment of every
+  // measure() of experiments, as a JSON list.
   std::string configurations() const;
-  // Hashes of the recordings that all of them read, see input_hashes.h.
+  // Returns the hashes of the recordings that all of them read, see input_hashes.h.
   std::string inputs() const { return inputs_.text(); }
   void require_unchanged_inputs() const { inputs_.require_unchanged(); }
 
@@ -94,7 +95,7 @@ struct FigureEntry {
   const char* summary;
   Figure (*make)(const FigureContext& context);
   double expected_s;     // time on one thread, for the order of figures and the time left
-  bool has_map = false;  // most of that time is for the map
+  bool has_map = false;  // the map needs most of that time
   int quick_coarse = 1;  // value of coarse for a quick figure
 };
 std::span<const FigureEntry> figures();

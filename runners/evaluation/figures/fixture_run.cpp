@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// The radius at each frame's time of capture, from the rules themselves.
+// Returns the radius at each frame's time of capture, one value for each tick, as the rules compute it.
 std::vector<double> radii(const Experiment& experiment, const Trace& trace, const Scenario& scenario) {
   const FixtureAssignment fixtures = experiment.build_fixtures();
   std::vector<double> radius_m;

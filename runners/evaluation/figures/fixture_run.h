@@ -32,7 +32,7 @@ void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& 
 // Adds the claims that all numbers are finite and that there is no force dropout.
 void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run);
 
-// A table from its rows; each row has one number for every column.
+// Returns a table from its rows; each row has one number for every column.
 struct ColumnName {
   const char *name, *units, *long_name;
 };

@@ -11,10 +11,10 @@
 
 namespace remote_touch {
 
-// Each fixture rule of an experiment by itself, in order.
+// Returns each fixture rule of an experiment separately, in order.
 std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment);
 
-// 1 for every point that the rule selects; 1 for every measured point.
+// One element a point: 1 if the rule selects the point, or if the point was measured, else 0.
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
 std::vector<char> measured_points(const PointCloud& cloud);
 
@@ -24,10 +24,11 @@ struct PictureCrop {
   int left, top, right, bottom, step = 1;
 };
 
-// Columns column, row and colour; the colours of all pixels, 0xRRGGBB. pre: the cloud has an image.
+// Returns a table with columns column, row and colour. colours: those of all pixels, 0xRRGGBB. pre: the cloud
+// has an image.
 Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                     const std::vector<std::uint32_t>& colours, const PictureCrop& crop);
-// The table of picture_table() as an image.
+// Returns a panel that draws the table of picture_table() as an image.
 Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
                     const PictureCrop& crop);
 

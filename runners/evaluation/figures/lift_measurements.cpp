@@ -14,7 +14,7 @@ namespace {
 // Updates in which the velocity estimate has reached its level.
 constexpr SettledFrom kSettled{kRiseFrames + 5};
 
-// Position of the grid below the proxy, in units of its spacing: one of eight.
+// Returns the position of the grid below the proxy, in units of its spacing. step: 0 to 7.
 double phase_of(std::size_t step) {
   return 0.125 * static_cast<double>(step);
 }

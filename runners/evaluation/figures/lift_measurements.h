@@ -11,8 +11,8 @@ namespace remote_touch {
 
 using LiftUpdates = std::vector<LiftUpdate>;
 
-// (4.14): critical accelerations without noise, by bisection between kSurvives and kPops, over 8 x 8
-// positions of the grid under the proxy; and the fractions that survived at these two.
+// (4.14): critical accelerations without noise, over 8 x 8 positions of the grid under the proxy, by
+// bisection between kSurvives and kPops; and the fractions of lifts that survived at these two.
 struct Phases {
   static constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
   Table table{"phases", "critical acceleration without noise, by position of the grid"};
@@ -32,7 +32,7 @@ struct MeasuredNoise {
 MeasuredNoise measured_noise(const FigureContext& context);
 Table effect_table(const MeasuredNoise& noise);
 
-// The map of Fig 4.13 with noise of another seed: every update of every lift, and whether the lift survived.
+// The map of Fig 4.13 with the noise of another seed: every update of every lift, and which lifts survived.
 struct LiftMap {
   Table map;  // noise, acceleration, survived
   std::vector<LiftUpdates> updates;

@@ -1,5 +1,5 @@
-// Maps of lifts, noise against acceleration, in units of r_c: what figures 4.13, 4.13-replicated and bounds
-// share.
+// Maps of lifts, noise against acceleration, in units of r_c: the parts that figures 4.13, 4.13-replicated
+// and bounds have in common.
 #pragma once
 
 #include <functional>
@@ -17,27 +17,29 @@ namespace remote_touch {
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 
-// Columns noise (r_c) and acceleration (r_c/s^2).
+// Returns a table with columns noise (r_c) and acceleration (r_c/s^2).
 Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
                  std::vector<double> acceleration);
-// One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its Wilson interval, runs.
-// popped: the measure that is 1 where one did not.
+// Returns a table with one row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its
+// Wilson interval, runs. popped: name of the measure that is 1 for a run that popped through.
 Table map_table(const std::string& name, const SweepResult& result,
                 const std::string& popped = "popped_through");
-// The cells in which more than half of the lifts survived.
+// Returns the cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 
-// Fraction of lifts that survived in 5 x 5 regions of a map: acceleration from 0, 300, 600, 898, 1150
-// r_c/s^2, and for each of these noise from 0, 0.5, 1, 1.5, 2 r_c.
+// Returns the fraction of lifts that survived in 5 x 5 regions of a map: acceleration from 0, 300, 600, 898,
+// 1150 r_c/s^2, and for each of these noise from 0, 0.5, 1, 1.5, 2 r_c. NaN for a region without cells.
 Table region_table(const std::string& name, const Table& map);
 
-// A share of lifts that another implementation computed too: how far two shares may lie apart by chance.
+// A share of lifts that another implementation computed too, and how far two such shares may differ by
+// chance.
 struct SharedLifts {
   double survived = 0;  // share in the other implementation
   double variance = 0;  // variance of one lift about its node's probability
   double nodes = 0, lifts_a_node = 0;
-  // Standard error of the difference to a share of as many nodes, with so many lifts at each. Where no lift
-  // differed from its node's others the variance is that of one that did.
+  // Returns the standard error of the difference to a share over as many nodes, with our_lifts_a_node lifts
+  // at each. One lift with a variance of 1 is added, so that the error is not 0 if no lift differed from the
+  // other lifts of its node.
   double standard_error(double our_lifts_a_node) const;
 };
 // Differences in standard errors that chance exceeds once in a thousand: for one comparison, and for the
@@ -46,22 +48,23 @@ inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1
 // Claims that a share differs from the other implementation's by no more than chance allows.
 Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
                    double measured, const SharedLifts& other, double our_lifts_a_node);
-// Largest magnitude in the column `apart`, in standard errors. NaN if a value is NaN, or if there is none.
+// Returns the largest magnitude in the column `apart`, in standard errors. NaN if a value is NaN, or if there
+// is none.
 double max_apart(const Table& table);
-// Returns a share of the second implementation, of one lift at each node: "/map/whole", "/map/coarse" (every
-// third noise and second acceleration).
+// Returns a share of lifts in the second implementation, which made one lift at each node. place:
+// "/map/whole", or "/map/coarse" (every third noise and second acceleration).
 SharedLifts second_fraction(const std::string& place);
 
-// Noise from 0 to 3 r_c, for curves over it.
+// Returns a table with noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);
-// Noise in r_c against a bound in r_c/s^2, as a column of a table that begins with noise.
+// Adds a bound as a column in r_c/s^2 to a table with a column noise in r_c.
 void add_bound(Table& table, const std::string& column, const std::string& meaning,
                const std::function<double(double noise_m)>& bound_m_per_s2);
 double printed_bound(double noise_m);  // (4.25) with (4.23), (4.24), m/s^2
 
 Table bound_table();  // printed_bound() over noise, named "bound"
 
-// A map's panel: x noise, y acceleration, the same ranges in all figures.
+// Returns a panel for a map: x noise, y acceleration, with the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
 
 // A claim about a whole map.

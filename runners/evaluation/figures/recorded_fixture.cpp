@@ -37,7 +37,7 @@ double nearest_distance_m(const Vec3& p, const PointCloud& cloud) {
   double squared = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double d = (cloud.point(i) - p).squaredNorm();
-    squared = d < squared ? d : squared;  // NaN is not less
+    squared = d < squared ? d : squared;  // a NaN is not less, so it is skipped
   }
   return std::sqrt(squared);
 }
@@ -90,7 +90,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
   const Trace& trace = run.trace;
   std::vector<FrameOutcome> outcomes = last_ticks(trace);
   const int count = places(experiment);
-  std::vector<Motion> to(static_cast<std::size_t>(count));  // each place from the one before
+  std::vector<Motion> to(static_cast<std::size_t>(count));  // motion to each place from the one before
   PointCloud before;
   for (int place = 0; place < count; ++place) {
     PointCloud cloud = run.scenario->cloud(place);

@@ -1,5 +1,5 @@
-// Checks of a run against its recording, frame by frame: where the proxy is relative to the measured points,
-// and how the surface moved. Computed from every point, not with the renderer's kernels.
+// Checks a run against its recording, frame by frame: the position of the proxy relative to the measured
+// points, and the motion of the surface. They are computed from every point, not with the renderer's kernels.
 #pragma once
 
 #include <vector>
@@ -13,19 +13,19 @@ struct FrameOutcome {
   std::size_t tick = 0;
   double nearest_distance_m = 0;  // distance of the proxy to the nearest measured point
   double hidden_m = 0;            // depth of the proxy behind that of its own pixel; NaN at a hole
-  double camera_motion_m = 0;     // median over the image: how far a pixel's point moved since the last frame
-  double surface_motion_m = 0;    // around the pixel that the HIP presses: towards the camera, likewise
+  double camera_motion_m = 0;     // motion of a pixel's point since the last frame, median over the image
+  double surface_motion_m = 0;    // the same towards the camera, around the pixel that the HIP presses
 };
 
-// pre: the experiment plays a part of a recording forwards and backwards (ping_pong), and every frame
-// arrives.
+// The first frame has no frame before it: its motions are 0. pre: the experiment plays a part of a recording
+// forwards and backwards (ping_pong), and every frame arrives.
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
 
 // A tick in which the proxy changed to the wrong side of the true surface.
 struct PopThrough {
   std::size_t tick = 0;
   double surface_motion_m =
-      0;  // past the proxy, from the frame before to this one, by the planes through both
+      0;  // past the proxy since the frame before, by the planes of both; NaN if unknown
 };
 std::vector<PopThrough> pop_throughs(const FixtureRun& run);
 

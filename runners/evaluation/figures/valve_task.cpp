@@ -28,7 +28,7 @@ Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
   return t.proxy_position_m[tick] + t.tool_orientation[tick] * p_T;
 }
 
-// Distance along a ray from a position in the regions until it leaves them all.
+// Returns the distance along a ray to where it leaves the union of the regions. from: a position inside them.
 double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
   double out = 0, before = -1;
   while (out > before) {
@@ -58,7 +58,7 @@ std::vector<Vec3> boundary(const SphereTree& regions) {
   return places;
 }
 
-// Valves, and of the wall every second pixel of every second row.
+// Returns the points of the valves, and those of the wall in every second pixel of every second row.
 std::vector<std::size_t> shown_points(const PointCloud& cloud) {
   std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
@@ -109,7 +109,7 @@ double clearance_m(const ValveTask& task, Valve valve, std::size_t tick) {
 double min_clearance_m(const ValveTask& task, Valve valve) {
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < task.trace.length(); i += kClearanceEvery) {
-    // No place of the tool can be nearer than this.
+    // No position on the tool can be nearer than this.
     const double bound_m =
         task.tank->distance_to_valve(valve, task.trace.proxy_position_m[i]) - task.tool->reach_m;
     if (bound_m < min) min = std::min(min, clearance_m(task, valve, i));

@@ -27,29 +27,31 @@ struct NamedTask {
 // Runs the tasks in parallel. tank is null for other scenarios.
 std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks);
 
-// Distance from the tool's mesh to the true surface of a valve: at the vertices and the centres of the
-// triangles, so it can be too large by a few hundredths of a millimetre. pre: there is a tank; also for the
-// functions below.
+// Returns the distance from the tool's mesh to the true surface of a valve. It is measured at the vertices
+// and at the centres of the triangles, so it can be too large by a few hundredths of a millimetre. pre: there
+// is a tank; also for the functions below.
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick);
-// The minimum over every tenth tick.
+// Returns the minimum over every tenth tick.
 double min_clearance_m(const ValveTask& task, Valve valve);
 
-// Torques about the handle's own axes, which are those of the tool.
+// Returns a torque about the handle's own axes, which are those of the tool.
 Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W);
 
-// Force, torque, what the device exerts, distances, contacts: every few ticks.
+// Returns force, torque, the force and torque that the device exerts, distances and contacts of every fifth
+// tick.
 Table task_table(const ValveTask& task);
 // The log of the task's steps; no rows without a task.
 Table sequence_table(const ValveTask& task);
 
-// Tables NAME_cloud, NAME_regions (places on the boundary of the regions), NAME_vertices, NAME_triangles and
-// NAME_poses, of the first frame and the ticks.
+// Adds the tables NAME_cloud, NAME_regions (positions on the boundary of the regions) of the first frame,
+// NAME_vertices, NAME_triangles, and NAME_poses of the ticks.
 void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
                              const std::vector<std::size_t>& ticks);
-// The tank, seen from beside the camera, with the tool at tick number `instant` of the ticks.
+// Returns a picture of the tank from beside the camera, with the tool at tick number `instant` of the ticks.
 Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row, int column);
 
-// Adds the claims of any task: numbers are finite, no leaf ends a tick deeper than 0.1 mm in a region.
+// Adds the claims of any task: all numbers are finite, and no leaf ends a tick deeper than 0.1 mm in a
+// region.
 void add_task_claims(Figure& figure, const ValveTask& task);
 
 std::size_t tick_of(const Trace& trace, double time_s);

@@ -30,7 +30,7 @@ namespace remote_touch {
 
 namespace {
 
-// JSON holds no other text.
+// Throws InputError if the text is not UTF-8, because JSON holds no other text.
 void require_utf8(const std::string& option, const std::string& text) {
   try {
     static_cast<void>(Json(text).dump());
@@ -67,7 +67,8 @@ Manifest manifest_or_new(const std::filesystem::path& folder) {
   return std::filesystem::exists(manifest_file(folder), unreachable) ? read_manifest(folder) : Manifest{};
 }
 
-// Before anything is run.
+// These two throw InputError, before anything is run, if the manifest cannot be written, or if the experiment
+// or sweep cannot be loaded.
 void require_places(const std::filesystem::path& folder) {
   std::error_code unreachable;
   if (std::filesystem::exists(folder, unreachable)) require_writable(manifest_file(folder));
@@ -124,7 +125,8 @@ std::string attribute_of(const std::filesystem::path& file, const char* name) {
   return attribute(Hdf5Reader(file).attributes(), name);
 }
 
-// The stored columns, when the stored file is sound and of the same experiment.
+// Returns the stored columns. Returns none if there is no stored file, if it is damaged, or if it is of
+// another experiment.
 std::vector<Column> old_columns(const std::filesystem::path& file, const Baseline& baseline,
                                 const std::filesystem::path& made) {
   std::error_code unreachable;
@@ -159,7 +161,7 @@ void make_folder(const std::filesystem::path& folder) {
                      "cannot be made (" + failure.message() + "): expected a writable folder");
 }
 
-// A result is never without its entry in the manifest.
+// Writes a new result and the manifest together, so that a result is never without its entry in the manifest.
 void keep(const std::filesystem::path& folder, const Manifest& manifest, const std::filesystem::path& file,
           std::optional<std::string> content) {
   make_folder(folder);
@@ -254,7 +256,7 @@ std::string bless(const Blessing& blessing) {
   const std::filesystem::path made = is_new ? scratch.path() / "stored.h5" : file;
   if (is_new) store(made, baseline.command, measured.reference, std::move(now));
   const std::string sha256 = sha256_of_file(made);
-  // The file that was stored, made once more in the place of a damaged one, keeps its reason.
+  // A stored result keeps its reason if its file was damaged and is replaced by the same bits.
   if (!stored || sha256 != stored->sha256 || !same_definition(*stored, baseline)) {
     if (stored) baseline.history.push_back(stored->revision);
     baseline.revision = {blessing.reason, what_moved};

@@ -22,8 +22,9 @@ struct Blessing {
 
 // Stores NAME.h5 and its entry in the manifest, which is created if missing. Numbers within the old spread of
 // the old ones keep their old bits, and nothing is written if all do. Returns what was done, as text. Throws
-// InputError without a reason, without a build of another compiler, and as measure_spread() does; Interrupted
-// when stop is set; the stored files are then unchanged.
+// InputError without a reason, without a build of another compiler unless one_compiler is set, and as
+// measure_spread() does. Throws Interrupted when stop is set. The stored files are unchanged in all these
+// cases.
 std::string bless(const Blessing& blessing);
 
 }  // namespace remote_touch

@@ -20,8 +20,8 @@ namespace {
 
 using State = BaselineCheck::State;
 
-// The stored configuration as this program writes it: a parameter that has come since then has its default. A
-// configuration that cannot be read any more stays as it is.
+// Returns the stored configuration as this program writes it: parameters that were added since then have
+// their defaults. A configuration that cannot be read any more is returned unchanged.
 template <class Read>
 std::string present_form(const std::string& stored, Read&& read) {
   try {
@@ -83,7 +83,7 @@ BaselineCheck concluded(const Baseline& baseline, ResultComparison comparison) {
   return check;
 }
 
-// The parts that a baseline runs: "experiment fig4.12", "renderer proxy", ...
+// Adds the names of the parts that a baseline runs: "experiment fig4.12", "renderer proxy", ...
 void note_parts(const std::filesystem::path& folder, const Baseline& baseline, std::set<std::string>& parts) {
   if (baseline.command != "run") return;
   parts.insert("experiment " + baseline.subject);
@@ -94,7 +94,7 @@ void note_parts(const std::filesystem::path& folder, const Baseline& baseline, s
       parts.insert(std::string(part) + " " + config[part]["name"].get<std::string>());
     for (const Json& rule : config["fixtures"])
       parts.insert("fixture rule " + rule["name"].get<std::string>());
-  } catch (const InputError&) {  // its own check tells that
+  } catch (const InputError&) {  // check_baseline() reports this error
   }
 }
 
@@ -122,7 +122,8 @@ std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder
   for (const Baseline& baseline : manifest.baselines) note_parts(folder, baseline, parts);
   std::vector<BaselineCheck> missing;
   const auto require = [&](const std::string& part) {
-    // A live session needs a recording of one: its tests make one and compare what it gives again.
+    // The parts named live-session need a recording of a live session. Their own tests make one and replay
+    // it.
     const bool is_tested_elsewhere = part.ends_with(" live-session");
     if (!parts.contains(part) && !is_tested_elsewhere)
       missing.push_back({part, State::missing, "has no baseline"});

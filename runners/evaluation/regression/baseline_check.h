@@ -27,8 +27,9 @@ struct BaselineCheck {
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
                              const Kernels& kernels, const std::atomic<bool>* stop);
 
-// An entry `missing` for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
-// runs, except rules that read a file of the user; none if the manifest need not be complete.
+// Returns an entry `missing` for each experiment, scenario, fixture rule, trajectory and renderer that no
+// baseline runs, except rules that read a file of the user, and parts named live-session. Returns none if the
+// manifest need not be complete.
 std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder, const Manifest& manifest);
 
 }  // namespace remote_touch

@@ -34,7 +34,7 @@ Json column_json(const ColumnComparison& column) {
           {"first_outside", optional_json(column.first_outside)}};
 }
 
-// Row after row, as lists; names of an enumeration in place of those numbers that have one.
+// Returns the columns as lists of their rows. The name of an enumeration replaces each number that has one.
 Json rows_json(const std::vector<Column>& columns) {
   Json all = Json::object();
   for (const Column& column : columns) {

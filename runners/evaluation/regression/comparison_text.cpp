@@ -36,7 +36,7 @@ void print_columns(const TraceComparison& comparison, std::FILE* out) {
     std::fprintf(out, "  %-28s only in the candidate: not compared\n", name.c_str());
 }
 
-// One row of a column, as many digits as it takes to see the last bit.
+// Returns one row of a column, with enough digits to show the last bit.
 std::string row_text(const Column& column, std::size_t row) {
   std::string all;
   const auto width = static_cast<std::size_t>(column.width);
@@ -156,7 +156,7 @@ bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t m
   return region == 0 || sweep.measures[measure].event || is_change(sweep.at(region, measure).judgement);
 }
 
-// The smaller p of the tests of a region, as it is and adjusted.
+// Returns the smaller p of the tests of a region, as it is and adjusted.
 std::string p_text(const RegionComparison& region) {
   return text("p %.3g, adjusted %.3g", std::min(region.sign_p, region.symmetry_p), region.adjusted_p);
 }

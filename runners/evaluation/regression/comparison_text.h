@@ -1,4 +1,4 @@
-// A comparison for people: tables, on standard output if nothing else is said.
+// Prints a comparison for people, as tables, on standard output unless another stream is given.
 #pragma once
 
 #include <cstdio>

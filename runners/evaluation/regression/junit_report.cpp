@@ -21,7 +21,7 @@ std::string escaped(const std::string& text) {
         safe += "&quot;";
         break;
       default:
-        // Control characters XML does not have; what is not ASCII may not be UTF-8.
+        // XML has no control characters, and bytes outside ASCII may not be UTF-8: both become '?'.
         safe += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e ? '?' : c;
     }
   }
@@ -62,7 +62,7 @@ ReportCase::State state_of(Outcome outcome) {
   return Result::error;
 }
 
-// An undecided measure is an error only where it leaves the whole undecided.
+// An undecided measure is an error only if the whole comparison could not decide either.
 ReportCase::State state_of(Judgement judgement, Outcome whole) {
   using Result = ReportCase::State;
   if (judgement == Judgement::equal || judgement == Judgement::within_margin) return Result::passed;

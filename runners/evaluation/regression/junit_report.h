@@ -20,9 +20,9 @@ struct ReportSuite {
   std::vector<ReportCase> cases = {};
 };
 
-// A case for each column or measure, and one for the whole. What got worse failed; what differs otherwise is
-// "skipped", so that nobody takes it for a failure or for a pass, and its text says how; what could not be
-// compared or decided is an error.
+// Returns a case for each column or measure, and one for the whole. A measure that got worse is a failure.
+// Any other difference is "skipped", so that nobody mistakes it for a failure or for a pass, and its text
+// describes it. A comparison that was not possible or not decided is an error.
 ReportSuite suite_of(const ResultComparison& comparison, const std::string& name);
 std::string junit(const std::vector<ReportSuite>& suites);
 

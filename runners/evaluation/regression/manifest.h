@@ -9,10 +9,10 @@
 
 namespace remote_touch {
 
-// Why numbers were stored, and which of them moved against those stored before, and by how much.
+// The reason why numbers were stored, which of them moved from those stored before, and by how much.
 struct Revision {
   std::string reason;
-  std::string moved;  // "" where nothing had been stored before, or it was not recorded
+  std::string moved;  // "" if nothing had been stored before, or if it was not recorded
 };
 
 // A result with which later programs are compared, NAME.h5 beside the manifest.
@@ -25,7 +25,7 @@ struct Baseline {
   Revision revision = {};                   // revision of the stored numbers
   std::vector<Revision> history = {};       // all revisions before it, oldest first
   std::vector<std::string> builds = {};  // compilers, levels and threads over which the spread was measured
-  // The spread, by column or measure; those not named are exact.
+  // The spread, by column or measure; columns and measures without an entry are exact.
   Tolerances tolerances = {};
 };
 
@@ -43,7 +43,7 @@ std::filesystem::path manifest_file(const std::filesystem::path& folder);
 std::string text_of(const Manifest& manifest);  // the JSON that read_manifest() reads
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline);
-// The baseline's subject as the commands take it: its name, or the path of its JSON file.
+// Returns the baseline's subject as the commands expect it: its name, or the path of its JSON file.
 std::string subject_of(const std::filesystem::path& folder, const Baseline& baseline);
 
 }  // namespace remote_touch

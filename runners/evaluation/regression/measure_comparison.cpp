@@ -16,7 +16,7 @@ namespace {
 
 struct Measured {
   std::size_t ticks = 0;
-  std::vector<std::optional<double>> values = {};  // none where a measure does not apply
+  std::vector<std::optional<double>> values = {};  // none for a measure that does not apply
 };
 
 // Returns held_depth_m() of the configuration that a trace stores. 0 if the trace stores none, or if this
@@ -97,7 +97,7 @@ std::string text_of_outcome(const ValueComparison& measure) {
 std::string tick_difference(const ColumnSource& baseline, const ColumnSource& candidate) {
   std::size_t before = 0, now = 0;
   const auto a = tick_s(baseline, before), b = tick_s(candidate, now);
-  constexpr double kRounding = 1e-9;  // relative; a time is a tick's number over the rate, so it has 1e-16
+  constexpr double kRounding = 1e-9;  // relative; a time is a tick's number over the rate, exact to 1e-16
   if (!a || !b || before != now || std::abs(*a - *b) <= kRounding * std::abs(*a)) return {};
   char text[120];
   std::snprintf(text, sizeof text, "the baseline has a tick every %.6g ms, the candidate every %.6g ms",

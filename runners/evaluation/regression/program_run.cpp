@@ -21,7 +21,7 @@ namespace remote_touch {
 
 namespace {
 
-// A spawned program's output: none but its errors, which go to a file.
+// File actions of a spawned program: its output is discarded, and its errors are written to a file.
 class OutputTo {
  public:
   explicit OutputTo(const std::filesystem::path& errors) : errors_(errors) {
@@ -62,8 +62,8 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
   return all;
 }
 
-// Spawned, not forked: what finds no memory between fork and exec would go on as a second copy of this
-// program.
+// Spawns the program and does not fork: a child that runs out of memory between fork and exec would continue
+// as a second copy of this program.
 pid_t start(const std::string& program, std::vector<std::string> arguments,
             const std::map<std::string, std::string>& environment, const std::filesystem::path& errors) {
   arguments.insert(arguments.begin(), program);
@@ -78,7 +78,8 @@ pid_t start(const std::string& program, std::vector<std::string> arguments,
   return child;
 }
 
-// Its status. Signals that this program gets are handed on.
+// Waits for the child and returns its status. When stop is set, sends SIGTERM to the child, waits for its end
+// and throws Interrupted.
 int end_of(pid_t child, const std::atomic<bool>* stop) {
   int status = 0;
   bool signalled = false;

@@ -98,7 +98,8 @@ void judge_columns(ResultComparison& result) {
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
-// Each tolerance has to be of something, else a misspelt one would leave its column exact.
+// Throws InputError for a tolerance that is of no column or measure: a misspelt one would leave its column
+// exact without a message.
 void check_names(const Tolerances& tolerances, const std::vector<std::string>& names,
                  const Directions& measures = {}) {
   for (const auto& [name, tolerance] : tolerances) {
@@ -206,7 +207,7 @@ std::string kind_of(const Hdf5Reader& result) {
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const ComparisonRules& rules) {
   check_names(rules.tolerances, baseline.columns());
-  // A figure's configuration is a list of all that it ran: too long to be told place by place.
+  // A figure's configuration is a list of all that it ran, which is too long for a list of its differences.
   ResultComparison result = begin("figure", {}, {});
   result.columns = compare_by_name(baseline, candidate, rules.tolerances);
   judge_columns(result);

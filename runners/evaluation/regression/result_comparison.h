@@ -13,8 +13,9 @@
 
 namespace remote_touch {
 
-// The exit codes of compare. Regressed: a measure got worse, or runs of a sweep that were done failed.
-// Changed: anything else that differs, an improvement too; figures and hashes have no measures.
+// The exit codes of compare. Regressed: a measure got worse, or a run of a sweep that was done in the
+// baseline failed. Changed: anything else differs, also if it is better. Figures and hashes have no measures,
+// so they can only be changed.
 enum class Outcome { same = 0, regressed = 1, not_comparable = 2, changed = 4 };
 const char* name_of(Outcome outcome);  // "same", "regressed", ...
 
@@ -31,7 +32,7 @@ struct ResultComparison {
   std::vector<std::string> provenance = {};     // differences of the builds: reported, not judged
   std::optional<TraceComparison> columns = {};  // set for traces and figures
   std::vector<ValueComparison> measures = {};   // set for traces that differ, see compare_measures()
-  std::string no_measures = {};                 // why there are none where the traces differ
+  std::string no_measures = {};                 // why there are none although the traces differ
   std::string not_judged = {};                  // why only some of them are judged; see outcome_difference()
   std::optional<SweepComparison> sweep = {};
   bool paired = false;  // the sweep was judged by the paired tests
@@ -52,7 +53,7 @@ std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison
 std::string kind_of(const Hdf5Reader& result);
 
 // Throws InputError for files that cannot be read or are of different kinds (but hashes may be compared with
-// a trace), and for tolerances of unknown columns; hashes have no tolerances.
+// a trace), and for tolerances of unknown columns or of hashes.
 ResultComparison compare_results(const Hdf5Reader& baseline, const Hdf5Reader& candidate,
                                  const ComparisonRules& rules);
 inline ResultComparison compare_results(const std::filesystem::path& baseline,

@@ -81,7 +81,8 @@ bool has_links(int folder) {
 ScratchFolder::ScratchFolder() {
   const std::filesystem::path place = place_of_scratch();
   remove_abandoned(place);
-  // Another program may classify the folder as abandoned and remove it until it is locked.
+  // Another program may classify the folder as abandoned and remove it before it is locked. Then another
+  // folder is made.
   do {
     if (descriptor_ >= 0) ::close(descriptor_);
     path_ = place / kScratchName;

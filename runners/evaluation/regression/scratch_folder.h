@@ -1,4 +1,4 @@
-// A place for runs whose results are read and thrown away.
+// A temporary folder for runs whose results are read and then deleted.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace remote_touch {
 
-// A new folder in TMPDIR, which is gone with all files in it (it may hold no folders) when this ends. A
-// program that is killed, or finds no memory inside a library, leaves its folder; the next one removes that.
-// Whose folder is still in use is told by a lock, which a process loses when it ends. Throws InputError where
-// no folder can be made.
+// A new folder in TMPDIR. The destructor removes it with all its files; it must not contain folders. A
+// program that is killed, or runs out of memory inside a library, leaves its folder; the next program removes
+// it. A lock marks the folders that are in use, and a process loses its lock when it ends. Throws InputError
+// if no folder can be made.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -78,7 +78,7 @@ bool has_tolerance(const Column& column) {
          (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
 }
 
-// Copies the old values to `now` in the rows whose deviation is at most `allowed`; NaN is not.
+// Copies the old values to `now` in the rows whose deviation is at most `allowed`, which a NaN is not.
 template <class Values>
 void keep_rows(const Values& old, const std::vector<double>& deviation, double allowed, std::size_t width,
                Values& now) {

@@ -1,5 +1,5 @@
-// One experiment or sweep, made by every build on every instruction set and number of threads: how far its
-// numbers differ.
+// Runs one experiment or sweep with every build, on every instruction set and number of threads, and measures
+// how far its numbers differ.
 #pragma once
 
 #include <atomic>
@@ -27,15 +27,15 @@ struct Measured {
 };
 
 // Runs the baseline's experiment with every program for all levels of this machine and 1, 2 and 8 threads,
-// into the scratch folder. Throws InputError if a program fails, is of another commit than the first, or a
-// state, a hash or the finiteness of a number differs, for which there is no tolerance. Throws Interrupted
-// when stop is set.
+// into the scratch folder. Throws InputError if a program fails or is of another source or configuration than
+// the first. Throws InputError also if a state, a hash or the finiteness of a number differs, because these
+// have no tolerance. Throws Interrupted when stop is set.
 Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
                         const std::vector<std::string>& programs, const std::filesystem::path& scratch,
                         const std::atomic<bool>* stop);
 
-// The new values, but with the old bits in every row that is within the tolerance. pre: columns of one
-// result.
+// Returns the new values, but with the old bits in every row that is within the tolerance. pre: old and new
+// columns of the same result.
 std::vector<Column> keep_old_bits(const std::vector<Column>& old, std::vector<Column> now,
                                   const Tolerances& tolerances);
 

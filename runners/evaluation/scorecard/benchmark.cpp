@@ -47,8 +47,8 @@ std::string object_of(const Json& object, const char* part, const std::string& l
   return found->dump();
 }
 
-// The direction of a measure in a scene. "judged" is the measure's own direction. A scene gives one only to a
-// measure without a direction: less force is better in a scene where nothing should be touched.
+// Returns the direction of a measure in a scene. "judged" is the measure's own direction. A scene may define
+// a direction only for a measure without one: less force is better if nothing should be touched.
 Better better_of(const Json& word, const std::string& measure, const std::string& label) {
   const Better own = direction_of(directions(), measure);
   if (word == "reported") return Better::neither;
@@ -90,7 +90,8 @@ void add_judged(BenchmarkScene& scene, const std::string& name) {
   add_measure(scene, name, direction_of(directions(), name));
 }
 
-// {"rule": "held", "tolerance_m", "bounds" and their "meaning"}: the bounds come in addition.
+// Reads {"rule": "held", "tolerance_m", "bounds" and their "meaning"}. The bounds are added to those of the
+// rule.
 void read_held_rule(const Json& success, const std::string& rule, BenchmarkScene& scene) {
   if (success["rule"] != "held")
     throw InputError(rule + ".rule = " + shown(success["rule"]), "expected held");
@@ -120,8 +121,8 @@ void read_success(const Json& success, const std::string& rule, BenchmarkScene& 
     throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
 }
 
-// Returns the name of a file's method or scene in a scorecard, whose results are files of that name. Throws
-// InputError if the name has other characters than those allowed.
+// Returns the name of a method or scene that is read from a file: the file's name without folder and ending.
+// Result files have that name. Throws InputError if it has other characters than those allowed.
 std::string name_in(const std::string& file, const char* kind) {
   const std::string name = std::filesystem::path(file).stem().string();
   const auto is_plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
@@ -162,8 +163,8 @@ std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector
   return items;
 }
 
-// The measures of a scene's sweep: those of its bounds, those it names, and what a renderer did in every
-// tick.
+// Returns the measures of a scene's sweep: those of its bounds, those it names, and two that describe the
+// renderer in every tick.
 std::vector<std::string> measured(const BenchmarkScene& scene) {
   std::vector<std::string> names;
   const auto add = [&names](const std::string& name) {
@@ -230,7 +231,8 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
 
 namespace {
 
-// The scene's tool, in a method's renderer: a card would state a tool of the method that was not run.
+// Sets the scene's tool in a method's renderer. Throws InputError if the method states another tool, because
+// the card would then state a tool that was not run.
 void bring_tool(const Json& tool, const std::string& scene, const std::string& method, Json& renderer) {
   for (const auto& item : tool.items()) {
     const Json stated = renderer.value(item.key(), item.value());
@@ -254,8 +256,8 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   run["renderer"] = parse_json(method.renderer, label);
   if (!tool.empty()) bring_tool(parse_json(tool, label), name, method.name, run["renderer"]);
   run["seed"] = kScorecardSeed;
-  // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
-  // It then has as many runs as others have with noise, so that as many pairs decide.
+  // A sweep needs an axis. If the scene has its own noise, the axis is the seed with one value. There are
+  // then as many runs as other scenes have with noise, so that the same number of pairs decides.
   const bool own_noise = noise.empty();
   const auto noisy_levels = static_cast<int>(scorecard_noise_m().size()) - 1;
   const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
@@ -290,7 +292,8 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
   return all.dump();
 }
 
-// The name of a renderer stands for it with its defaults, where no method has that name.
+// Accepts the name of a renderer as a method with the renderer's defaults, unless a stored method has that
+// name.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
   const auto stored = embedded_methods();
   if (names.empty()) return chosen<Method>(stored, names, "method", read_method);

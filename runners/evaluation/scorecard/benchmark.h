@@ -38,11 +38,11 @@ struct BenchmarkScene {
   std::string meaning;           // success in words
   std::vector<Bound> success;
   std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
-  std::string tool = {};  // JSON: settings of the renderers that say which tool they hold; empty: for a HIP
+  std::string tool = {};  // JSON: settings of the renderers that define their tool; empty: for a HIP
 
-  // Returns the sweep of a method: noise levels by replicates, and nothing else, so that cell and replicate,
-  // the keys of all noise, are the same for every method. A scene with its own noise has as many runs as
-  // others have with noise. Throws InputError if the method cannot be run.
+  // Returns the sweep of a method. It varies only noise level and replicate, so that cell and replicate, the
+  // keys of all noise, are the same for every method. A scene with its own noise has as many runs as others
+  // have with noise. Throws InputError if the method cannot be run.
   Sweep sweep(const Method& method, int replicates) const;
 };
 

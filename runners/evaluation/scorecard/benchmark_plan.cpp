@@ -10,7 +10,7 @@ namespace remote_touch {
 std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
   std::vector<BenchmarkSweep> list;
   for (const ScenePlan& one : scenes) list.insert(list.end(), one.sweeps.begin(), one.sweeps.end());
-  // A method's own force law is in the audit too, and is the same file.
+  // A method's own force law is also in the audit, with the same file, so it is listed once.
   for (const ScenePlan& scene : audit)
     for (const BenchmarkSweep& one : scene.sweeps)
       if (std::none_of(list.begin(), list.end(),

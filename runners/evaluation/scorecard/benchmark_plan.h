@@ -1,4 +1,4 @@
-// All the sweeps of a scorecard: those of its scenes, and of the passivity audit.
+// All sweeps of a scorecard: those of its scenes, and those of the passivity audit.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct BenchmarkPlan {
   // Scenes whose recording is not on this machine, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
 
-  std::vector<BenchmarkSweep> sweeps() const;  // each once
+  std::vector<BenchmarkSweep> sweeps() const;  // each sweep once
 };
 
 // Resolves and checks every run. Throws InputError for what cannot be run.

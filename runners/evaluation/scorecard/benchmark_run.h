@@ -1,5 +1,5 @@
-// Does the runs of a scorecard: a sweep for each scene and method, each in its file, continuing where an
-// earlier call stopped.
+// Makes the runs of a scorecard: a sweep for each scene and method, each in its own file. A later call
+// continues with the runs that an earlier one did not finish.
 #pragma once
 
 #include <atomic>

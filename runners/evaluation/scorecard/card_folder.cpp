@@ -27,7 +27,7 @@ void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
   const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
-                                  false);  // broken: not an object
+                                  false);  // a broken text gives no object
   const Json wanted = Json::parse(configuration_of(plan));
   for (const char* kind : {"methods", "scenes"}) {
     if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())

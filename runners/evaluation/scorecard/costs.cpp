@@ -29,7 +29,7 @@ Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const 
       if (!(mean(ticks) >= best.tick_s)) best.tick_s = mean(ticks), best.frame_s = mean(frames);
     }
   } catch (const std::exception&) {
-    return {scene, method, kNone, kNone};  // the error is in the sweep's file
+    return {scene, method, kNone, kNone};  // the sweep's file contains the error
   }
   return best;
 }

@@ -20,15 +20,15 @@ struct Cost {
 
 inline constexpr std::size_t kCostLevel = 3;  // index in scorecard_noise_m(): 0.6 r_c
 
-// Measures one run on one thread, at the noise level kCostLevel if there are levels, and returns the faster
-// of two. Frames come with every point computed, so the times do not contain the generation of noise. NaN if
-// the run ends with an error. Throws Interrupted.
+// Measures one run twice on one thread, at the noise level kCostLevel if there are levels, and returns the
+// faster one. Every point of a frame is computed before the frame is passed to the renderer, so the times do
+// not contain the generation of noise. Returns NaN if the run ends with an error. Throws Interrupted.
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop);
 
-// A JSON file beside the results, so that scorecard.json of a finished scorecard does not change. origin: see
-// cost_origin(); costs of another origin are not read. read_costs() returns none for a file that does not
-// exist or cannot be used.
+// The costs are stored in a JSON file beside the results, so that scorecard.json of a finished scorecard does
+// not change. origin: see cost_origin(); costs of another origin are not read. read_costs() returns none for
+// a file that does not exist or cannot be used.
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
                  const TextAttributes& origin);
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin);

@@ -24,7 +24,8 @@ SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>&
   return score(rules, results, scene.noise.empty());
 }
 
-// The audit is about all runs, those that are not passive first of all.
+// Returns the scene with measures that are only reported. A judged measure counts successful runs only, but
+// the audit needs all runs, above all those that are not passive.
 BenchmarkScene reported(BenchmarkScene scene) {
   for (BenchmarkScene::Judged& judged : scene.measures) judged.better = Better::neither;
   return scene;
@@ -37,7 +38,7 @@ Scorecard empty_card(const std::vector<Method>& methods) {
   return card;
 }
 
-// Costs that an earlier call measured stay as they are; written scene by scene.
+// Measures the costs that the file does not contain yet, and returns all. Writes the file after each scene.
 std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                            const std::filesystem::path& file) {
   const TextAttributes origin = cost_origin(kernels);

@@ -10,7 +10,8 @@ namespace remote_touch {
 
 namespace {
 
-// A trace that an earlier call wrote; another build, or another failure, would have another configuration.
+// Returns true if the file is the trace of this experiment, which an earlier call of the same build wrote.
+// Another build or another failure has another source digest or configuration.
 bool is_there(const std::filesystem::path& file, const Experiment& experiment, const StoredSweep& stored) {
   std::error_code unreachable;
   if (!std::filesystem::is_regular_file(file, unreachable)) return false;
@@ -20,7 +21,7 @@ bool is_there(const std::filesystem::path& file, const Experiment& experiment, c
     return attribute(attributes, "config") == experiment.to_json() &&
            attribute(attributes, "source_digest") == attribute(stored.attributes, "source_digest");
   } catch (const InputError&) {
-    return false;  // damaged: written anew
+    return false;  // a damaged file is replaced
   }
 }
 

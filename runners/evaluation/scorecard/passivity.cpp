@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDamper_Ns_per_m = 3;
 
-// All parameters of the renderer, those left out with their defaults.
+// Returns all parameters of the renderer; those that are left out have their defaults.
 Json complete(const Json& renderer) {
   auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
   read_parameters(renderer, factory->settings(), "renderer", {"name"});
@@ -21,7 +21,8 @@ Json complete(const Json& renderer) {
   return all;
 }
 
-// The method with one parameter changed; itself where that is its value already.
+// Returns the method with one parameter changed, or the method itself if the parameter has that value
+// already.
 Method with(const Method& method, const char* parameter, const Json& value, const std::string& mark) {
   Json renderer = parse_json(method.renderer, method.name);
   if (complete(renderer).at(parameter) == value) return method;

@@ -1,4 +1,4 @@
-// The results of a scorecard's runs: its numbers, and beside them failures, costs and the audit of passivity.
+// The results of a scorecard's runs: its numbers, failures, costs and the audit of passivity.
 #pragma once
 
 #include <optional>

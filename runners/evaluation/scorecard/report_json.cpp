@@ -146,7 +146,7 @@ Json behind_json(const Scorecard& card) {
   return {{"method", kOwnMethod}, {"list", list}};
 }
 
-// The interval excludes zero: energy for certain, or none for certain.
+// Returns "given" or "taken" if the interval of the energy excludes zero, else "none".
 const char* energy_word(const MeanDifference& energy) {
   return energy.low > 0 ? "given" : energy.high < 0 ? "taken" : "none";
 }
@@ -221,7 +221,7 @@ std::string to_json(const ScorecardReport& report) {
                     {"scenes", scenes},
                     {"audit", audit_json(report.audit)},
                     {"costs", costs_json(report)}};
-  // Messages name files, and names of files can be any bytes: those that are no text are replaced.
+  // Messages contain names of files, which can be any bytes. Bytes that are not UTF-8 are replaced.
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

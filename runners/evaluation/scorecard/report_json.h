@@ -1,5 +1,5 @@
-// scorecard.json: what scripts/plot needs for the page of a scorecard. All decisions are in it (who is
-// marked, which words a verdict has); a page only gives them a form.
+// scorecard.json: the data from which scripts/plot makes the page of a scorecard. It contains all decisions
+// (which method is marked, which words a verdict has); a page only formats them.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace remote_touch {
 
 inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/3";
 
-// SI units, null for a number that is not there. Lists "methods" and "laws" have their order everywhere.
+// SI units, null for a number that is missing. The lists "methods" and "laws" have the same order everywhere.
 std::string to_json(const ScorecardReport& report);
 
 }  // namespace remote_touch

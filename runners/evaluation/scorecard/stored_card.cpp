@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kMadeBy = "a card that `remote-touch scorecard store` wrote";
 
-// Every column of one of its tables.
+// Returns one table of the file with all its columns.
 Table table_in(const Hdf5Reader& file, const std::string& name) {
   Table table{name, {}};
   const std::string folder = "/tables/" + name + "/";
@@ -41,7 +41,7 @@ Hdf5Reader stored_card_file(const std::filesystem::path& file) {
   return hdf5;
 }
 
-// Three digits; a dash where there is no number.
+// Returns a number with three digits; a dash for NaN.
 std::string digits(double value) {
   if (std::isnan(value)) return "-";
   char text[32];

@@ -26,17 +26,18 @@ std::string write_stored_card(const std::filesystem::path& file, const Scorecard
 // Throws InputError if the file is not a stored card.
 StoredCard read_stored_card(const std::filesystem::path& file);
 
-// Returns the results of the stored card as Markdown: first where the project's own method is not the best,
-// then all methods. Throws InputError if the file is not a stored card.
+// Returns the results of the stored card as Markdown: first those in which the project's own method is not
+// the best, then all methods. Throws InputError if the file is not a stored card.
 std::string stored_summary(const std::filesystem::path& file);
 
-// Returns a sentence for each method and scene of the plan that is not in the stored card, or was defined in
+// Returns a sentence for each method and scene of the plan that is not in the stored card, or is defined in
 // another way there, and for each number that does not agree, see differences() of numbers. plan: without
 // scenes that were skipped.
 std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
                                      const Scorecard& now);
 
-// The configuration() of what a plan runs: without scenes whose recording is not here.
+// Returns the configuration() of the parts that a plan runs: without scenes whose recording is not on this
+// machine.
 std::string configuration_of(const BenchmarkPlan& plan);
 
 }  // namespace remote_touch

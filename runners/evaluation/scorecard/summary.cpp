@@ -17,7 +17,8 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Adds the ratio and the own cost if both were measured: the numbers are sorted, so none may be NaN.
+// Adds the ratio and the method's own cost if both costs were measured. The lists are sorted later, so they
+// must not contain NaN.
 void add_cost(double own_s, double other_s, std::vector<double>& ratio, std::vector<double>& all_s) {
   if (!(std::isfinite(own_s) && std::isfinite(other_s) && own_s > 0 && other_s > 0)) return;
   ratio.push_back(own_s / other_s), all_s.push_back(own_s);

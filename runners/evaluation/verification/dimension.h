@@ -15,12 +15,12 @@ struct UnitChange {
   double time = 1;
   double force = 1;
 
-  double factor(const Dimension& dimension) const;  // exact where the changes are powers of two
+  double factor(const Dimension& dimension) const;  // exact if the changes are powers of two
 };
 
-// The dimension of a number with that name: "r1_m" is {1, 0, 0}, "damping_Ns_per_m" {-1, 1, 1}, "gamma",
-// which has no underscore, a pure number. Throws InputError, about that name, for an ending that is not in
-// known_units(): a wrong guess would make every check by units worthless.
+// Returns the dimension of a number with that name. "r1_m" is {1, 0, 0} and "damping_Ns_per_m" is {-1, 1, 1}.
+// "gamma" has no underscore and is a pure number. Throws InputError, about that name, for an ending that is
+// not in known_units(): a wrong guess would make every check by units worthless.
 Dimension dimension_of(const std::string& name);
 
 // Multiplies every number by its factor, each column of Rows by its own. Choices, texts, switches and
@@ -28,7 +28,7 @@ Dimension dimension_of(const std::string& name);
 // have to change, and a number that leaves its allowed range.
 void change_units(const Parameters& parameters, const UnitChange& change);
 
-// The largest number among the parameters that is a length, m; 0 without one.
+// Returns the largest magnitude of the parameters that are lengths, m; 0 if no parameter is a length.
 double max_length_m(const Parameters& parameters);
 
 }  // namespace remote_touch

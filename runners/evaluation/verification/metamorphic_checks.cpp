@@ -20,15 +20,16 @@ using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or at least in some if it is one that loses contact"};
-// Share of the ticks. Direct rendering lets the HIP through, a mesh that moves leaves it behind, and who
-// knows no regions meets only the points in their middle: these push back only in the moments before.
+// Returns the smallest fraction of the ticks that must have a force. Three contact models push back in a few
+// ticks only. With `nothing` the HIP passes through the points, a moving mesh (`mesh`) leaves the HIP behind
+// it, and `oriented` ignores forbidden regions, so it meets only the points in their middle.
 double min_touch(ContactModel contact_model) {
   const bool lets_go = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
                        contact_model == ContactModel::oriented;
   return lets_go ? 0.02 : 0.5;
 }
 
-// The renderer to check, as often as it is needed.
+// Makes the renderer under test, as often as it is needed.
 class Subject {
  public:
   Subject(const RendererEntry& entry, const std::vector<std::string>& assignments, const Kernels& kernels)
@@ -91,7 +92,7 @@ class Subject {
     return std::any_of(assignments_.begin(), assignments_.end(),
                        [](const std::string& assignment) { return assignment.starts_with("tool_mesh="); });
   }
-  // The number of that name; null without one.
+  // Returns the renderer's parameter stiffness_N_per_m, or null if it has none.
   static double* stiffness(const Parameters& parameters) {
     for (const Parameter& p : parameters)
       if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
@@ -104,7 +105,8 @@ class Subject {
   const Kernels& kernels_;
 };
 
-// Violated in the tick with which too many are without a force.
+// Counts the ticks without a force. The check is violated in the tick in which the count exceeds the fraction
+// (1 - min) of all ticks.
 CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double min) {
   const double allowed = (1 - min) * static_cast<double>(outputs.size());
   Comparison count{.deviations = {{"ticks without force", "1", allowed}}};
@@ -117,9 +119,9 @@ CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double 
   return {kTouch.name, kTouch.meaning, scene.name, "the other checks mean little without touch", count, {}};
 }
 
-// Returns a remark if a HIP that is 1e-13 m further on violates the tolerance as early as the failed check.
-// Differences as small as rounding then grow, so a tolerance for rounding decides nothing. The check has
-// failed all the same. Empty otherwise.
+// Returns a remark if a HIP that is moved by 1e-13 m along each axis violates the tolerance no later than the
+// failed check does. Differences as small as rounding then grow, so a tolerance for rounding cannot decide
+// the check. The check counts as failed all the same. Returns an empty text otherwise.
 std::string remark_on(const CheckResult& failed, const Subject& subject, const MetamorphicScene& scene,
                       const Outputs& outputs, const OutputTolerance& tolerance) {
   constexpr double kSmall_m = 1e-13;  // below every tolerance

@@ -26,12 +26,13 @@ struct CheckResult {
   bool passed() const { return comparison.ticks > 0 && comparison.first_violation < 0; }
 };
 
-// All results, scene by scene. The first of each scene, "touch", checks that the renderer exerts a force in
-// most ticks, or in some if its contact model can lose contact (mesh or nothing): without it the other checks
-// would mean little. assignments: "r1_m=0.004"; a renderer of a tool has kVerifiedTool unless they name
-// another. Throws InputError for an assignment that the renderer refuses, and for a parameter whose units
-// cannot be changed (see dimension.h). stop: when set, ends between two scenes with Interrupted. Without
-// scenes: verification_scenes(), or tool_scenes() for a renderer of six degrees of freedom.
+// Returns all results, scene by scene. The first result of each scene, "touch", checks that the renderer
+// exerts a force in most ticks, or in some ticks if its contact model can lose contact (nothing, mesh or
+// oriented). Without it the other checks would mean little. assignments: "r1_m=0.004"; a renderer of a tool
+// has kVerifiedTool unless they name another. Throws InputError for an assignment that the renderer refuses,
+// and for a parameter whose units cannot be changed (see dimension.h). stop: when set, ends between two
+// scenes with Interrupted. Without scenes: verification_scenes(), or tool_scenes() for a renderer of six
+// degrees of freedom.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop = nullptr);

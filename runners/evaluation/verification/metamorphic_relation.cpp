@@ -7,15 +7,17 @@ namespace remote_touch {
 namespace {
 
 constexpr OutputTolerance kExact;
-// Rounding moves a coordinate of 1 m by 1e-16 m. On a crest small differences grow until the proxy has left
-// it, by 1e5 with fixed steps; 1e8 is allowed. What is left is 1/2000 of the contact region of Table 4.2, the
-// smallest length of the method. A force of 10 N is a spring of 1e-2 m; a normal turns by a position's error
-// over r_c; a velocity is positions over a frame's 1/32 s.
+// Rounding changes a coordinate of 1 m by 1e-16 m. On a crest, small differences grow until the proxy has
+// left it: by 1e5 with fixed steps; 1e8 is allowed. The tolerance of positions is thus 1e-8 m, 1/2000 of the
+// contact region of Table 4.2, the smallest length of the method. The other tolerances follow from it with a
+// margin: a force of 10 N stretches the spring by 1e-2 m; a normal turns by a position's error over r_c; a
+// velocity is a difference of positions over a frame's 1/32 s.
 constexpr OutputTolerance kRounded{1e-8, 1e-5, 1e-6, 1e-5, true};
 constexpr OutputTolerance kRoundedThreefold{3e-8, 1e-5, 3e-6, 1e-5, true};
 // k_s psi is rounded to 1e-7 N/m a point, (5.8).
 constexpr OutputTolerance kRoundedForce{0, 1e-6, 0, 0, false};
-// Below this an estimate is the rounding of the proxy's last step over a frame's time.
+// A velocity estimate below these tolerances is only the rounding of the proxy's last step, divided by the
+// time of a frame.
 constexpr OutputTolerance kRestsEvenSo{1e-12, 1e-9, 1e-12, 1e-9, true};
 
 constexpr const char* kSameSum = "the same numbers in the same sums: equal bits";

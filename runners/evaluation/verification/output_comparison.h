@@ -13,18 +13,18 @@ struct OutputTolerance {
   double force_fraction = 0;  // fraction of the largest force in the run
   double velocity_m_per_s = 0;
   double normal = 0;
-  bool rounded = false;        // true: steps are not compared, and normals only where a point is touched
+  bool rounded = false;        // true: steps are not compared, and normals only while a point is touched
   double rotation_rad = 0;     // rotation of a tool
   double torque_fraction = 0;  // fraction of the largest torque in the run
-  // true: for a tool, only pose, force, torque and penetration are compared.
+  // true: the nearest distance, the normal and "other" are not compared; the depth in a tool still is.
   bool pose_only = false;
 };
 
 // The largest difference of one kind.
 struct Deviation {
-  // "position" (proxy, slave, frame correction), "nearest" (and how deep the deepest point is in a tool),
-  // "force", "velocity", "normal", "rotation" and "torque" of a tool, or "other": 1 where state, steps,
-  // counts, frame or status differ
+  // "position" (proxy, slave, frame correction), "nearest" (nearest distance, and penetration of a tool),
+  // "force", "velocity", "normal", "rotation" and "torque" of a tool, or "other": 1 if state, convergence,
+  // steps, counts, frame or status differ.
   const char* quantity;
   const char* unit;
   double tolerance = 0;

@@ -25,7 +25,7 @@ bool mirror_axis(Variation& run, int axis) {
   return true;
 }
 
-// Change of size at equal stiffness: forces grow with lengths, so N/m and Ns/m stay.
+// Change of size at equal stiffness: forces grow with lengths, so values in N/m and Ns/m do not change.
 constexpr UnitChange sized(double factor) {
   return {factor, 1, factor};
 }
@@ -41,7 +41,7 @@ bool points_are_stiff(const Variation& run) {
 
 constexpr int kTicksAfter = 16;  // half way to the next view
 
-// The first tick at or after its arrival tells that a view was dropped.
+// Expects that the first tick at or after the arrival of each of these views reports a dropped frame.
 void expect_dropped(Variation& run, const std::vector<std::size_t>& views) {
   for (const std::size_t view : views) {
     std::size_t tick = 0;
@@ -51,7 +51,8 @@ void expect_dropped(Variation& run, const std::vector<std::size_t>& views) {
   }
 }
 
-// A view that must not be used, and shows it: its number and its points are others.
+// Returns a view that must not be used. Its index and its points differ from those of every real view, so
+// that its use would change the outputs.
 CloudView stale(CloudView view, double captured_s, double shift_m) {
   view.index += 1000;
   view.captured_s = captured_s;
@@ -61,7 +62,8 @@ CloudView stale(CloudView view, double captured_s, double shift_m) {
   return view;
 }
 
-// The follower keeps the number: it is the same view, captured again.
+// Each view is followed by itself, captured again half a period later. It keeps its index, because it is the
+// same view.
 void send_more_often(Variation& run, std::size_t first) {
   const double period_s = kTicksAfter / run.scene.haptic_rate_hz;
   follow_views(run, first, kTicksAfter, [=](CloudView view, const CloudView&) {
@@ -146,7 +148,7 @@ bool add_radius_column(Variation& run) {
   return true;
 }
 
-// A point whose stiffness is NaN has the renderer's.
+// A point whose stiffness is NaN has the stiffness of the renderer.
 bool add_empty_stiffness_column(Variation& run) {
   for (CloudView& view : run.scene.views) {
     if (!view.cloud.stiffness_N_per_m.empty()) return false;
@@ -252,7 +254,8 @@ bool send_late(Variation& run) {
   return true;
 }
 
-// A step to the side over bumps has a part along the normal, and (4.13) takes that for a motion of the cloud.
+// A step to the side over bumps has a component along the normal, which (4.13) interprets as a motion of the
+// cloud.
 bool double_rate(Variation& run) {
   if (run.fits_a_sheet) return false;
   if (!run.scene.cloud_rests || run.scene.hip_rests) return false;

@@ -1,5 +1,5 @@
-// The variations of a run that the relations use: each changes the scene and the outputs that are expected of
-// it, and returns false where it does not apply to the scene or the renderer.
+// The variations of a run that the relations use. Each changes the scene and the expected outputs, and
+// returns false if it does not apply to the scene or the renderer.
 #pragma once
 
 #include "runners/evaluation/verification/variation.h"

@@ -35,8 +35,8 @@ Vec3 bumpy_surface(double u, double v) {
   return {u, 0.0015 * (wave(u / 0.024) + wave(v / 0.031)), v};
 }
 
-// Walls that meet at 100 degrees. In a corner of 90 the steps of chapter 4 go to and fro between the walls,
-// and differences as small as rounding grow a thousandfold in ten ticks.
+// Walls that meet at 100 degrees. In a corner of 90 degrees the steps of chapter 4 alternate between the
+// walls, and differences as small as rounding grow a thousandfold in ten ticks.
 Vec3 groove_surface(double u, double v) {
   return {0.766 * u, 0.643 * std::abs(u), v};
 }

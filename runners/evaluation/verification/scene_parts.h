@@ -23,7 +23,8 @@ struct SceneKnot {
   Vec3 rotation_L = Vec3::Zero();  // rad
 };
 
-// A sine of amplitude 1 and period 1 made of parabolas: the C library's differs between machines.
+// Returns a wave of amplitude 1 and period 1 that is made of parabolas. The sine of the C library is not
+// used, because its bits differ between machines.
 double wave(double t);
 
 Vec3 flat_surface(double u, double v);
@@ -37,13 +38,14 @@ PointCloud sheet_of(const Grid& grid, const SceneSurface& surface, bool with_nor
 PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view, const Kernels& kernels,
                  bool with_normals = false);
 
-// A path in even motion between the knots, the first of which is at tick 0, and a cloud for each view.
+// Returns a scene with one cloud for each view. The HIP moves at a constant velocity from knot to knot, and
+// the device turns evenly. The first knot is at tick 0.
 MetamorphicScene scene_of(const char* name, const char* what, const std::vector<SceneKnot>& knots,
                           const std::function<PointCloud(int view, double time_s)>& cloud);
-// The same with one cloud that rests.
+// Returns the same with one cloud that rests.
 MetamorphicScene resting_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
                                const PointCloud& cloud);
-// The HIP rises with the surface.
+// Adds height(time_s) to the HIP's y, so that the HIP rises with the surface.
 void raise_hip(MetamorphicScene& scene, const std::function<double(double time_s)>& height);
 
 // Rotations from the surface's frame to the world. They need square roots and products only, so all machines

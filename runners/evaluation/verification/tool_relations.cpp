@@ -6,7 +6,8 @@ namespace remote_touch {
 namespace {
 
 constexpr OutputTolerance kSameTool;
-// The poses alone, within a distance and a rotation, with forces and torques as fractions of the largest.
+// Returns tolerances for a tool's pose and surface velocity, and for its force and torque as fractions of the
+// largest ones.
 constexpr OutputTolerance poses_within(double position_m, double rotation_rad, double force_fraction,
                                        double torque_fraction, double velocity_m_per_s = 0.05) {
   return {.position_m = position_m,
@@ -17,16 +18,17 @@ constexpr OutputTolerance poses_within(double position_m, double rotation_rad, d
           .torque_fraction = torque_fraction,
           .pose_only = true};
 }
-// A tick ends when steps get shorter than the rest threshold or come no nearer to the device, and leaves
-// depths of up to 0.1 mm. Which of the poses within that it ends in depends on rounding, on the tiles and
-// cubes into which the cloud is divided along the world's axes, and on lengths of the rules that are
-// constants, as the cells of 4 mm in which contacts are thinned. 0.5 mm is half a voxel of the bar, and a
-// force of 0.3 N, of 4 to 6 N in these scenes. The rotation is what the groove needs: up to 0.09 rad were
-// measured there, which move the ends of the bar by 4 mm.
+// A tick ends when the steps become shorter than the rest threshold, or bring the tool no nearer to the
+// device. It may leave depths of up to 0.1 mm. The final pose within these limits depends on rounding, on the
+// tiles and cubes into which the cloud is divided along the world's axes, and on constant lengths of the
+// rules, such as the cells of 4 mm in which contacts are thinned. 0.5 mm is half a voxel of the bar, and
+// corresponds to 0.3 N; forces are 4 to 6 N in these scenes. The rotation is what the groove needs: up to
+// 0.09 rad were measured there, which move the ends of the bar by 4 mm.
 constexpr OutputTolerance kSolved = poses_within(5e-4, 0.1, 0.1, 0.2);
 // Tolerance for variations in which the points keep their positions and tiles.
 constexpr OutputTolerance kSamePlaces = poses_within(1e-4, 0.02, 0.02, 0.05);
-// Tolerances for a bar twice as large, and half as large, which the same 0.5 mm rotate by twice as much.
+// Tolerances for a bar twice as large, whose lengths are all doubled, and for one half as large, which the
+// same 0.5 mm rotate by twice the angle.
 constexpr OutputTolerance kSolvedTwice = poses_within(1e-3, 0.1, 0.1, 0.2, 0.1);
 constexpr OutputTolerance kSolvedHalf = poses_within(5e-4, 0.2, 0.2, 0.4);
 

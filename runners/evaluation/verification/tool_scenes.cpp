@@ -6,9 +6,8 @@ namespace remote_touch {
 
 namespace {
 
-// Surfaces without roughness, on which the nearest pose to the device is one and the same however the tool
-// got there: among bumps and points with noise a difference of rounding decides between poses that are
-// millimetres apart.
+// Returns a sheet without roughness. On it, the pose nearest to the device is unique, whatever path the tool
+// took. Among bumps or noisy points a rounding difference decides between poses that are millimetres apart.
 PointCloud smooth_sheet(const SceneSurface& surface, const Kernels& kernels) {
   return sheet(surface, 0, 0, 0, kernels, true);
 }
@@ -28,7 +27,8 @@ MetamorphicScene tool_plane(const Kernels& kernels) {
   return scene;
 }
 
-// Points so close together that one disk can stand for many: cubes of 2 mm along the world's axes.
+// The points are so close together that a renderer may replace many of them by one disk, in cubes of 2 mm
+// along the world's axes.
 MetamorphicScene tool_dense() {
   MetamorphicScene scene = resting_scene(
       "tool-dense", "a plane at rest with points 0.5 mm apart, pressed with the middle of a bar",
@@ -80,7 +80,8 @@ MetamorphicScene tool_rise(const Kernels& kernels) {
   return scene;
 }
 
-// Chapter 7: points that are balls, for renderers of regions alone. Others touch the points in their middle.
+// Chapter 7: every point is a ball of 6 mm. Only renderers of regions render the balls; others touch the
+// points in their middle.
 MetamorphicScene tool_regions(const Kernels& kernels) {
   PointCloud cloud = smooth_sheet(flat_surface, kernels);
   cloud.fixture_radius_m.assign(cloud.size(), 0.006);

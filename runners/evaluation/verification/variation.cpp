@@ -86,7 +86,8 @@ void move_rigidly(Variation& variation, const RigidTransform& motion) {
 
 namespace {
 
-// Rotations and torques are about axes: what lies along the mirror's axis stays.
+// Rotation vectors and torques are axial vectors. A mirror keeps their component along its axis and reverses
+// the others.
 Vec3 mirrored_axial(Vec3 v, int axis) {
   v = -v;
   v[axis] = -v[axis];

@@ -95,7 +95,7 @@ MetamorphicScene rise(const Kernels& kernels) {
   return scene;
 }
 
-// Chapter 5 in motion: regions that overlap and differ rise against the HIP.
+// Chapter 5 in motion: overlapping forbidden regions of different radii rise against the HIP.
 MetamorphicScene rising_regions(const Kernels& kernels) {
   const auto height = [](double time_s) { return 0.04 * time_s + 0.08 * time_s * time_s; };
   MetamorphicScene scene =

@@ -161,7 +161,7 @@ std::vector<RendererEntry> built_in_renderers() {
   };
 }
 
-// True for a name that --set, lists and files can hold. Every entry must have one.
+// Returns true for a name that --set, lists and files can hold. Every entry must have such a name.
 bool is_name(const std::string& name) {
   return !name.empty() &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") == std::string::npos;

@@ -16,8 +16,8 @@ namespace remote_touch {
 
 class Catalog {
  public:
-  // Each throws InputError if the name is taken, or has characters other than lower case letters, digits, -
-  // and _.
+  // Each function throws InputError if the name is taken, is empty or has characters other than lower case
+  // letters, digits, - and _. A measure without a function is refused too.
   Catalog& add(ScenarioEntry entry);
   Catalog& add(FixtureEntry entry);
   Catalog& add(TrajectoryEntry entry);

@@ -88,14 +88,15 @@ std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
 FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   for (const auto& rule : configuration_.fixtures) rules.push_back(rule.factory->build());
-  // Frames of a scene at rest are sent on only where something can change.
+  // Switches change only with a sequence. Without one they are left out, because FrameStream would send the
+  // frame of a scene at rest again and again.
   return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches));
 }
 
 namespace {
 
-// The default DepthReport: prints the line that an OpenCL device has failed. The results are the same without
-// the device.
+// The default DepthReport: prints one line when an OpenCL device has failed. The CPU then computes the same
+// results.
 void print_line(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }

@@ -27,8 +27,9 @@ struct LiveParameter {
 class Experiment {
  public:
   // Reads JSON text; label names the source in errors. Overrides are "key=value" and are applied last; the
-  // title names them (changed_settings.h). Throws InputError for anything that cannot be run, so that no run
-  // fails later because of its configuration, and for an override that a later one discards.
+  // title names them (changed_settings.h). Throws InputError for settings that are invalid in themselves or
+  // do not fit each other, and for an override that a later one discards. check_needs() and the build
+  // functions check what depends on the scene and on files.
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
   static Experiment from_json(const nlohmann::ordered_json& configuration);
@@ -40,42 +41,44 @@ class Experiment {
   const std::vector<SequenceStep>& sequence() const { return configuration_.sequence; }
   const std::vector<RendererChange>& changes() const { return configuration_.changes; }
   std::string to_json() const;  // complete: every parameter, one line
-  // The value that the first tick has at a path like "renderer.r1_m": that of the configuration, or of a
-  // change at 0 s. Null if there is none.
+  // Returns the value of a setting in the first tick, for a path like "renderer.r1_m": the value in the
+  // configuration, or the value of a change at 0 s. Returns null if there is none.
   nlohmann::ordered_json value_at_start(const std::string& path) const;
-  // The recordings that a run reads, as named in the configuration, not yet searched for.
+  // Returns the recordings that a run reads, as named in the configuration; the file system is not searched.
   // except: keys of sections that this run does not read.
   std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
 
-  // The scenario as the sensor shows it, with its faults.
+  // Builds the scenario, with the faults of the sensor if the experiment has any.
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
-  // The same motion whatever the faults, so that their effect can be seen alone.
+  // Builds the trajectory on the scene without sensor faults. The motion is the same with and without faults,
+  // so that the effect of the faults can be seen alone.
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
-  // switches: which fixtures are on; a task sets them, and the processing of frames reads them. Not used
-  // without a task.
+  // switches: the switches of the fixtures. The renderer sets them, and the processing of frames reads them.
+  // build_fixtures() and build_processing() do not use them without a sequence.
   std::unique_ptr<Renderer> build_renderer(const Kernels& kernels,
                                            std::shared_ptr<FixtureSwitches> switches = nullptr) const;
   FixtureAssignment build_fixtures(std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
-  // report: gets the line that an OpenCL device has failed, in the thread that processes frames; empty: it
-  // goes to standard error.
+  // report: called with one line when an OpenCL device has failed, in the thread that processes frames. If it
+  // is empty, the line is printed to standard error.
   FrameProcessing build_processing(const Kernels& kernels,
                                    std::shared_ptr<const FixtureSwitches> switches = nullptr,
                                    const DepthReport& report = {}) const;
-  // Called before a run. Throws InputError, which says what to add, if the frames of the scenario lack a need
-  // of the renderer, a fixture rule or guidance. build_processing() checks each later frame.
+  // Must be called before a run. Throws InputError, which says what to add, if the first frame of the
+  // scenario lacks a need of the renderer, a fixture rule or guidance. The overload for a live sensor checks
+  // only the renderer's needs. Each frame must be checked against FrameProcessing::needs too.
   void check_needs(const Scenario& scenario) const;
   void check_needs(const SensorView& view) const;
   // Adds `depth_device` to the provenance of a result: the name of the OpenCL device that processes its depth
   // images. Adds nothing if the CPU processes them. Must be called after build_processing().
   void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
-  // The phases in the sections of the experiment itself: changes of the renderer, schedules of fixtures, and
-  // steps of the sequence that wait for a time.
+  // Returns the phases in the sections of the experiment itself: changes of the renderer, schedules of
+  // fixtures, and steps of the sequence that wait for a time.
   std::vector<Phase> phases() const { return setting_phases(configuration_); }
   // The button presses of the simulated operator, and the changes of the grip.
   std::vector<Phase> operator_phases() const { return remote_touch::operator_phases(configuration_); }
-  // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
-  // renderer or of a forbidden region, plus those of all guidance.
+  // Returns an upper bound, over all poses, of how fast |force| grows with the device's displacement: the
+  // stiffest spring of the renderer or of a forbidden region, plus the springs of all guidance.
   double max_stiffness_N_per_m() const;
   // Returns the live parameters of the renderer, in the order of Renderer::live_parameters(), then those of
   // the scenario.

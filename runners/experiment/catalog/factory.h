@@ -40,13 +40,13 @@ class Factory : public Configurable {
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
-// Builds a product that has a constructor (Settings, Arguments...). The namespace of the settings has the
-// functions
+// Builds a product that has a constructor (Settings, Arguments...). The namespace of the settings has these
+// functions:
 // - Parameters parameters(Settings&): the settings by name
 // - std::string validate(const Settings&): empty, or the first problem: "r1_m = 1: expected below r2_m"
-// - double max_stiffness_N_per_m(const Settings&): only for renderers, and for every one
+// - double max_stiffness_N_per_m(const Settings&): needed for every renderer, not used for other products
 // - RenderedContact rendered_contact(const Settings&): for a renderer whose rest distance is known
-// - RecordingPart input_files(const Settings&): if the settings name files
+// - RecordingPart input_files(const Settings&), or a vector of them: if the settings name files
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -105,10 +105,10 @@ enum class DegreesOfFreedom { three, six };
 // - sheet: a sheet fitted to points in cells along the world's axes. A rotated scene, or one that is sent
 //   more often, gives similar outputs but not the same bits.
 // - nothing: points only push, and a HIP that is pressed deeper passes them.
-// - oriented: points, but the direction to the sensor matters. The layout of an image gives it, else a
-//   setting in the world's axes. Forbidden regions do not count.
-// - resting_points: points, but points that a frame puts into the tool stay there. Rounding therefore decides
-//   when a moving surface passes.
+// - oriented: all points, and the direction to the sensor matters. The image layout of a frame gives this
+//   direction; without one a setting in the world's axes does. Forbidden regions are ignored.
+// - resting_points: all points, but points that a new frame puts into the tool stay in it. Rounding therefore
+//   decides when a moving surface passes through the tool.
 enum class ContactModel { points, regions, mesh, sheet, nothing, oriented, resting_points };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz

@@ -17,7 +17,7 @@ struct FrameContents {
   bool normals = false, organised = false, image = false;
 };
 
-// A single row or column has no triangle.
+// Returns true for a grid with triangles: a single row or column has none.
 bool is_organised(int columns, std::size_t points) {
   return columns > 1 && points >= 2 * static_cast<std::size_t>(columns);
 }
@@ -93,10 +93,11 @@ void check_renderer(const ExperimentConfiguration& configuration, const std::vec
                      "depth images, or an organised cloud (of a PCD file: HEIGHT above 1)");
 }
 
-// --- where the sensor looks from ---
+// --- the view direction of the sensor ---
 
-// The default is right for scenes whose y is up. A view that was set is trusted: points need not be in the
-// axes of a camera.
+// Throws InputError if the view direction still has its default value but the sensor of the recording looks
+// in another direction. The default is right for scenes whose y axis is up. A direction that the user has set
+// is trusted, because the points need not be in the axes of a camera.
 void check_view(const std::string& path, const Vec3& view, const Vec3& by_default, const Scenario& scenario) {
   constexpr double kMinCosine = 0.5;  // surfaces that face the one direction mostly face the other
   const std::optional<RigidTransform> sensor = scenario.sensor_pose();
@@ -110,7 +111,9 @@ void check_view(const std::string& path, const Vec3& view, const Vec3& by_defaul
             text(looks_W) + " in the axes of a camera");
 }
 
-// The plane of a target faces the sensor, which is at the origin where there is no image.
+// Throws InputError if the plane of a guidance target is needed and the sensor is not known to be at the
+// origin. The normal of the plane points towards the sensor, which is assumed at the origin for frames that
+// are not images.
 void check_plane(const ExperimentConfiguration& configuration, const Scenario& scenario) {
   if (!configuration.guidance || configuration.guidance->orientation != GuidedOrientation::plane) return;
   const std::optional<RigidTransform> sensor = scenario.sensor_pose();
@@ -125,7 +128,7 @@ Vec3 default_view(const ExperimentConfiguration& configuration) {
   return *setting<Vec3>(*defaults, "view");
 }
 
-// Settings that tell what an image would.
+// Checks the settings that replace the information of an image layout.
 void check_without_image(const ExperimentConfiguration& configuration, const std::vector<FrameNeed>& needs,
                          const Scenario& scenario) {
   if (contains(needs, FrameNeed::view))

@@ -1,6 +1,6 @@
-// Refuses a run whose frames lack what its renderer, fixture rules or guidance need: in one line that says
-// what to add, before the run starts; and in a recording whose frames differ, at the first frame that lacks
-// it.
+// Refuses a run whose frames lack what its renderer, fixture rules or guidance need. The message is one line
+// that says what to add. check_needs() checks the first frame before the run starts. RendererNeeds checks
+// every frame, because the frames of a recording may differ.
 #pragma once
 
 #include <string>
@@ -23,8 +23,9 @@ class RendererNeeds {
   RendererNeeds() = default;
   RendererNeeds(std::string renderer, std::vector<FrameNeed> needs)
       : renderer_(std::move(renderer)), needs_(std::move(needs)) {}
-  // Throws InputError for a frame whose points have no normals or are unorganised, if that is needed. A frame
-  // without points lacks nothing. Of frame 0, one of the measured points must have a normal.
+  // Throws InputError for a frame whose points have no normals or are unorganised, if the renderer needs
+  // normals or organised points. A frame without points is accepted. If normals are needed, at least one of
+  // the measured points of frame 0 must have one.
   void check(const Frame& frame) const;
 
  private:
@@ -32,13 +33,14 @@ class RendererNeeds {
   std::vector<FrameNeed> needs_;
 };
 
-// The needs in the catalog's line of the renderer.
+// Returns the needs that the catalog lists for the renderer.
 std::vector<FrameNeed> renderer_needs(const ExperimentConfiguration& configuration);
 
-// Before a run. Each throws InputError. fixtures: those of the configuration.
+// Checks the first frame of the scenario before a run. Throws InputError. fixtures: the fixtures of the
+// configuration.
 void check_needs(const ExperimentConfiguration& configuration, const FixtureAssignment& fixtures,
                  const Scenario& scenario);
-// Checks the renderer's needs against what a live sensor reports before its first frame.
+// Checks the renderer's needs against what a live sensor reports before its first frame. Throws InputError.
 void check_needs(const ExperimentConfiguration& configuration, const SensorView& view);
 
 }  // namespace remote_touch

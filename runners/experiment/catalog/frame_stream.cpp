@@ -27,7 +27,7 @@ class ScenarioTruth final : public TrueSurface {
 
 }  // namespace
 
-// Points that come with another time stamp are another frame.
+// The hash includes the time of capture: the same points with another time stamp are another frame.
 std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
   return mixed(points_hash(cloud), std::bit_cast<std::uint64_t>(captured_s));
 }
@@ -53,7 +53,7 @@ void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const Sensor
     PointCloud cloud;
     if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC, sensed.colour},
                            cloud, steps ? &*steps : nullptr)) {
-      if (steps)  // done; and where all rules are forbidden regions there are no targets
+      if (steps)  // there are no targets, because all rules are forbidden regions
         frame.points = make_search(std::move(cloud));
       else
         apply_fixtures(frame, std::move(cloud), off);
@@ -63,7 +63,8 @@ void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const Sensor
   fill(frame, cloud_of(sensed, view, X_WC), off);
 }
 
-// A rule that needs colours refuses the frame that has none, and does not know its number.
+// Adds the number of the frame to the error of a rule. A rule refuses a frame that lacks the colours which it
+// needs, but it does not know the number of the frame.
 void FrameProcessing::apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const {
   try {
     frame.guidance = fixtures.targets(cloud, frame.captured_s);
@@ -90,7 +91,7 @@ bool FrameStream::exists(int frame) const {
   return continues && !scenario_.ends();
 }
 
-// Beyond the last frame the camera goes on at its rate and sees what it saw.
+// The camera continues at its rate after the last frame of the scenario, and repeats that frame.
 int FrameStream::source_frame(int frame) const {
   return std::min(frame, scenario_.frame_count() - 1);
 }
@@ -139,7 +140,7 @@ void FrameStream::fill(Frame& frame) const {
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
-  const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are made when asked for
+  const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are computed on demand
   return frame_hash(stored ? stored->cloud() : scenario_.cloud(source_frame(frame)), captured_s(frame));
 }
 

@@ -1,5 +1,5 @@
-// The path of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
-// are assigned fixtures, and it arrives late, at irregular times, or not at all.
+// The path of a frame from a scenario to a renderer: its depth image is filtered and gets normals, fixtures
+// are assigned to its points, and it arrives late, at irregular times, or not at all.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@
 
 namespace remote_touch {
 
-// Latency, jitter and loss of frames between capture and arrival, independent for each frame, drawn from the
-// run's noise key.
+// Latency, jitter and loss of frames between capture and arrival. They are independent for each frame and
+// drawn from the run's noise key.
 struct Transport {
   double latency_s = 0;         // shortest time from capture to arrival
   double jitter_s = 0;          // maximum added delay, uniformly distributed; frames may overtake each other
@@ -27,11 +27,12 @@ struct Transport {
 struct FrameProcessing {
   std::unique_ptr<DepthProcessor> depth;  // null: the points are sent as the scenario gives them
   FixtureAssignment fixtures;
-  RendererNeeds needs = {};  // the renderer's needs; whoever sends a filled frame on checks them
+  RendererNeeds needs = {};  // the renderer's needs; the caller of fill() checks them
 
   bool changes_points() const { return depth || !fixtures.empty(); }
-  // Gives the frame its points and targets, with these fixtures off. Throws InputError if the cloud is not a
-  // depth image, which the pipeline needs, or if a fixture rule cannot be applied to it.
+  // Adds points and guidance targets to the frame. off: the fixtures that are off, one bit each. Throws
+  // InputError if there is a depth pipeline and the cloud is not a depth image, or if a fixture rule cannot
+  // be applied to it.
   void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
   // The same with the cloud cloud_of(sensed, view, X_WC).
   void fill(Frame& frame, const SensorFrame& sensed, const SensorView& view, const RigidTransform& X_WC,
@@ -46,16 +47,17 @@ std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
 
 class FrameStream {
  public:
-  // The scenario must outlive the stream. A scene at rest is sent once; if its fixtures change with time, or
-  // the one frame could be lost, it is repeated at its frame rate. With hash_frames every point of every
-  // frame is computed for newest_hash(). With generate_all_points frames come with every point already
-  // computed, with the same bits, so that measured durations do not contain the generation of noise.
+  // The scenario must outlive the stream. The last frame, and so the only one of a scene at rest, is sent
+  // once. It is repeated at the frame rate if the fixtures change with time or if frames can be lost, unless
+  // the scenario ends (Scenario::ends()). hash_frames: computes every point of every frame, for
+  // newest_hash(). generate_all_points: computes every point, with the same bits, before a frame is passed
+  // on, so that measured durations do not contain the generation of noise.
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
-  // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the truth for
-  // oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks what
-  // the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
+  // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the true surface
+  // for oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks
+  // what the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
   void deliver_until(double time_s, Renderer& renderer);
   const FixtureAssignment& fixtures() const { return processing_.fixtures; }
   // Hash of the newest frame delivered; 0 before the first or without hash_frames.

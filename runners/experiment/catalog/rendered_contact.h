@@ -11,13 +11,13 @@
 // of the surface. The height is 0 where the rendered surface is the true one, positive where it floats above
 // it and negative where it has sunk below it.
 //
-// For a renderer with a proxy, x = RenderOutput::proxy_W, and a spring pulls the hand towards it: how deep
-// the hand is does not matter. A penalty force has no proxy: the hand sinks until the spring holds it, just
-// as the hand of the others sinks below the proxy. So that this depth does not count either, x is the
+// A renderer with a proxy has x = RenderOutput::proxy_W, and a spring pulls the hand towards it. The depth of
+// the hand does not matter. A penalty force has no proxy: the hand sinks until the spring holds it, as the
+// hand of the other methods sinks below the proxy. This depth must not count either. x is therefore the
 // position at which the force would end: x = HIP + F / k, with the force F of this tick and its stiffness k.
-// For the penalty force of the dissertation over a plane, F = k (r_c - d(HIP)) n, so d(x) = r_c and the
-// height is 0, however deep the press. Once the HIP has passed the points, F pushes it further, x is below
-// the surface too, and the height is negative. Dampers are not considered: no method of the scorecard has
+// The penalty force of the dissertation over a plane is F = k (r_c - d(HIP)) n, so d(x) = r_c and the height
+// is 0, however deep the press is. Once the HIP has passed the points, F pushes it further, x is below the
+// surface too, and the height is negative. Dampers are not considered, because no method of the scorecard has
 // one.
 #pragma once
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kUnknownRest = std::numeric_limits<double>::quiet_NaN();
 
-// Integral of the weight from the height h to 1, both in units of R, over the squared distance.
+// Returns the integral of the weight over q^2, from q = h to q = 1. q: distance in units of R. h: height in
+// the same units.
 double weight_above(SurfaceWeight weight, double h) {
   if (weight == SurfaceWeight::wyvill) {
     const double a = 1 - h * h;

@@ -18,15 +18,15 @@
 
 namespace remote_touch {
 
-// Spacing of the points of most scenes (Grid). The surface of metaballs depends on the spacing: their rest
-// distance is computed for this one. Where points are closer or wider apart, the difference counts as an
-// error of the method.
+// Spacing of the points of most scenes (Grid). The surface of metaballs depends on the spacing, and their
+// rest distance is computed for this one. If the points of a scene are closer or wider apart, the difference
+// counts as an error of the method.
 inline constexpr double kReferenceSpacing_m = 0.0015;
 
 inline RenderedContact rendered_contact(const ProxyParameters& p) {
   return {p.contact_radius_m(), 0, p.contact_radius_m()};
 }
-// A sheet that is fitted to the points holds the ball, also between them.
+// A sheet that is fitted to the points holds the ball, also between the points, so ball_radius_m is 0.
 inline RenderedContact rendered_contact(const TrackedSheetParameters& p) {
   return {p.proxy.contact_radius_m()};
 }
@@ -36,8 +36,9 @@ inline RenderedContact rendered_contact(const OracleProxyParameters& p) {
 inline RenderedContact rendered_contact(const AveragedProxyParameters& p) {
   return rendered_contact(p.proxy);
 }
-// Whatever its radius is, it reports where a ball of the nominal one would be. Its radius grows with the
-// spacing of the points, so that it does not fall through between them.
+// This renderer reports the position of a ball with the nominal radius, whatever its current radius is. The
+// current radius grows with the spacing of the points, so that the ball does not fall through between them:
+// ball_radius_m is 0.
 inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
   return {p.proxy.contact_radius_m()};
 }
@@ -50,12 +51,12 @@ inline RenderedContact rendered_contact(const PenaltyParameters& p) {
 inline RenderedContact rendered_contact(const GodObjectParameters& p) {
   return {p.surface_offset_m};
 }
-// Surfels lie in the plane of the points, metaballs around the points. At the height h R over a plane of
-// points of spacing s the sum of the weights is pi R^2 / s^2 times the integral of w(q) over q^2, from h^2
-// to 1. The rest distance is the height at which this sum is T, by bisection; 0 where the sum is less than T
-// even on the plane.
+// The rest distance of surfels is 0, because they lie in the plane of the points. Metaballs lie around the
+// points: at the height h R over a plane of points of spacing s, the sum of the weights is pi R^2 / s^2 times
+// the integral of w(q) over q^2, from h^2 to 1. The rest distance is the height at which this sum is T, found
+// by bisection. It is 0 if the sum is less than T even on the plane.
 RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
-// A tool has a shape, not a radius: not known.
+// The rest distance of a tool is not known (NaN), because a tool has a shape and not a radius.
 RenderedContact rendered_contact(const LoadedTool::Settings&);
 RenderedContact rendered_contact(const LoadedTrackedTool::Settings&);
 RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);

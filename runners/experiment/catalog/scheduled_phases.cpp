@@ -8,7 +8,8 @@ namespace remote_touch {
 
 namespace {
 
-// rows: time and fraction, see scheduled(). Between two rows the fraction changes from the time of the first.
+// Adds a phase for each pair of successive rows between which the fraction changes. rows: times and
+// fractions, see scheduled().
 void add_schedule(const std::string& name, const std::vector<double>& rows, std::vector<Phase>& phases) {
   for (std::size_t i = 2; i < rows.size(); i += 2)
     if (rows[i + 1] != rows[i - 1]) phases.push_back({"the change of " + name, rows[i - 2], rows[i]});

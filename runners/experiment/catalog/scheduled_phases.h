@@ -13,8 +13,8 @@ struct ExperimentConfiguration;
 // strength changes, and for each step of the sequence with a not_before_s above 0.
 std::vector<Phase> setting_phases(const ExperimentConfiguration& configuration);
 
-// Returns a phase for each button press of the simulated operator and for each part of the schedule in which
-// the grip changes. Empty without an operator.
+// Returns a phase for each button press of the simulated operator, and for each part of the schedule in which
+// the grip changes. Returns none if there is no operator.
 std::vector<Phase> operator_phases(const ExperimentConfiguration& configuration);
 
 }  // namespace remote_touch

@@ -11,12 +11,13 @@ namespace remote_touch {
 
 namespace {
 
-// A simulated device has no other buttons than those that the operator's settings press.
+// Returns true if the button of the step can be pressed, or if the step needs none. A simulated device has
+// only those buttons that the operator's settings press.
 bool can_be_pressed(const ExperimentConfiguration& configuration, const SequenceStep& step) {
   if (step.start != StepStart::button && step.done != StepEnd::button) return true;
   const std::string& hand = configuration.trajectory.name;
   if (configuration.live || find_entry(trajectories(), hand, "trajectory.name").has_buttons)
-    return true;  // the device has its own
+    return true;  // the device has buttons of its own
   if (!configuration.operator_settings) return false;
   const std::vector<double>& presses = configuration.operator_settings->presses;
   for (std::size_t i = 1; i < presses.size(); i += 3)
@@ -53,12 +54,12 @@ void make(const RendererChange& change, const Parameters& live, const std::strin
   set_number(*found, change.value);
 }
 
-// The first tick at or after a time, which is the one that makes a change of that time.
+// Returns the first tick at or after the time of a change. The change takes effect in this tick.
 double first_tick(const ExperimentConfiguration& configuration, const RendererChange& change) {
   const double rate_hz = configuration.run.haptic_rate_hz;
   double tick = std::floor(change.time_s * rate_hz);
   while (tick / rate_hz < change.time_s)
-    ++tick;  // the comparison of the run: the product above may be rounded up
+    ++tick;  // the same comparison as in a run, because the product above is rounded
   return tick;
 }
 
@@ -73,7 +74,8 @@ void refuse_change_without_effect(const ExperimentConfiguration& configuration, 
                        "changes." + std::to_string(i) + " sets it in the same tick: expected one of them");
 }
 
-// Calls visit(factory, where) with the settings after each time at which some change.
+// Applies the changes in order. After the last change of each time, calls visit(factory, where) with the
+// settings of that time. Throws InputError for a change that is invalid, out of order or without effect.
 template <class Visit>
 void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
   const std::vector<RendererChange>& changes = configuration.changes;

@@ -13,7 +13,7 @@ void complete_guidance(ExperimentConfiguration& configuration);
 void check_changes(ExperimentConfiguration& configuration);
 void check_sequence(ExperimentConfiguration& configuration);
 
-// The greatest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
+// Returns the largest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
 double max_renderer_stiffness(const ExperimentConfiguration& configuration);
 
 }  // namespace remote_touch

@@ -13,7 +13,7 @@ namespace {
 
 using Configuration = ExperimentConfiguration;
 
-// The value of a section, null where there is none.
+// Returns the value of a section; null if it is missing.
 const Json& given(const Json& whole, const std::string& key) {
   static const Json kAbsent;
   const auto found = whole.find(key);
@@ -98,7 +98,8 @@ void add_part_inputs(const Part<Entry>& part, std::vector<RecordingPart>& inputs
 
 // --- lists ---
 
-// first: what the first key of an element is. read_one(json, path) gives an element.
+// Reads a list; a missing list is empty. first: name of the first key of an element, for the message.
+// read_one(json, path) returns an element.
 template <class Element, class ReadOne>
 std::vector<Element> read_list(const Json& list, const std::string& key, const std::string& first,
                                ReadOne read_one) {
@@ -142,7 +143,8 @@ bool has(const Section& section, const Json& whole, const std::string& parameter
   return false;
 }
 
-// Throws InputError for a key that was given without the section that it belongs to, and names that section.
+// Throws InputError for a key at the top level that is a parameter of a section in this configuration. The
+// message names that section.
 void refuse_misplaced(const Json& whole, const Parameters& own, const std::vector<std::string>& sections) {
   for (const auto& item : whole.items()) {
     const bool is_section = std::find(sections.begin(), sections.end(), item.key()) != sections.end();
@@ -153,7 +155,7 @@ void refuse_misplaced(const Json& whole, const Parameters& own, const std::vecto
   }
 }
 
-// Parameters that stand beside the sections. What is no section is one of them, or unknown.
+// Parameters at the level of the sections. A key that is neither a section nor one of them is unknown.
 template <auto kMember>
 Section top_level(const char* key, const char* summary) {
   Section s{key, summary};
@@ -174,7 +176,7 @@ Section top_level(const char* key, const char* summary) {
   return s;
 }
 
-// {"name": ..., parameters}, an entry of a catalog, which may not be left out.
+// An entry of a catalog, {"name": ..., parameters}. It is required.
 template <auto kMember, auto kCatalog>
 Section required(const char* key, const char* heading, const char* summary) {
   Section s{key, summary, heading};
@@ -191,7 +193,7 @@ Section required(const char* key, const char* heading, const char* summary) {
   return s;
 }
 
-// A list of entries of a catalog; left out, it is empty.
+// A list of entries of a catalog. It is empty if it is left out.
 template <auto kMember, auto kCatalog>
 Section list_of_entries(const char* key, const char* heading, const char* summary, Rule complete = nullptr) {
   using Element = typename Member<kMember>::value_type;
@@ -213,7 +215,7 @@ Section list_of_entries(const char* key, const char* heading, const char* summar
   return s;
 }
 
-// {parameters}, or left out, and then it does nothing.
+// An object {parameters}. If it is left out, the member of the configuration has no value.
 template <auto kMember>
 Section optional(const char* key, const char* summary, Rule complete = nullptr) {
   using Settings = typename Member<kMember>::value_type;
@@ -231,7 +233,7 @@ Section optional(const char* key, const char* summary, Rule complete = nullptr) 
   return s;
 }
 
-// A list of {parameters}; the same left out or empty.
+// A list of objects {parameters}. A list that is left out is the same as an empty one.
 template <auto kMember>
 Section optional_list(const char* key, const char* summary, Rule complete = nullptr) {
   using Settings = typename Member<kMember>::value_type;

@@ -13,8 +13,8 @@
 
 namespace remote_touch {
 
-// Settings that a section may have: for example those of a scenario, by its name; without a name if there is
-// only one kind.
+// One kind of settings that a section may have, for example those of the scenario with this name. The name is
+// empty if the section has only one kind.
 struct SectionEntry {
   std::string name;
   std::string summary;
@@ -32,14 +32,15 @@ struct ExperimentSection {
   // for a missing section that is required.
   void (*read)(const ExperimentSection& section, const nlohmann::ordered_json& whole,
                ExperimentConfiguration& configuration) = nullptr;
-  // Writes the section, complete, into the whole configuration; nothing if it was left out.
+  // Writes all parameters of the section into the whole configuration. An optional section that was left out
+  // is not written; a list of catalog entries that was left out is written as an empty list.
   void (*write)(const ExperimentSection& section, const ExperimentConfiguration& configuration,
                 nlohmann::ordered_json& whole) = nullptr;
   // Adds the files that its settings name.
   void (*add_inputs)(const ExperimentConfiguration& configuration,
                      std::vector<RecordingPart>& inputs) = nullptr;
-  // Checks this section against the others when all are read: throws InputError, or adds what was left out;
-  // null: no check.
+  // Called after all sections are read. Checks this section against the others: throws InputError, or adds
+  // settings that were left out. Null: no check.
   void (*complete)(ExperimentConfiguration& configuration) = nullptr;
 };
 
@@ -48,9 +49,11 @@ std::span<const ExperimentSection> experiment_sections();
 
 // Throws InputError for anything that cannot be run.
 ExperimentConfiguration read_configuration(const nlohmann::ordered_json& json);
-// Complete: every parameter of every section that is present.
+// Returns the complete configuration: every parameter of every section that is present.
 nlohmann::ordered_json write_configuration(const ExperimentConfiguration& configuration);
-// The part of it that a key of its top level belongs to: that section alone, as a member of an object.
+// Returns the part of write_configuration() to which a key of its top level belongs: an object with that
+// section as its only member. If the key is not a section, returns the parameters at the level of the
+// sections.
 nlohmann::ordered_json write_section_of(const ExperimentConfiguration& configuration, const std::string& key);
 
 }  // namespace remote_touch

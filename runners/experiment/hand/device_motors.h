@@ -21,9 +21,9 @@ inline std::string validate(const MotorSettings&) {
   return {};
 }
 
-// The wrench that the device exerts on the hand for a commanded one: forces along the base axes and torques
-// about the axes of the handle, which are those of the tool, on the axes with motors only, limited to
-// max_force_N and max_torque_Nm.
+// Returns the wrench that the device exerts on the hand for a commanded one. Forces act along the base axes,
+// and torques about the axes of the handle, which are those of the tool. Components on axes without a motor
+// are 0. The force is limited to max_force_N and the torque to max_torque_Nm; 0: no limit.
 Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& commanded);
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 namespace {
-// The surface is sampled this finely; a vertical step becomes a slope this wide.
+// Spacing of the samples of the surface. A vertical step becomes a slope of this width.
 constexpr double kSampling_m = 1e-4;
 }  // namespace
 
@@ -34,8 +34,8 @@ std::string validate(const FollowSurface::Settings& s) {
 
 namespace {
 
-// Heights at distance depth inside a profile sampled every spacing: the lower envelope of circles around its
-// samples.
+// Returns the heights of the curve that stays at distance `depth` below a profile with samples every
+// `spacing`. It is the lower envelope of circles around the samples.
 std::vector<double> inside(const std::vector<double>& heights, double spacing, double depth) {
   const int count = static_cast<int>(heights.size()), reach = static_cast<int>(std::abs(depth) / spacing);
   std::vector<double> result(heights.size(), std::numeric_limits<double>::infinity());

@@ -11,9 +11,9 @@
 namespace remote_touch {
 
 // The HIP keeps its distance to every part of the surface along the line (a parallel curve, not a vertical
-// shift). Over steps it lifts off and comes down behind them: a frictionless proxy stays at the wall of a
-// step as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force. It
-// moves at constant speed along its own path, approaches from above and leaves upwards.
+// shift). It lifts off over steps and comes down behind them: a frictionless proxy stays at the wall of a
+// step as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force. The
+// HIP moves at constant speed along its own path, approaches from above and leaves upwards.
 class FollowSurface final : public Trajectory {
  public:
   struct Settings {
@@ -26,7 +26,7 @@ class FollowSurface final : public Trajectory {
     double step_margin_m = 0.01;
   };
 
-  // Throws InputError when the scenario is not a height field.
+  // Throws InputError if the scenario has no surface height at the start of the line.
   FollowSurface(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
   double duration_s() const override { return path_.duration_s(); }

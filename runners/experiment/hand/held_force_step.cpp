@@ -1,5 +1,5 @@
-// The error bound of the header, in units of the roundoff 2^-53. Every coefficient starts with a Taylor
-// series for T / 2^s, which addition theorems then double s times.
+// Derivation of the error bound in the header, in units of the roundoff 2^-53. Every coefficient is computed
+// as a Taylor series for T / 2^s, and addition theorems then double that time s times.
 //
 // Series: phi = sum f_n t^n with n (n + 1) f_(n+1) = -d n f_n - w f_(n-1), so n! |f_n| <= M^(n-1) with
 // M = d + sqrt(w). s is the least number with M T / 2^s <= 1/2. The terms that are left out are below
@@ -13,8 +13,8 @@
 //
 // Doubling with oscillation: z = (1 - w psi) + i sqrt(w) phi lies within the unit circle and is squared, so
 // its error doubles on each level. The levels before an angle of 1 add 2 roundoffs of the angle each, and
-// those after it at most 10 roundoffs of 1. For an angle sqrt(w) T = a at the end that is (3 + 2 * 2) a from
-// the first kind and less than 10 (1 + 1/2 + 1/4 + ...) a = 20 a from the second: 27 (1 + a) in all. 27 * 33
+// those after it at most 10 roundoffs of 1. Let a = sqrt(w) T be the angle at the end. The first kind then
+// gives (3 + 2 * 2) a, and the second less than 10 (1 + 1/2 + 1/4 + ...) a = 20 a: 27 (1 + a) in all. 27 * 33
 // roundoffs are 9.9e-14.
 #include "runners/experiment/hand/held_force_step.h"
 
@@ -27,15 +27,15 @@ namespace {
 constexpr int kTerms = 19;
 constexpr double kSeriesRange = 0.5;
 
-// phi, psi, chi after the time t, and the integrals of psi^2, phi^2 and phi'^2 until then, 0 if they are not
-// needed.
+// phi, psi and chi after the time t, and the integrals of psi^2, phi^2 and phi'^2 from 0 to t. The integrals
+// are not valid with Squares::left_out.
 struct Responses {
   double t = 0, phi = 0, psi = 0, chi = 0, psi_psi = 0, phi_phi = 0, slope_slope = 0;
 };
 
 enum class Squares { left_out, integrated };
 
-// The responses after a time t that is short, (d + sqrt(w)) t <= 1/2.
+// Returns the responses after a short time t. pre: (d + sqrt(w)) t <= 1/2.
 Responses series(double w, double d, double t, Squares squares) {
   // phi = t sum(term), phi' = sum(slope) and psi = t^2 sum(area), where term[n] is f_(n+1) t^n.
   double term[kTerms], slope[kTerms], area[kTerms];
@@ -63,7 +63,8 @@ Responses series(double w, double d, double t, Squares squares) {
   return {t, t * phi, tt * psi, ttt * chi, tt * ttt * psi_psi, ttt * phi_phi, t * slope_slope};
 }
 
-// The same after twice the time. With s in the second half and a = phi'(t) + d phi(t) = 1 - w psi(t),
+// Returns the responses after twice the time of r. Let s be the time since the middle, and let a = phi'(t) +
+// d phi(t) = 1 - w psi(t). Then
 //   psi(t + s) = psi(t) + a psi(s) + phi(t) phi(s),   phi(t + s) = a phi(s) + phi(t) phi'(s),
 //   phi'(t + s) = phi'(t) phi'(s) - w phi(t) phi(s),
 // and 2 psi phi and 2 phi phi' are the derivatives of psi^2 and phi^2.
@@ -111,7 +112,7 @@ HeldForceStep::HeldForceStep(const MassOnSpring& system, double duration_s)
   slope_ = 1 - w_ * psi_ - d_ * phi_;
 }
 
-// The acceleration at the start, without what the dampers take from the mass's own velocity.
+// Returns the acceleration at the start, without the damping that the velocity of the mass itself causes.
 Vec3 HeldForceStep::pull(const Start& start) const {
   return (start.force + system_.stiffness * start.apart + system_.path_damping * start.path_velocity) /
          system_.mass;
@@ -122,10 +123,10 @@ HeldForceStep::Motion HeldForceStep::motion(const Start& start) const {
   return {phi_ * start.velocity + psi_ * r + chi_ * ramp, slope_ * start.velocity + phi_ * r + psi_ * ramp};
 }
 
-// The energies need integrals of e = x - p, e'^2 and x'^2. With e' = e'(0) phi' + r phi and
-// x' = x'(0) phi' + pull phi + w p' psi they are closed forms in phi, psi, chi and the integrals of squares.
-// None of them comes from the balance that they are to satisfy, and changes are not made from differences of
-// nearly equal numbers.
+// The energies need integrals of e = x - p, e'^2 and x'^2. The motion gives e' = e'(0) phi' + r phi and x' =
+// x'(0) phi' + pull phi + w p' psi, so these integrals are closed forms in phi, psi, chi and the integrals of
+// squares. No energy is derived from the energy balance, so the balance is an independent check. Changes are
+// computed directly, and not as differences of nearly equal numbers.
 StepEnergy HeldForceStep::energy(const Start& start) const {
   // A path without spring and damper has no effect, however fast it is.
   const bool follows = system_.stiffness > 0 || system_.path_damping > 0;

@@ -29,7 +29,7 @@ double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, con
   return largest;
 }
 
-// pre: the cloud has a point per pixel, or no measured point.
+// Returns the depth image of the cloud. All pixels are NaN if the cloud does not have a point per pixel.
 DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {
   const CameraIntrinsics& camera = layout.camera;
   const RigidTransform X_CW = layout.X_WC.inverse();
@@ -69,7 +69,7 @@ void require_image_of(const ImageLayout& first, const PointCloud& frame, int num
   if (!has_size || frame.size() != camera.pixels())
     refuse("has " + (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
            ": expected " + size_text(camera) + ", as frame 0 has");
-  if (frame.image && frame.image->camera == camera) return;  // its layout says that the points fit
+  if (frame.image && frame.image->camera == camera) return;  // the layout promises that the points fit
   const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
   const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
   if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;

@@ -63,9 +63,11 @@ bool ImagePress::has_support(const DepthImage& image, int pixel) const {
   return std::isfinite(supported_depth(image, u, v, image_.camera.fx, support()));
 }
 
-// The pixel of the nearest large object that is nearest to its middle and can be touched, without closed
-// holes if possible. A row or a column that is given is kept. Without such a pixel: the middle, which cannot
-// be touched or is not of the object. Returns the object, without pixels if it was not needed.
+// Sets row_ and column_ to the pixel to press: the pixel of the nearest large object that can be touched and
+// is nearest to the middle of the object. Pixels that can be touched without closed holes are preferred. A
+// row or a column that the settings give is kept. If there is no such pixel, the middle is set, which cannot
+// be touched or does not belong to the object. Returns the object; it has no pixels if the settings give both
+// row and column.
 NearestObject ImagePress::choose_pixel(BridgeableImage& image) {
   row_ = settings_.row, column_ = settings_.column;
   NearestObject object;
@@ -98,7 +100,8 @@ NearestObject ImagePress::choose_pixel(BridgeableImage& image) {
   return object;
 }
 
-// The first frame shows no surface at the pixel: tries what the message proposes.
+// Throws InputError, because the first frame shows no surface at the pixel. A pixel or the object is proposed
+// only if it can be touched.
 void ImagePress::refuse_pixel(BridgeableImage& image) const {
   std::string expected = "a smaller margin_m or a larger bridge_m";
   for (const bool bridges : {false, true}) {
@@ -143,7 +146,8 @@ const ImagePress::Seen& ImagePress::seen(int frame) const {
   now.supported_m =
       supported_depth(bridges_holes_ ? bridged(measured, focal_px, settings_.bridge_m) : measured, column_,
                       row_, focal_px, support());
-  // A frame that shows a hole there has the margin of the first frame.
+  // A later frame with a hole at the pixel uses the depth of the first frame, to convert the margins to
+  // pixels.
   double z = measured.z_m[static_cast<std::size_t>(row_) * measured.width + column_];
   if (!std::isfinite(z) && frame != 0) z = seen(0).supported_m;
   const auto around = [&](double radius_m) {
@@ -182,8 +186,8 @@ DeviceState ImagePress::at(double time_s) const {
 }
 
 std::optional<SurfacePlan> ImagePress::surface_plan(double time_s) const {
-  // A hand that lifts off or comes back moves by the first two along the ray at once. Meanwhile the surface
-  // may have moved: by up to 46 mm in the recordings of a camera that is carried by hand.
+  // A hand that lifts off or comes back moves along the ray by depth_m and clearance_m in one tick. The
+  // surface may have moved meanwhile: by up to 46 mm in the recordings of a camera that is carried by hand.
   constexpr double kSurfaceMoves_m = 0.1;
   const double step_m = std::abs(settings_.depth_m) + settings_.clearance_m + kSurfaceMoves_m;
   return SurfacePlan{travelled_m(time_s) >= settings_.clearance_m,

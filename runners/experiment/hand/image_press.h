@@ -16,8 +16,8 @@
 namespace remote_touch {
 
 // If the newest frame shows no surface without gaps around the pixel, the device lifts off: it waits in front
-// of the surface that was shown last, until a frame shows a surface again. Something else may appear in front
-// of this waiting position meanwhile. If the device would then be farther behind it than when it presses, the
+// of the surface that was seen last, until a frame shows a surface again. Something else may meanwhile appear
+// in front of this waiting position. If the device would then be farther behind it than a press may be, the
 // device moves in front of everything that the newest frame shows around the pixel.
 class ImagePress final : public Trajectory {
  public:

@@ -64,7 +64,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s)
   plan_path(first.depth, first.layout);
 }
 
-// The row shows no patch to touch: tries what the message proposes.
+// Throws InputError, because the row has no patch to touch. The row -1 is proposed only if it gives a patch.
 void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& camera) const {
   std::string expected = "a smaller margin_m or a larger bridge_m";
   if (settings_.row < 0) {
@@ -83,8 +83,9 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
                        ": expected " + expected);
 }
 
-// Sets missed_object_ if a row that was chosen from the image touches only other things than the nearest
-// object or, if there is no large object, if a small object is nearer than everything that it touches.
+// Sets missed_object_ for a row that was chosen from the image, in two cases. The row touches other surfaces
+// but not the nearest object. Or there is no large object, and a small object is nearer than everything that
+// the row touches.
 void ImageScan::note_missed_object(const DepthImage& image, const CameraIntrinsics& camera) {
   const std::string row = "row " + std::to_string(scan_.row);
   if (!scan_.is_on_object) {
@@ -117,14 +118,15 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
                                                               " from the surface: expected smaller values");
     return Vec3(layout.X_WC * unproject(camera, u, scan_.row, z));
   };
-  // The offset from the surface at column u of a flight between two columns, in front of both surfaces and of
-  // all pixels between them.
+  // Returns the offset from the surface at column u, which is `from` or `to`, for a flight between these two
+  // columns. The flight is in front of both surfaces and of all pixels between them.
   const auto flight_offset = [&](int u, int from, int to) {
     const double other = depth_at(u == from ? to : from);
     const double planned = std::min(other - depth_at(u), 0.0) - s.clearance_m;
     const int half = reach_px(image, camera.fx, s.margin_m, std::min(depth_at(from), depth_at(to)));
     const double nearest = nearest_depth(image, {from, to, scan_.row - half, scan_.row + half});
-    // Nearer than an edge's jump the hand could touch; farther in front it needs no detour.
+    // No detour is needed if the hand is at least edge_jump_m in front of the nearest pixel. A hand that is
+    // nearer could touch it.
     if (nearest - (depth_at(u) + planned) >= s.edge_jump_m) return planned;
     return in_front_of(nearest, s.clearance_m) - depth_at(u);
   };
@@ -146,8 +148,8 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   }
 }
 
-// The depth that is followed is the median over the margin; what one pixel shows may differ by an edge's
-// jump.
+// The path follows the median of the depths over the margin. The depth of a single pixel may differ from it
+// by edge_jump_m, so this tolerance is added to the plan.
 std::optional<SurfacePlan> ImageScan::surface_plan(double time_s) const {
   const bool touches = std::any_of(touches_.begin(), touches_.end(), [&](const Interval& touch) {
     return touch.begins_s <= time_s && time_s <= touch.ends_s;

@@ -32,8 +32,8 @@ class ImageScan final : public Trajectory {
     double margin_m = 0.01;
   };
 
-  // Throws InputError if the scenario's frames are not organised images, if the row shows no patch to touch,
-  // or if a part of the path would be behind the camera.
+  // Throws InputError if the first frame of the scenario is not an image, if the row or a column is outside
+  // the image, if the row shows no patch to touch, or if a part of the path would be behind the camera.
   ImageScan(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
   double duration_s() const override { return path_.duration_s(); }

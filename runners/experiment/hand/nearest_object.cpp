@@ -12,7 +12,7 @@ namespace remote_touch {
 namespace {
 
 constexpr int kTrials = 300;  // planes tried; one with a fifth of the points is found with probability 0.91
-constexpr int kStride = 4;    // every 4th pixel in both directions takes part
+constexpr int kStride = 4;    // every 4th pixel in both directions is sampled
 constexpr double kPlaneFraction = 0.2;    // least share of the measured points in the scene's plane
 constexpr double kObjectFraction = 0.01;  // least share of the image in a large object
 constexpr double kContinuous_m = 0.01;    // depth difference between neighbouring pixels of one object
@@ -22,7 +22,7 @@ struct Plane {
   double offset;
   // True if p is near enough to belong to the plane: sensor noise grows with the square of the depth.
   bool holds(const Vec3& p) const { return std::abs(normal.dot(p) - offset) < 0.008 + 0.005 * p.z() * p.z(); }
-  // p is on the side of the camera, which is at the origin.
+  // True if p is on the side of the camera, which is at the origin.
   bool is_camera_side(const Vec3& p) const { return (normal.dot(p) - offset) * offset < 0; }
 };
 
@@ -36,7 +36,8 @@ std::vector<Vec3> sample(const DepthImage& image, const CameraIntrinsics& camera
   return points;
 }
 
-// Random sample consensus with a fixed sequence (a linear congruential generator).
+// Returns the plane with the most points, if it has more than kPlaneFraction of them. It is found by random
+// sample consensus with a fixed sequence (a linear congruential generator).
 std::optional<Plane> dominant_plane(const std::vector<Vec3>& points) {
   if (points.size() < 3) return std::nullopt;
   std::uint64_t state = 1;
@@ -60,7 +61,7 @@ std::optional<Plane> dominant_plane(const std::vector<Vec3>& points) {
 
 enum class Joined { by_sides, also_diagonally };
 
-// Pixels of one patch of continuous depth, taken out of open.
+// Returns the pixels of the patch of continuous depth that contains `seed`, and removes them from `open`.
 std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>& open,
                             Joined joined = Joined::by_sides) {
   std::vector<int> patch{seed};
@@ -88,7 +89,7 @@ std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>
   return patch;
 }
 
-// The area that the pixels see, as if it faced the camera.
+// Returns the area that the pixels see, computed as if the surface faced the camera.
 double area_m2(const DepthImage& image, const CameraIntrinsics& camera, const std::vector<int>& patch) {
   double area = 0;
   for (const int i : patch) {
@@ -141,7 +142,8 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
 NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera) {
   NearestObject object = nearest_large_object(image.measured(), camera);
   NearestObject closed = nearest_large_object(image.closed(), camera);
-  // Closing the holes of one and the same object moves its nearest part by less.
+  // An object is nearer only if the difference is larger: closing the holes of one and the same object moves
+  // its nearest part by less.
   const bool is_nearer = closed.nearest_depth_m < object.nearest_depth_m - kContinuous_m;
   return !closed.is_whole_scene && (object.is_whole_scene || is_nearer) ? closed : object;
 }

@@ -13,14 +13,14 @@ namespace remote_touch {
 struct NearestObject {
   double nearest_depth_m = 0;   // depth of its nearest part (5th percentile)
   int row = 0, column = 0;      // medians of its pixels
-  std::vector<int> pixels;      // row * width + column of each pixel, in no order
+  std::vector<int> pixels;      // row * width + column of each pixel, unsorted
   bool is_whole_scene = false;  // no large object was found
 };
 
-// The dominant plane (a table, a floor, a wall) is removed if it has a fifth of the measured points or more;
-// of the remaining patches of continuous depth that fill 1 % of the image or more, the nearest is the object.
-// If none remains, the whole scene is the object. Depends on the image alone: the random choices have a fixed
-// key.
+// Returns the nearest large object. The dominant plane (a table, a floor, a wall) is removed first if it has
+// more than a fifth of the measured points. The object is the nearest of the remaining patches of continuous
+// depth that fill 1 % of the image or more. If there is no such patch, the whole scene is the object. The
+// result depends on the image alone, because the random choices have a fixed key.
 NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsics& camera);
 
 // The same for an image that may be sparse. The pixels of one object must touch each other, so an object of
@@ -28,7 +28,7 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
 // if the measured pixels alone show no large object, or only one that is more than 10 mm farther away.
 NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera);
 
-// An object that is not the one that a hand touches.
+// An object that is nearer than the one that a hand touches.
 struct NearerObject {
   double depth_m = 0;       // depth of its nearest part (5th percentile)
   int row = 0, column = 0;  // medians of its pixels
@@ -40,7 +40,7 @@ std::string text_of(const NearerObject& object);
 // Returns the nearest patch of continuous depth in front of the dominant plane that is more than 10 mm nearer
 // than touched_depth_m and contains no pixel of `touched` (row * width + column). The patch covers 4 cm^2 or
 // more, the square of twice the default margin_m, so that a hand could touch it. It need not fill 1 % of the
-// image, and its pixels may join diagonally. For hands that touch the whole scene, because
+// image, and its pixels may join diagonally. It is meant for hands that touch the whole scene, because
 // nearest_large_object() found no large object. Returns nothing if there is no such patch.
 std::optional<NearerObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
                                                 const std::vector<int>& touched, double touched_depth_m);

@@ -8,8 +8,8 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
-// The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to it, and a stiffer
-// hand would swing five times in a tick.
+// The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to this value. A
+// hand at the limit already oscillates five times in a tick.
 constexpr double kMaxNormalisedStiffness = 1000;
 
 std::string validate_spring(const char* name, double stiffness, double mass, const char* mass_name) {
@@ -50,7 +50,7 @@ std::string validate(const OperatorSettings& s) {
   for (std::size_t i = 0; i < s.presses.size(); i += 3) {
     if (const double button = s.presses[i + 1]; button > 31 || button != static_cast<int>(button))
       return "presses: button " + std::to_string(button) + ": expected integers 0 to 31";
-    if (s.presses[i + 2] < kMaxTick_s)  // no tick might see it
+    if (s.presses[i + 2] < kMaxTick_s)  // a shorter press may lie between two ticks
       return "presses: duration " + std::to_string(s.presses[i + 2]) + ": expected 0.01 or more";
   }
   return {};
@@ -67,7 +67,8 @@ std::uint32_t OperatorModel::buttons(double time_s) const {
   return down;
 }
 
-// The coefficients change with the grip and after missed ticks only.
+// Computes the coefficients of the step, unless they are still valid. They change only with the grip and
+// after missed ticks.
 void OperatorModel::prepare(double grip, double duration_s) {
   if (step_ && grip == grip_ && duration_s == duration_s_) return;
   grip_ = grip, duration_s_ = duration_s;

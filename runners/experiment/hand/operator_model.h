@@ -1,5 +1,5 @@
 // A simulated operator: the hand is a mass that springs and dampers pull to the intended path, and that the
-// device's force moves. Not in the dissertation, whose operators were people.
+// device's force moves. The dissertation does not have this model, because its operators were people.
 #pragma once
 
 #include <optional>
@@ -61,7 +61,7 @@ class OperatorModel {
   Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
   std::optional<double> last_time_s_;
 
-  // The last step, for translation and rotation, and what it was made for.
+  // The last step, for translation and rotation, and the grip, duration and start for which it was computed.
   std::optional<HeldForceStep> step_, turning_step_;
   double grip_ = 0, duration_s_ = 0;
   HeldForceStep::Start start_, turning_start_;

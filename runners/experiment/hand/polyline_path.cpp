@@ -16,7 +16,7 @@ void PolylinePath::wait(double duration_s) {
 }
 
 Vec3 PolylinePath::at(double time_s) const {
-  // The first point reached after time_s; at the moment of a jump the device is already there.
+  // The first point that is reached after time_s. At the time of a jump the device is at the end of the jump.
   const auto next = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time_s);
   if (next == arrival_s_.end()) return points_.back();
   if (next == arrival_s_.begin()) return points_.front();

@@ -53,7 +53,7 @@ Poses::Poses(const Settings& settings, const Scenario&)
 }
 
 DeviceState Poses::at(double time_s) const {
-  // The first pose reached after time_s; at the moment of a jump the device is already there.
+  // The first pose that is reached after time_s. At the time of a jump the device is at the end of the jump.
   const auto next = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time_s);
   if (next == arrival_s_.end()) return poses_.back();
   if (next == arrival_s_.begin()) return poses_.front();

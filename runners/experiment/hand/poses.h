@@ -13,9 +13,9 @@ namespace remote_touch {
 class Poses final : public Trajectory {
  public:
   struct Settings {
-    // Rows of x, y, z in metres, a rotation vector in degrees (world frame: axis times angle, from the tool's
-    // axes) and the duration in s of the way there; 0 jumps. The first row is the start; its duration is not
-    // used.
+    // Each row has x, y, z in metres, the orientation of the tool as a rotation vector in degrees (axis times
+    // angle, in the world frame), and the duration in s of the motion to this pose; 0 jumps. The first row is
+    // the start; its duration is not used.
     std::vector<double> poses{0, 0, 0, 0, 0, 0, 0};
   };
 

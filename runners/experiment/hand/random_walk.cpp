@@ -14,7 +14,8 @@ namespace {
 // golden and the silver ratio.
 constexpr double kFraction[] = {0.5, 0.3, 0.2};
 constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
-// The rates of the axes differ too, by powers of two to twelfths and tenths, so that no two stay in phase.
+// The rates of the axes differ too, so that no two stay in phase: they are powers of two, with tenths and
+// twelfths as exponents.
 constexpr double kAxisRate[] = {
     1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
 constexpr double kRotation = 6.283185307179586;
@@ -73,7 +74,8 @@ DeviceState RandomWalk::at(double time_s) const {
     place[axis] = settings_.centre_m[axis] + settings_.extent_m[axis] * coordinate(axis, t);
     angles[axis] = coordinate(axis + 3, t);
   }
-  // The corners of the cube of turns reach further than the largest turn by the root of three.
+  // The rotation vector lies in a cube, whose corners are farther from the centre than its faces by the root
+  // of three. The division keeps the rotation below max_rotation_deg.
   constexpr double root_of_three = 1.7320508075688772;
   return {place, rotation(settings_.max_rotation_deg * kRadiansPerDegree / root_of_three * angles)};
 }

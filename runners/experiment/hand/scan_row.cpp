@@ -12,7 +12,7 @@ namespace remote_touch {
 
 namespace {
 
-// Runs of columns with support, at least as long as the margin.
+// Returns the runs of columns that have a depth, if they are at least margin_m long.
 std::vector<ScanPatch> supported_patches(const std::vector<double>& depth, int first, int last, double focal,
                                          double margin_m) {
   std::vector<ScanPatch> patches;
@@ -84,7 +84,8 @@ class RowSearch {
     return is_within_span(z) ? z : std::nan("");
   }
 
-  // Cheap for an object without a surface: supported_depth() returns at the first hole.
+  // Returns true if the row has a pixel of the object that can be touched. The test is cheap for an object
+  // without a surface, because supported_depth() returns at the first hole.
   bool can_touch_object(int row, double edge_jump_m, bool bridges) {
     for (int u = first_; u <= last_; ++u)
       if (is_object_[static_cast<std::size_t>(row) * camera_.width + u] &&

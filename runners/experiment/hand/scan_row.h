@@ -26,15 +26,15 @@ struct ScanRow {
   int row = 0;
   std::vector<ScanPatch> patches;  // patches from left to right; empty: there is nothing to touch
   std::vector<double> depth_m;     // supported_depth() of each column; NaN: none, or beyond span_m
-  double edge_jump_m = 0;          // the largest depth jump that was taken as surface
+  double edge_jump_m = 0;          // the largest depth jump that counts as surface
   bool bridges_holes = false;      // holes up to bridge_m were closed
   bool is_on_object = false;       // a patch touches the nearest large object
-  bool is_whole_scene = false;     // there is no large object: the whole scene stands for it
+  bool is_whole_scene = false;     // there is no large object: the whole scene counts as one
 };
 
 // Returns the first row with a patch on the nearest large object. If there is none, it returns the first row
-// with a patch. A requested row that does not cross the object needs no patch on it. Without a patch in any
-// row, `patches` is empty.
+// with a patch. A requested row that does not cross the object needs no patch on it. If no row has a patch,
+// `patches` is empty.
 //
 // Six settings are tried in turn, because a rough scan is better than none: edge_jump_m, twice and four times
 // that, each first without and then with closed holes. Each setting is tried on the requested row. Without a

@@ -1,6 +1,5 @@
 #include "runners/experiment/hand/simulated_hand.h"
 
-
 namespace remote_touch {
 
 SimulatedHand::SimulatedHand(const std::optional<OperatorSettings>& operator_settings,

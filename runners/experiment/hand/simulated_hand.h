@@ -19,9 +19,9 @@ class SimulatedHand {
                 const std::optional<MotorSettings>& motors, double tick_s);
 
   DeviceState move(const DeviceState& intended, double time_s);
-  // Takes the renderer's output; the wrench that the device exerts for it moves the hand in the next tick.
+  // Computes the wrench that the device exerts for the renderer's output. It moves the hand in the next tick.
   void apply(const DeviceState& device, const RenderOutput& out);
-  // State after the last tick; none without operator and motor settings.
+  // Returns the state after the last tick; none if there are neither operator nor motor settings.
   std::optional<HandState> state() const;
 
  private:

@@ -56,7 +56,7 @@ bool is_measured(const DepthImage& image, int u, int v) {
   return std::isfinite(image.z_m[static_cast<std::size_t>(v) * image.width + u]);
 }
 
-// A hole in the image that is at most one pixel away, also diagonally.
+// Returns true if a hole in the image is at most one pixel away, also diagonally.
 bool is_rim(const DepthImage& image, int u, int v) {
   for (int y = std::max(0, v - 1); y <= std::min(image.height - 1, v + 1); ++y)
     for (int x = std::max(0, u - 1); x <= std::min(image.width - 1, u + 1); ++x)

@@ -14,12 +14,13 @@ struct Support {
   double edge_jump_m = 0.006;  // a larger depth difference between neighbouring pixels is an edge
   double margin_m = 0.01;      // the surface must extend this far around a pixel
 };
-// Median depth of the square around a pixel that is as wide as the margin; NaN if the square contains a hole,
-// an edge or the image's border, or if the pixel is outside the image.
+// Returns the median depth of the square around a pixel that extends by the margin to each side. Returns NaN
+// if the square contains a hole or an edge, if it reaches the border of the image, or if the pixel is outside
+// the image.
 double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support);
 
-// Returns how many pixels away a length appears at a depth: at least 1, and at most the width or height of
-// the image, the larger one. 1 if the depth is NaN or not positive.
+// Returns the length in pixels that a length has at a depth: at least 1, and at most the larger of width and
+// height of the image. Returns 1 if the depth is NaN or not positive.
 int reach_px(const DepthImage& image, double focal_px, double length_m, double depth_m);
 
 struct ImagePixel {
@@ -36,8 +37,8 @@ inline constexpr double kBridge_m = 0.008;
 // Returns the image with its small holes closed. A measured pixel at the rim of a hole covers the pixels
 // whose viewing rays pass it at a distance of at most hole_m / 2, at its depth, and at most 64 pixels away.
 // So no closed hole contains a disc wider than hole_m. A covered pixel without a depth gets the depth of the
-// nearest pixel that covers it. Of two at the same distance it gets the depth of the one nearer to the
-// camera. Measured pixels keep their depth. Without holes the result is the image itself.
+// nearest pixel that covers it. If two are equally near, it gets the depth of the one nearer to the camera.
+// Measured pixels keep their depth. The result without holes is the image itself.
 DepthImage bridged(const DepthImage& image, double focal_px, double hole_m);
 
 // A depth image, and the same image with its holes closed. The second one is computed on its first use,

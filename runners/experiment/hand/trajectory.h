@@ -20,8 +20,8 @@ struct SurfacePlan {
   // The surface at a pixel is the median of the depths measured within this radius of the pixel's viewing
   // ray.
   double reach_m = 0;
-  // The farthest that the hand is meant to move from one tick to the next while the surface is at rest; 0:
-  // not stated.
+  // The largest distance that the hand is meant to move from one tick to the next while the surface is at
+  // rest; 0: not stated.
   double max_step_m = 0;
 };
 
@@ -37,8 +37,8 @@ class Trajectory {
   virtual std::vector<Phase> phases() const { return {}; }
   // Returns nothing if the motion is not planned on depth images.
   virtual std::optional<SurfacePlan> surface_plan(double /*time_s*/) const { return {}; }
-  // One line on the pixels of the first frame that the motion follows, and their depth, if it is planned on
-  // depth images. Empty: it is not.
+  // Returns one line about the pixels of the first frame that the motion follows, and their depth. Returns an
+  // empty text if the motion is not planned on depth images.
   virtual std::string aim() const { return {}; }
   // Notes on how the motion was planned.
   virtual std::vector<Note> notes() const { return {}; }

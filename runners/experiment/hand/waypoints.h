@@ -14,8 +14,8 @@ namespace remote_touch {
 class Waypoints final : public Trajectory {
  public:
   struct Settings {
-    // Rows of x, y, z in metres and the speed in m/s on the way there; speed 0 jumps. The first row is the
-    // start; its speed is not used.
+    // Each row has x, y, z in metres and the speed in m/s of the motion to this position; speed 0 jumps. The
+    // first row is the start; its speed is not used.
     std::vector<double> waypoints{0, 0.01, 0, 0};
   };
 

@@ -32,8 +32,8 @@ class BuiltKernels {
   OpenClObject<cl_program> program_;
 };
 
-// Returns the kernels; builds them if they do not exist, after other threads have built theirs. Throws
-// OpenClError.
+// Returns the kernels of the device for these settings. Builds them if they do not exist, after other threads
+// have finished building kernels of the same platform. Throws OpenClError.
 std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, const OpenClDevice& device,
                                                   const DepthPipelineSettings& settings);
 // Removes the kernels of a device that failed, so that the next call of built_kernels() builds them again.

@@ -59,7 +59,8 @@ std::vector<OpenClDevice> devices_or_none(std::string& why_none) {
   }
 }
 
-// Returns the fastest device that keeps the bits and is faster than the CPU; none if there is none.
+// Returns the fastest device that gives the same bits as the CPU and is faster than the CPU; none if there is
+// no such device.
 std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
   std::string why_none;
   std::optional<OpenClDevice> best;

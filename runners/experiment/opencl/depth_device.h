@@ -31,8 +31,9 @@ std::string validate(const DepthDeviceSettings& s);
 std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& settings,
                                                      const Kernels& kernels, const DepthReport& report);
 
-// Returns, for the provenance of results, the OpenCL device of the newest processor that this process made
-// with these settings, "opencl:0:0 (NAME, PLATFORM)", and whether it failed. Empty: the CPU alone.
+// Returns the name of an OpenCL device for the provenance of results, such as "opencl:0:0 (NAME, PLATFORM)",
+// and whether it failed. It is the device of the newest processor that this process made with these settings.
+// Empty: the CPU alone.
 std::string depth_device_of(const DepthDeviceSettings& settings);
 
 struct FoundDepthDevice {

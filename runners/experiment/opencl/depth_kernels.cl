@@ -1,9 +1,9 @@
-// The depth pipeline of core/dissertation/depth in OpenCL C 1.2: the operations of
+// The depth pipeline of core/dissertation/depth in OpenCL C 1.2. The kernels do the operations of
 // core/kernels/depth_rows.cpp, depth_filter.cpp and plane_normals.cpp, and of the hues of
-// core/dissertation/virtual_fixtures, for each pixel, in the same order, so that the bits are the same. A change of one must be made in the other too;
-// tests/runners/experiment/opencl compares them.
+// core/dissertation/virtual_fixtures, for each pixel in the same order, so that the bits are the same. A
+// change of one must be made in the other too; tests/runners/experiment/opencl compares them.
 //
-// A work item is a pixel. Images have rows of `stride` pixels. Those beyond the camera's width are holes.
+// A work item is a pixel. Images have rows of `stride` pixels. Pixels beyond the camera's width are holes.
 // Integer inputs, and the columns of the cloud, have rows of the camera's `width`. The columns lie one after
 // another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as well. Only the
 // depths are stored as planes: the point is z (ray_x, ray_y, 1). The build options are FILTER_HALF and
@@ -30,7 +30,7 @@ float divided(float a, float b) { return a / b; }
 float root(float a) { return sqrt(a); }
 #endif
 
-// If one argument is NaN, smaller() and larger() choose as the processor's instructions do.
+// If an argument is NaN, smaller() and larger() return b, as the processor's instructions do.
 float smaller(float a, float b) { return a < b ? a : b; }
 float larger(float a, float b) { return a > b ? a : b; }
 int measured(double z_m) { return (z_m > 0) & (z_m < MAX_DEPTH_M); }
@@ -39,7 +39,8 @@ size_t in_plane(size_t u, size_t v, size_t plane_stride) {
   return (v + BORDER) * plane_stride + BORDER + u;
 }
 
-// Always returns the same NaN, because devices differ in the NaN that an operation gives.
+// Returns the value if it is there, otherwise NaN. It is always the same NaN, because devices differ in the
+// NaN that an operation gives.
 double or_none(int is_there, double value) { return is_there ? value : as_double(0x7ff8000000000000UL); }
 
 // Converts a sensor's numbers to depths along the optical axis, through the points in the base frame, as
@@ -222,7 +223,8 @@ Normal smallest_eigenvector(Symmetric m, float z, float ray_x, float ray_y) {
   return n;
 }
 
-// Writes the normals of the points of plane z, whose unit is the radius, into their columns of the cloud.
+// Writes the normals into their columns of the cloud. z_plane: the depths of the points, in units of
+// normal_radius_m.
 __kernel void plane_normals(__global const float* restrict ray_x, __global const float* restrict ray_y,
                             __global const float* restrict z_plane, float step_x, float step_y,
                             __constant double* X, int width, __global double* restrict columns) {
@@ -271,8 +273,8 @@ __kernel void plane_normals(__global const float* restrict ray_x, __global const
   normals[to + 2 * column] = or_none(n.is_plane, (X[8] * x + X[9] * y + X[10] * along) * one);
 }
 
-// Writes the points in the base frame into their columns of the cloud. is_filtered: change is added to the
-// depths.
+// Writes the points in the base frame into their columns of the cloud. is_filtered: true if `change` must be
+// added to the depths.
 __kernel void place_points(__global const double* restrict depth_m, __global const float* restrict change,
                            int is_filtered, double change_unit_m, __global const double* restrict wide_ray_x,
                            __global const double* restrict wide_ray_y, __constant double* X, int width,
@@ -314,9 +316,10 @@ double drawn(double from, double to, double weight) {
   return weight == 1 ? to : from + weight * (to - from);
 }
 
-// 7.3.2: rules of forbidden regions by hue fill the columns of r_f and k_s. Each step has 8 numbers: first and
-// last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: unchanged), strength.
-// keeps_points: the points of the cloud are the measured ones, else those of place_points.
+// Fills the columns of r_f and k_s by the rules of forbidden regions by hue, 7.3.2. Each step has 8 numbers:
+// first and last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: unchanged),
+// strength. keeps_points: true if the points of the cloud are the measured ones, false if they are those of
+// place_points.
 __kernel void fixture_columns(__global const unsigned int* restrict rgb,
                               __global const double* restrict depth_m, int keeps_points,
                               __global const double* restrict steps, int count, int width,

@@ -49,7 +49,8 @@ void DeviceFrames::write(const Buffer& to, const std::vector<Value>& values) {
           "clEnqueueWriteBuffer");
 }
 
-// All borders, and the columns right of the image, are filled with holes here and never change.
+// Allocates the buffers for images of this size. All borders, and the columns right of the image, are filled
+// with holes here and never change.
 void DeviceFrames::resize(const CameraIntrinsics& camera) {
   const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
   stride_ = (width + kGroup - 1) / kGroup * kGroup;

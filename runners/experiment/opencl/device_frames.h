@@ -11,8 +11,9 @@
 
 namespace remote_touch {
 
-// A frame with all that the device reads and writes. It belongs to the call: if a caller stops waiting, none
-// of the caller's own memory is written later.
+// A frame with all data that the device reads and writes. The thread that runs the device shares it. If the
+// caller stops waiting for that thread, the device later writes only to this frame, and not to the caller's
+// own memory.
 struct DeviceFrame {
   // Columns of the cloud, in the order in which they are downloaded.
   enum Column { x, y, z, nx, ny, nz, fixture_radius, stiffness, kColumns };
@@ -24,7 +25,8 @@ struct DeviceFrame {
   std::vector<std::uint16_t> units = {};
   double metres_per_unit = 0;
   bool keep_points = false;  // true: columns x, y, z are not written
-  // The columns fixture_radius and stiffness are written according to `steps`; not without colours.
+  // Colour of each pixel. If it is not empty, the columns fixture_radius and stiffness are written according
+  // to `steps`.
   std::vector<std::uint32_t> colour = {};
   HueSteps steps = {};
   std::vector<double> columns[kColumns] = {};

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-// Columns that the cloud and the frame exchange.
+// Swaps the columns that the device has computed with those of the cloud.
 void exchange(DeviceFrame& frame, PointCloud& cloud) {
   const auto swap = [&](DeviceFrame::Column made, std::vector<double>& old) {
     old.swap(frame.columns[made]);
@@ -64,7 +64,8 @@ bool DevicePipeline::process_all(PointCloud& cloud, const HueSteps& steps) {
   return process_depths(frame_of(cloud), &steps, cloud);
 }
 
-// Requires the filter, because points that are kept must be those of cloud_from_depth() on the CPU.
+// Returns false without the filter, because points that are not filtered must be those of cloud_from_depth()
+// on the CPU.
 bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) {
   const DepthFrame size{nullptr, raw.camera, raw.X_WC};
   const bool fits = raw.colour.size() == size.pixels() || (raw.colour.empty() && steps == nullptr);
@@ -87,7 +88,7 @@ bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* ste
   return true;
 }
 
-// Prepares frame_, except for its depths. steps: null if no columns of fixtures are needed.
+// Prepares frame_, except for its depths. steps: null if the columns of fixtures are not needed.
 void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
                            std::span<const std::uint32_t> colour) {
   frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;

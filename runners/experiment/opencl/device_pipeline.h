@@ -21,8 +21,8 @@ class DevicePipeline final : public DepthProcessor {
   static constexpr std::chrono::milliseconds kFrameLimit{2000};
   static constexpr std::chrono::milliseconds kBuildLimit{120000};  // limit of the build and the first frame
 
-  // Builds the kernels unless this process has them, and processes a small frame for their first call. Throws
-  // OpenClError if that fails, OpenClTimeout if it takes longer than kBuildLimit.
+  // Builds the kernels unless this process has them already, and processes a small frame as their first call.
+  // Throws OpenClError if that fails, OpenClTimeout if it takes longer than kBuildLimit.
   DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
                  std::function<void(const std::string&)> report,
                  std::chrono::milliseconds frame_limit = kFrameLimit);
@@ -31,8 +31,9 @@ class DevicePipeline final : public DepthProcessor {
   // device fails, or takes longer than frame_limit, is processed on the CPU, and so is every frame after it.
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
 
-  // True unless the device has failed, before or in this frame, or columns of fixtures cannot be filled: the
-  // cloud has some already, or no colours. A sensor's image is processed only if it is filtered.
+  // Both return false if the device has failed, before or in this frame. They also return false if columns of
+  // fixtures are needed but cannot be filled: the cloud already has such columns, or has no colours. The
+  // image of a sensor is processed only if the settings filter it.
   bool process_all(PointCloud& cloud, const HueSteps& steps) override;
   bool process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) override;
 

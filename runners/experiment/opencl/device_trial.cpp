@@ -68,8 +68,9 @@ FixtureAssignment trial_rules() {
   return FixtureAssignment(std::move(rules));
 }
 
-// Compares the same image, as a sensor's image with all colours and two rules, from a rotated camera. If the
-// device leaves it to the CPU, the bits are the same.
+// Compares process_all() on the device with the CPU: for the same image as a sensor sends it, with all
+// colours, two rules and a rotated camera. Returns true also if the device does not process such frames,
+// because the CPU then does.
 bool same_bits_at_once(DevicePipeline& on_device, DepthPipeline& on_cpu, DepthImage image) {
   constexpr double kUnit_m = 0.001;
   const RigidTransform X_WC(Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(0.7, Vec3::UnitX()));
@@ -94,7 +95,8 @@ bool same_bits_at_once(DevicePipeline& on_device, DepthPipeline& on_cpu, DepthIm
 DepthTrial try_now(const OpenClDevice& device, const DepthPipelineSettings& settings,
                    const Kernels& kernels) {
   DepthTrial trial;
-  // Only frames of a run have to be in time; a machine that is busy at the start fails no device.
+  // The frame limit here is that of the build. Only frames of a run have to be in time, so a device does not
+  // fail because the machine is busy at the start.
   DevicePipeline on_device(
       device, settings, kernels, [&trial](const std::string& why) { trial.failure = "failed: " + why; },
       DevicePipeline::kBuildLimit);

@@ -1,5 +1,5 @@
-// Trial of one frame on an OpenCL device and on the CPU: checks that the device works, whether it gives the
-// same bits, and whether it is faster.
+// Trial of an OpenCL device with one frame that the CPU processes too. It finds out whether the device works,
+// gives the same bits, and is faster.
 #pragma once
 
 #include <string>
@@ -18,8 +18,9 @@ struct DepthTrial {
   double device_ms = 0, cpu_ms = 0;  // minimum of five
 };
 
-// Tries the device, after the trials of other threads, or returns the earlier result of this process for
-// these settings. Failures are not kept, except that of a device that was not opened in time.
+// Returns the earlier result of this process for this device and these settings. If there is none, tries the
+// device, after the trials of other threads. A failure is not stored, so that the next call tries again; only
+// the failure to open the device in time is stored.
 DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels);
 // Forgets the results for a device that has failed since.
 void forget_trials(const OpenClDevice& device);

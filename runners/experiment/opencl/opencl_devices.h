@@ -1,4 +1,4 @@
-// The OpenCL devices of this machine, with the ability of their arithmetic to keep the bits of the CPU.
+// The OpenCL devices of this machine, and whether their arithmetic can give the same bits as the CPU.
 #pragma once
 
 #include <chrono>
@@ -15,9 +15,9 @@ struct OpenClDevice {
   cl_device_id id = nullptr;
   std::string name;  // "pthread-..., Portable Computing Language"
   bool is_gpu = false;
-  bool has_double = false;       // IEEE double with subnormal numbers
+  bool has_double = false;       // has double precision, perhaps without subnormal numbers
   bool rounds_division = false;  // single division and root are rounded correctly, as double ones always are
-  // Reason why it cannot keep the bits; empty: its arithmetic is that of IEEE 754.
+  // Reason why it cannot give the same bits as the CPU; empty: its arithmetic is that of IEEE 754.
   std::string inexact_because;
   // Reason why it cannot compute the pipeline at all; empty: it can.
   std::string unfit_because;
@@ -30,8 +30,9 @@ struct OpenClDevice {
 // OpenClError.
 std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library);
 
-// Returns the same for the library of this process. Loading it and its drivers may take `limit`; after that,
-// and as long as they do not answer, throws OpenClTimeout. Throws InputError if there is no library.
+// Returns the devices of the library of this process, which the first call loads. Throws OpenClTimeout if the
+// library and its drivers do not answer within `limit`, and at once in later calls until they have answered.
+// Throws InputError if there is no library, and OpenClError as opencl_devices() does.
 inline constexpr std::chrono::milliseconds kListLimit{20000};
 std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit = kListLimit);
 

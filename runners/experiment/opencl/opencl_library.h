@@ -24,7 +24,8 @@ class OpenClTimeout : public OpenClError {
   using OpenClError::OpenClError;
 };
 
-// Each is null until the constructor has found it. Its name is that in the library, without cl.
+// The functions, as pointers. Each is null until the constructor has found the function. Its name is the name
+// in the library without the prefix cl.
 #define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \
   each(GetPlatformIDs) each(GetPlatformInfo) each(GetDeviceIDs) each(GetDeviceInfo) each(CreateContext)     \
       each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
@@ -47,7 +48,8 @@ class OpenClLibrary {
   SharedLibrary library_;
 };
 
-// Returns the library of this process. Throws as the constructor does, at each call until it is loaded.
+// Returns the library of this process. Loads it at the first call. Throws as the constructor does; the next
+// call then tries again.
 const OpenClLibrary& opencl_library();
 
 // Throws OpenClError unless the code is CL_SUCCESS.

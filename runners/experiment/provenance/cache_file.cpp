@@ -89,7 +89,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
   unpack.text(stored_key);
   take(unpack);
   const bool good = unpack.done() && stored_key == key;
-  const timespec used_now[] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};  // not the next one to go
+  const timespec used_now[] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};  // the oldest are removed first
   if (good) ::utimensat(AT_FDCWD, path.c_str(), used_now, 0);
   return good;
 }
@@ -97,9 +97,9 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
 bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put) {
   if (folder.empty()) return false;
-  std::error_code failure;  // then no file can be made there either
+  std::error_code failure;  // mkstemp() then fails too
   fs::create_directories(folder, failure);
-  // A name for each writer: threads of one process make the same thing too.
+  // Each writer has a name of its own, because threads of one process may write the same file.
   std::string temporary = (folder / (key + ".partial-XXXXXX")).string();
   const int file = ::mkstemp(temporary.data());
   if (file < 0) return false;
@@ -109,7 +109,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   pack.text(key);
   put(pack);
   pack.end_with_hash();
-  // No flush to the disk: what a power cut leaves fails the check of its hash.
+  // The file is not flushed to the disk: if a power cut leaves a part of it, the check of its hash fails.
   bool good = ::close(file) == 0 && pack.good();
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;
   if (!good) ::unlink(temporary.c_str());

@@ -28,15 +28,16 @@ class CacheWriter final : public Packer {
   Sha256 hash_;
 };
 
-// The kind of a cache file, its first line, which ends with the version of the format. Files are named
-// KEY.KIND.
+// The kind of a cache file. The first line of the file has the name of the kind and the version of the
+// format. The file is named KEY.NAME, with the name of its kind.
 struct CacheKind {
   std::string name;
   int version;
   std::size_t max_bytes = 0;  // maximum size of a file; 0: no maximum. A larger file is not read
 };
 
-// Returns true if the folder has a complete file of that kind and key, and take() read all its fields.
+// Returns true if the folder has a complete file of that kind and key, and take() has read all its fields.
+// Then marks the file as used now.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                      const std::function<void(Unpacker&)>& take);
 

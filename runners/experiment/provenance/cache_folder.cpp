@@ -6,8 +6,8 @@ namespace remote_touch {
 
 namespace fs = std::filesystem;
 
-// Asked here and not in runners/interfaces/cli: a cache is no input, no result depends on it, and whatever
-// makes tools, a test too, is to find the same one.
+// The environment is read here and not in runners/interfaces/cli. A cache is not an input, so no result
+// depends on it, and every program that makes tools, also a test, must find the same one.
 fs::path cache_folder() {
   const auto from = [](const char* variable) {
     const char* value = std::getenv(variable);

@@ -35,7 +35,7 @@ bool is_abandoned(const CachedFile& file) {
          std::time(nullptr) - file.used_ns / kNs_per_s > 3600;
 }
 
-// Other processes may remove files at the same time: what is gone counts nothing.
+// Returns the regular files of the folder. A file that another process removes at the same time is left out.
 std::vector<CachedFile> files_in(const fs::path& folder) {
   std::vector<CachedFile> files;
   std::error_code unreachable;

@@ -11,17 +11,18 @@ struct CacheSize {
   std::uintmax_t bytes = 0;
 };
 
-// The greatest size of the cache folder: the environment variable REMOTE_TOUCH_CACHE_MB, else 512 MB. Throws
-// InputError.
+// Returns the maximum size of the cache folder: the environment variable REMOTE_TOUCH_CACHE_MB, or 512 MB if
+// it is not set. Throws InputError if it is not a number of megabytes.
 std::uintmax_t max_cache_bytes();
 
 CacheSize cache_size(const std::filesystem::path& folder);
 
-// Removes what killed programs left half written an hour ago or earlier.
+// Removes temporary files of programs that were killed while they wrote them, if they were not used for an
+// hour.
 void remove_abandoned(const std::filesystem::path& folder);
 
-// The same, then the files that were used longest ago, until so many bytes are left at most. Files of other
-// kinds stay. Returns what is left.
+// Removes these temporary files, and then the cache files that were used longest ago, until their size is at
+// most max_bytes. Other files are kept. Returns the number and size of the cache files that are left.
 CacheSize shrink_cache(const std::filesystem::path& folder, std::uintmax_t max_bytes);
 
 }  // namespace remote_touch

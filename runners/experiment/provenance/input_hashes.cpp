@@ -14,7 +14,7 @@ void InputHashes::add(const std::vector<RecordingPart>& parts) {
 }
 
 void InputHashes::read(const RecordingPart& part) {
-  const std::vector<InputFile> files = files_of(part);  // a recording that is not there leaves no trace
+  const std::vector<InputFile> files = files_of(part);  // throws before anything is stored
   auto& known = recordings_[part.path];
   for (const auto& [name, file] : files) {
     if (known.count(name) > 0) continue;
@@ -34,7 +34,7 @@ std::string InputHashes::text() const {
     std::uintmax_t bytes = 0;
     for (const auto& [name, file] : files) {
       const std::string plain = in_one_line(name);
-      // sha256sum marks a line whose name it changed by a backslash in front.
+      // sha256sum puts a backslash in front of a line whose file name it has changed.
       lines.push_back((plain == name ? "" : "\\") + file.sha256 + "  " + plain);
       bytes += file.size;
     }
@@ -71,7 +71,7 @@ std::string in_one_line(const std::string& name) {
 
 namespace {
 
-// Returns the rest of each line, after the path, by path.
+// Returns a map from the path in each line to the rest of the line.
 std::map<std::string, std::string> by_path(const std::string& text) {
   std::map<std::string, std::string> lines;
   std::istringstream stream(text);

@@ -49,14 +49,14 @@ std::string input_hashes(const std::vector<RecordingPart>& parts);
 // differ, so that no result states the hash of a file that its runs did not read.
 void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before);
 
-// A path or name on one line, as sha256sum writes it: a backslash, line feed or carriage return in it is
-// written \\, \n, \r.
+// Returns a path or name on one line, as sha256sum writes it: a backslash, line feed or carriage return in it
+// is written \\, \n, \r.
 std::string in_one_line(const std::string& name);
 
-// The recordings whose lines differ between two such texts.
+// A recording whose line differs between two texts of input_hashes().
 struct ChangedInput {
   std::string path;         // written as in_one_line() does
-  std::string before, now;  // the rest of the line: "71 file(s), ..."; "absent" where there is none
+  std::string before, now;  // the rest of the line: "71 file(s), ..."; "absent" if there is none
 };
 std::vector<ChangedInput> changed_inputs(const std::string& before, const std::string& now);
 

@@ -28,14 +28,15 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Family, model, stepping and name; asked directly, since /proc/cpuinfo is long on large machines and virtual
-// machines give different processors the same name. As few questions as that needs: each takes about 10 us
-// there. Every 64-bit processor answers these.
+// Packs family, model, stepping and name of the processor. They are read with the instruction CPUID, because
+// /proc/cpuinfo is long on large machines, and because virtual machines give different processors the same
+// name. No more leaves are read than needed: each takes about 10 us in a virtual machine. Every 64-bit
+// processor has these leaves.
 void add_processor(CacheWriter& pack) {
   constexpr unsigned kSignature = 1, kName[] = {0x80000002, 0x80000003, 0x80000004};
   unsigned a = 0, b = 0, c = 0, d = 0;
   __cpuid(kSignature, a, b, c, d);
-  pack.value(a);  // the others are of the core that answers
+  pack.value(a);  // b, c and d depend on the core that runs this
   for (const unsigned leaf : kName) {
     __cpuid(leaf, a, b, c, d);
     for (const unsigned part : {a, b, c, d}) pack.value(part);

@@ -15,7 +15,7 @@ namespace remote_touch {
 
 namespace {
 
-// A plane below the proxy, points 1 mm apart: as many as near a proxy of 5 mm.
+// A plane of points below the proxy, 1 mm apart. There are as many as near a proxy with a radius of 5 mm.
 struct ProxyStep {
   static constexpr std::size_t kPoints = 104, kAlong = 13;
   std::array<double, kPoints> x{}, y{}, z{};
@@ -112,7 +112,7 @@ struct DepthRows {
   DepthRows() {
     for (std::vector<float>& values : plane) values.resize(kSize);
     for (std::size_t i = 0; i < ray.size(); ++i) ray[i] = kStep * static_cast<float>(i);
-    const float filter_scale = 12, normal_scale = 100;  // units in a metre
+    const float filter_scale = 12, normal_scale = 100;  // units per metre
     for (std::size_t i = 0; i < kSize; ++i) {
       const std::size_t column = i % static_cast<std::size_t>(kStride);
       const std::size_t row = i / static_cast<std::size_t>(kStride);
@@ -135,7 +135,7 @@ struct DepthRows {
   }
 };
 
-// A std::function copies what it calls; the tasks keep their pointers.
+// A std::function copies what it calls. The task is shared by these copies, so that its inputs are made once.
 template <class Task>
 KernelTask task(const char* name) {
   return {name, [made = std::make_shared<const Task>()](const Kernels& kernels) { (*made)(kernels); }};

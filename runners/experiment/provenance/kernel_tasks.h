@@ -1,4 +1,4 @@
-// Small pieces of the work that takes most time: a step of the proxy, noise, disks of a tool, and a row of
+// Small pieces of the work that takes most time: steps of the proxy, noise, disks of a tool, and two rows of
 // the depth pipeline.
 #pragma once
 

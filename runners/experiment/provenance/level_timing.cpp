@@ -9,7 +9,7 @@ namespace remote_touch {
 namespace {
 
 constexpr int kMinRounds = 3, kMaxRounds = 20;
-constexpr double kShortest_s = 1e-9;  // a clock that did not advance; its logarithm is finite
+constexpr double kShortest_s = 1e-9;  // used if the clock did not advance, to keep the logarithm finite
 
 double geometric_mean(const std::vector<double>& times_s) {
   double sum = 0;

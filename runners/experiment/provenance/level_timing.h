@@ -1,5 +1,5 @@
 // The speeds of the kernel levels on this processor, and the choice of a level. A higher level is not always
-// faster: some processors gain nothing by AVX-512, or lose.
+// faster: AVX-512 makes some processors no faster, or even slower.
 #pragma once
 
 #include <functional>

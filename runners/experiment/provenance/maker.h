@@ -1,4 +1,5 @@
-// The program that made a result, where its catalog may have entries that this program's has not.
+// Names the program that made a result, if the catalog of that program may have entries that this program
+// does not have.
 #pragma once
 
 #include <string>
@@ -8,12 +9,14 @@
 
 namespace remote_touch {
 
-// "was made by press-lab, ...: expected that program", or the plug-ins that the result names. Empty if this
-// program made it, or one with the same plug-ins.
+// Returns "was made by press-lab, ...: expected that program", or a text with the plug-ins that the result
+// names. Returns an empty text if this program made the result, or if the result names plug-ins and this
+// program has loaded some too, which are not compared.
 std::string other_maker(const TextAttributes& result);
 
-// Calls read(), which reads the configuration of a result, and returns its value. If it throws InputError and
-// another program made the result, the error names that program instead of the entry that is unknown here.
+// Calls read(), which reads the configuration of a result, and returns its value. If read() throws InputError
+// and other_maker() is not empty, throws an InputError with that text instead: the other program has the
+// entry that is unknown here.
 template <class Read>
 auto read_configuration(const TextAttributes& result, const std::string& file, Read&& read) {
   try {

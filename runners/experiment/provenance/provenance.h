@@ -21,8 +21,8 @@ struct ProgramIdentity {
   std::string sha256 = {};  // hash of the program's file if its catalog has entries of its own; else empty
   std::vector<Plugin> plugins = {};  // shared libraries with renderers
 };
-// Sets the identity for all results. They have the attributes `program` and `program_sha256` if there is a
-// SHA-256, and `plugins` (a line "FILE: sha256 HASH" for each) if there are any; commands begin with
+// Sets the identity for all results. Results have the attributes `program` and `program_sha256` if there is a
+// SHA-256, and `plugins` (a line "FILE: sha256 HASH" for each) if there are any. Commands begin with
 // program_words(). Must be called before the first result.
 void identify_program(ProgramIdentity identity);
 const ProgramIdentity& program_identity();

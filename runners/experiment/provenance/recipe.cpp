@@ -32,7 +32,7 @@ void take(const Json& json, const char* name, Value& value) {
   if (const auto found = json.find(name); found != json.end()) value = found->get<Value>();
 }
 
-// Any number, which the library would convert, is no integer.
+// Accepts integers only. The library would convert any number.
 void take_integer(const Json& json, const char* name, int& value) {
   const auto found = json.find(name);
   if (found == json.end()) return;
@@ -95,7 +95,7 @@ std::string to_json(const Recipe& recipe) {
   if (recipe.coarse != 1) json["coarse"] = recipe.coarse;
   if (recipe.action == "compare") json["candidate"] = recipe.candidate;
   if (!recipe.tolerances.empty()) json["tolerances"] = recipe.tolerances;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // a file may have any name
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // names of files need not be UTF-8
 }
 
 std::optional<Recipe> recipe_of(const TextAttributes& attributes) {

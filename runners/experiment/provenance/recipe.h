@@ -20,8 +20,8 @@ struct Recipe {
   std::vector<std::string> tolerances = {};
 };
 
-// Returns the words of each command without output, threads and shard. A replay has the command of its sweep,
-// then its own.
+// Returns the words of each command, without output, threads and shard. A replay has two commands: the
+// command of its sweep and its own.
 std::vector<std::vector<std::string>> commands(const Recipe& recipe);
 // The same as text for a shell, "; " between the commands.
 std::string command_text(const Recipe& recipe);
@@ -29,7 +29,7 @@ std::string command_text(const Recipe& recipe);
 // The attribute of the result that holds its recipe as JSON.
 inline constexpr const char* kRecipe = "recipe";
 std::string to_json(const Recipe& recipe);
-// Returns nothing if the result has no recipe, or one that this program did not write.
+// Returns nothing if the result has no recipe, or one that this program cannot read.
 std::optional<Recipe> recipe_of(const TextAttributes& attributes);
 
 }  // namespace remote_touch

@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// The words with spaces between them, each in single quotes if it needs them.
+// Returns the words with spaces between them. A word is in single quotes if it needs them.
 std::string shell_command(const std::vector<std::string>& words);
 
 }  // namespace remote_touch

@@ -25,7 +25,7 @@ struct SensorView {
   double frame_rate_hz = 30;
   bool has_colour = false;
   RigidTransform X_WC = RigidTransform::Identity();  // pose of the camera, if the source knows it
-  std::optional<CloudLayout> cloud = {};             // set: clouds, and camera has no meaning
+  std::optional<CloudLayout> cloud = {};             // set: it sends clouds; camera is not used
 };
 
 // Pixel (u, v) is number v * width + u. If the sensor sends clouds, depth is empty, and colour has one number

@@ -209,8 +209,8 @@ void SessionReader::read_changes() try {
   file_.damaged("its attribute live_parameters");
 }
 
-// Throws InputError for an impossible recording: numbers and times of frames and ticks must increase, and
-// each frame is taken once at most.
+// Throws InputError for an impossible recording: numbers and times of frames and ticks must increase, and the
+// renderer receives each frame once at most.
 void SessionReader::require_order() const {
   const auto frames = static_cast<std::int32_t>(frame_count());
   std::int32_t last_taken = -1;

@@ -1,5 +1,5 @@
 // A live session on disk, as one HDF5 file: the device's state at every tick, the sensor's frames, and the
-// ticks at which the renderer got them.
+// ticks at which the renderer received them.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace remote_touch {
 
 struct SessionTick {
   std::int64_t number = 0;  // time of the tick times the haptic rate
-  DeviceState device;       // state that the renderer got
-  int taken = -1;           // the frame that the renderer got before this tick; -1: none
+  DeviceState device;       // state that the renderer received
+  int taken = -1;           // the frame that the renderer received before this tick; -1: none
   Wrench written;           // wrench written to the device, in its axes
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
@@ -65,10 +65,10 @@ TextAttributes session_attributes(const SensorView& view, const RigidTransform& 
                                   const TextAttributes& provenance,
                                   const std::vector<std::string>& live_parameters);
 
-// /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
-// written to the device, gate. /frames: number, captured, fixtures_off, and for images depth and colour, for
-// clouds point_count, points and colour. /changes: tick, parameter, value. The root's attributes: those of
-// session_attributes(), and those of finish().
+// Writes a session file with these datasets. /ticks: number, position, orientation, buttons (as the renderer
+// received them), taken, force and torque as written to the device, gate. /frames: number, captured,
+// fixtures_off; also depth and colour of images, or point_count, points and colour of clouds. /changes: tick,
+// parameter, value. The root has the attributes of session_attributes() and of finish().
 class SessionWriter {
  public:
   SessionWriter(const std::filesystem::path& target, const SessionLayout& layout,
@@ -109,8 +109,8 @@ class SessionReader {
   explicit SessionReader(Hdf5Reader file);
 
   std::string config() const;  // the experiment that was run, as JSON
-  // Returns the reason why the recording ended. kInterruptedRecording: its program did not end it. Empty in
-  // recordings of earlier versions.
+  // Returns the reason why the recording ended. It is kInterruptedRecording if the program did not end the
+  // recording, and empty in recordings of earlier versions.
   std::string ended() const;
   double haptic_rate_hz() const { return haptic_rate_hz_; }
   const SensorView& view() const { return view_; }
@@ -119,7 +119,7 @@ class SessionReader {
   double captured_s(std::size_t i) const { return captured_s_[i]; }
   std::uint64_t fixtures_off(std::size_t i) const { return fixtures_off_[i]; }
 
-  // Ticks in the order in which they came; numbers grow, with gaps where ticks were missed.
+  // Ticks are in the order in which they came. Their numbers increase, with gaps where ticks were missed.
   std::size_t tick_count() const { return number_.size(); }
   std::uint64_t tick_number(std::size_t i) const { return number_[i]; }
   DeviceState device(std::size_t i) const;

@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// The frames as the sensor sent them, at the times when the live renderer got them.
+// The frames as the sensor sent them, at the times when the live renderer received them.
 class SessionScene final : public Scenario {
  public:
   struct Settings {
@@ -37,7 +37,7 @@ class SessionScene final : public Scenario {
     return session_.fixtures_off(static_cast<std::size_t>(frame));
   }
   std::string input() const override;
-  // Notes if this run did not reach all frames that the live renderer got, or if the recording was
+  // Returns notes if this run did not use all frames that the live renderer received, or if the recording was
   // interrupted.
   std::vector<Note> input_notes() const override;
 
@@ -46,7 +46,7 @@ class SessionScene final : public Scenario {
 
   const std::string path_;
   const SessionReader session_;
-  std::vector<double> arrives_s_;  // infinite if the renderer never got the frame
+  std::vector<double> arrives_s_;  // infinite if the renderer never received the frame
   mutable SensedPoints sensed_;    // points of the frames that were read; each frame counts once
   mutable std::vector<bool> is_read_;
 };
@@ -55,7 +55,8 @@ Parameters parameters(SessionScene::Settings& s);
 std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
-// The state of the session's device at the nearest tick; if that tick was missed, at the tick before.
+// Returns the state of the session's device at the nearest tick. If that tick was missed, it is the state at
+// the tick before.
 class SessionHand final : public Trajectory {
  public:
   struct Settings {

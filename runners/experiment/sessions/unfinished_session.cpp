@@ -182,8 +182,8 @@ class SessionBlocks {
     return true;
   }
 
-  // True if the tick numbers increase, and each tick that takes a frame takes an earlier one of the journal,
-  // newer than the frame taken before.
+  // True if the tick numbers increase, and if each tick that received a frame names an earlier frame of the
+  // journal, newer than the one before.
   bool are_possible(const TickBlock& block) const {
     std::int64_t number = found_.last_tick, taken = last_taken_;
     for (const SessionTick& tick : block.ticks) {

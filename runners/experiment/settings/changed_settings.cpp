@@ -56,7 +56,8 @@ std::string last_part(const std::string& text, std::size_t max) {
   return "..." + text.substr(begin);
 }
 
-// A text is most often a path, whose end says most.
+// Shortens a value for a title. A text is most often a path, and the end of a path is its most informative
+// part.
 std::string short_text(const Json& value) {
   constexpr std::size_t kMaxLength = 40;
   const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -96,7 +97,7 @@ std::vector<std::string> replaced_settings(const std::vector<std::string>& assig
       const bool is_whole = all[i].keys.size() == all[later].keys.size();
       lines.push_back(option_text(all[i]) + (is_whole ? " is replaced by " : " is replaced in part by ") +
                       option_text(all[later]));
-      break;  // the first that replaces it; that one may be replaced in turn
+      break;  // only the first replacement; it may be replaced in turn
     }
   return lines;
 }

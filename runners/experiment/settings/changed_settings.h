@@ -12,24 +12,26 @@ namespace remote_touch {
 // Path and value.
 using ChangedSetting = std::pair<std::string, Json>;
 
-// The keys of a path, places in lists without leading zeros: equal keys are the same place.
+// Returns the keys of a path. Indices in lists have no leading zeros, so that equal keys are the same
+// setting.
 std::vector<std::string> place_keys(const std::string& path);
 
-// assignments: "key=value", in the order in which they are applied. Throws InputError, with both paths, if
-// one is lost because a later one sets an object or a list around it that has another value at that place.
+// assignments: "key=value", in the order in which they are applied. Throws InputError, with both paths, if an
+// assignment has no effect: a later one sets an object or a list around it, without the same value there.
 void refuse_discarded(const std::vector<std::string>& assignments);
 
-// A line for each assignment that a later one replaces by another value, as a whole or in part:
+// Returns a line for each assignment that a later one replaces by another value, as a whole or in part:
 // "--set seed=1 is replaced by --set seed=2". Throws InputError for an assignment that cannot be read.
 std::vector<std::string> replaced_settings(const std::vector<std::string>& assignments);
 
-// The title with what was changed, "a lift, changed: scenario.noise_sigma_m=0, seed=7": the first changes in
-// about 120 characters, and how many more there are. Returns the title as it is if nothing was changed or if
-// it is empty; an untitled configuration says nothing that could have become false.
+// Returns the title with the changes, such as "a lift, changed: scenario.noise_sigma_m=0, seed=7": the first
+// changes, in about 120 characters, and the number of further ones. Returns the title as it is if nothing was
+// changed, or if it is empty: an empty title states nothing that could have become false.
 std::string changed_title(const std::string& title, const std::vector<ChangedSetting>& changes);
 
-// The settings of the assignments, each path once with its last value, without those that `before` has
-// already. Returns none if one of them sets the title: then the user has named the result.
+// Returns the settings that the assignments change: each path once, with its last value, without values that
+// `before` has already. Returns none if an assignment sets the title, because the user has then named the
+// result.
 std::vector<ChangedSetting> changes_of(const Json& before, const std::vector<std::string>& assignments);
 
 // Applies the assignments to a configuration and names them in its title. Throws InputError.

@@ -13,14 +13,14 @@ struct EmbeddedText {
 
 std::span<const EmbeddedText> embedded_experiments();
 std::span<const EmbeddedText> embedded_sweeps();
-// Renderers with their settings, and scenes, of the scorecard.
+// The renderers of the scorecard with their settings, and its scenes.
 std::span<const EmbeddedText> embedded_methods();
 std::span<const EmbeddedText> embedded_scenes();
 // Numbers of tests/second_implementation, by chapter.
 std::span<const EmbeddedText> embedded_second_implementation();
 
-// The text of that name, or of that file. Throws InputError when there is neither. kind: for its message,
-// such as "an experiment's".
+// Returns the stored text of that name, or the text of that file. Throws InputError if there is neither.
+// kind: words for its message, such as "an experiment's".
 std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,
                              const std::string& kind);
 

@@ -40,13 +40,14 @@ std::string names_text(const Choice& choice) {
   return text;
 }
 
-// Results could not store any other text. A file with other text is no JSON, but --set may bring it.
+// Results can store only UTF-8. A JSON file is UTF-8, or it is refused when it is read, but --set may bring
+// other text.
 bool is_utf8(const Json& text) {
   const std::string unchanged = text.dump(-1, ' ', false, Json::error_handler_t::ignore);
   return unchanged == text.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Sets one parameter from one JSON value. Every overload returns false where the value does not fit.
+// Sets one parameter from one JSON value. Every overload returns false if the value does not fit.
 struct Reader {
   const Json& json;
   const Parameter& p;
@@ -141,7 +142,8 @@ struct Allowed {
   }
 };
 
-// Edits from a to the nearest beginning of b, so that a forgotten unit costs nothing; then edits to all of b.
+// Returns the number of edits from a to the most similar beginning of b, so that a forgotten unit costs
+// nothing, and the number of edits from a to all of b.
 std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0u);
@@ -163,7 +165,8 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
   return keys;
 }
 
-// The present name of a key that was renamed, or the nearest in spelling; pre: one is known.
+// Returns the present name of a key that was renamed, otherwise the known key with the most similar spelling.
+// pre: there is a known key.
 std::string meant(const std::string& key, const std::vector<std::string>& known) {
   return new_name(key, known)
       .value_or(*std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
@@ -208,7 +211,7 @@ void write_parameters(const Parameters& parameters, Json& object) {
 
 namespace {
 
-// JSON does not take .3 and 3. for numbers, but users type them.
+// JSON does not accept .3 and 3. as numbers, but users type them.
 Json number_or_text(const std::string& text) {
   if (!text.starts_with('.') && !text.starts_with("-.") && !text.ends_with('.')) return Json(text);
   double number = 0;
@@ -247,7 +250,7 @@ std::vector<std::string> path_keys(const std::string& path) {
 
 namespace {
 
-// The place in the list that a key names, if the list has it.
+// Returns the index in the list that a key states; nothing if it is not an index of the list.
 std::optional<std::size_t> place_in(const Json& list, const std::string& key) {
   std::size_t i = 0;
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);

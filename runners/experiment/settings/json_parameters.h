@@ -17,25 +17,25 @@ namespace remote_touch {
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
                      const std::vector<std::string>& elsewhere = {});
 
-// All parameters with their present values, in the order of the list.
+// Writes all parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);
 
-// Range and present value as text, for help.
+// The range of a parameter, and its present value, as text for help.
 std::string allowed(const Parameter& parameter);
 std::string value_text(const Parameter& parameter);
 
-// The keys of a path like "renderer.r1_m" or "axes.0.count": names of members, places in lists.
+// Returns the keys of a path like "renderer.r1_m" or "axes.0.count": names of members, and indices in lists.
 std::vector<std::string> path_keys(const std::string& path);
 
-// The value that the keys lead to; null: there is none.
+// Returns the value to which the keys lead; null if there is none.
 const Json* find_value(const Json& json, std::span<const std::string> keys);
 
 // Sets the value at a path like "renderer.r1_m" or "axes.0.count"; creates missing objects on the path.
 // Throws InputError, about the subject, if the path leads through a value or past the end of a list.
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
 
-// Path and value of "renderer.r1_m=0.004". The value is read as JSON or as a number such as .3 and 3., else
-// it is plain text. Throws InputError.
+// Returns the path and the value of an assignment such as "renderer.r1_m=0.004". The value is read as JSON,
+// or as a number such as .3 and 3.; otherwise it is plain text. Throws InputError.
 std::pair<std::string, Json> read_assignment(const std::string& assignment);
 
 // Sets the value of such an assignment in a configuration.

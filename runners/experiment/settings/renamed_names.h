@@ -17,7 +17,7 @@ struct RenamedName {
 // Sorted by the old name; some old names have different new names in different sections.
 std::span<const RenamedName> renamed_names();
 
-// The new name of old_name, if it is among the names that are known in that place.
+// Returns the new name of old_name if it is one of the known names; nothing otherwise.
 std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known);
 
 }  // namespace remote_touch

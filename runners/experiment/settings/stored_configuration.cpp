@@ -34,7 +34,7 @@ double number_or(const Json& scenario, const char* name, double otherwise) {
   return found != scenario.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
-// Null if the key is not a count. A count of -1 means never.
+// Returns null if the key is not a count, or its value not a number. A count of -1 means never.
 const Count* count_of(const std::string& key, const Json& value) {
   const auto found =
       std::find_if(std::begin(kCounts), std::end(kCounts), [&](const Count& c) { return key == c.frames; });
@@ -54,7 +54,8 @@ Json told_in_seconds(const Json& scenario) {
     else
       told[key] = value;
   }
-  // The motion was updated with each frame, and linear between frames: other updates would have other bits.
+  // Older versions updated the motion at each frame, and made it linear between frames. These settings keep
+  // that, because other updates would give other bits.
   const bool accelerates = number_or(scenario, "acceleration_m_per_s2", 0) != 0;
   const bool moves = accelerates || number_or(scenario, "start_velocity_m_per_s", 0) != 0;
   if (has_counts && moves && rate_hz != kUsualRate_hz) told["update_rate_hz"] = rate_hz;

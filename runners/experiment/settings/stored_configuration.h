@@ -5,9 +5,9 @@
 
 namespace remote_touch {
 
-// The same configuration with the parameters of today. Before version 0.3 the motion of moving-lift and
-// moving-shape was told in frames (rise_frames and others): a count becomes a time at the configuration's
-// frame rate, and the motion keeps its bits. Any other text is returned as it is.
+// Returns the same configuration with the parameters of this version. Before version 0.3 the motion of
+// moving-lift and moving-shape was given in frames (rise_frames and others). Such a count becomes a time at
+// the configuration's frame rate, and the motion keeps its bits. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
 
 }  // namespace remote_touch

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// The points of a frame within a ball.
+// Returns the points of a frame within a ball.
 std::vector<Vec3> points_in(const NeighbourSearch& frame, const Ball& ball, const Kernels& kernels) {
   GatheredPoints found;
   found.reserve(frame.size(), frame.has_fixture_radius(), frame.has_stiffness());
@@ -20,13 +20,15 @@ std::vector<Vec3> points_in(const NeighbourSearch& frame, const Ball& ball, cons
   std::vector<Vec3> near;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Vec3 p(view.x[i], view.y[i], view.z[i]);
-    if ((p - ball.centre).norm() <= ball.radius) near.push_back(p);  // regions reach farther than points
+    // gather() also adds points outside the ball whose regions meet it.
+    if ((p - ball.centre).norm() <= ball.radius) near.push_back(p);
   }
   return near;
 }
 
-// The radius of the widest gap through which a ball passes; 0: there is none. Most runs are decided by the
-// nearest points; a contact near the border of the points, or at scan lines far apart, needs more of them.
+// Returns the radius of the widest gap through which a ball passes; 0 if none was found. The points within 3
+// ball radii decide most runs. A contact near the border of the points, or between scan lines that are far
+// apart, needs more points.
 double gap_radius_m(const NeighbourSearch& frame, const Vec3& position_W, double ball_radius_m,
                     const Kernels& kernels) {
   for (const double reach : {3.0, 6.0}) {
@@ -89,7 +91,7 @@ std::vector<Note> ContactWatch::start_notes(const Scenario& scenario, double res
   const Vec3& hand_W = start_->position_W;
   const double distance_m = scenario.signed_distance(hand_W, start_->time_s);
   if (distance_m > 0 && distance_m >= rest_distance_m) return {};
-  // The true surface may reach farther than the points, so that it is not enough.
+  // The true surface alone is not enough, because it may extend beyond the points. A point must be near too.
   const double reach_m = rest_distance_m + (distance_m < 0 ? -distance_m : 0);
   const std::vector<Vec3> near = points_in(*start_->points, {hand_W, reach_m}, kernels);
   if (near.empty()) return {};
@@ -116,7 +118,7 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
   const double moved_m = scenario.signed_distance(site.position_W, before_s) -
                          scenario.signed_distance(site.position_W, site.time_s);
   if (!(moved_m > 0)) return {};
-  // The true surface may reach farther than the points: a hand beside them loses nothing.
+  // The true surface may extend beyond the points. A hand beside the points loses nothing there.
   const double reach_m = ball_radius_m + moved_m;
   if (!crossing_->touched && points_in(*site.points, {site.position_W, reach_m}, kernels).empty()) return {};
   char text[280];

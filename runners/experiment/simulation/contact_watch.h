@@ -1,5 +1,5 @@
-// Watches where a renderer first touches the points, where it starts, and where its proxy gets to the wrong
-// side, and writes notes on runs in which the points or the frames could not hold the proxy.
+// Watches where a renderer first touches the points, where the hand starts, and where the proxy passes to the
+// wrong side. Writes notes on runs in which the points or the frames could not hold the proxy.
 #pragma once
 
 #include <limits>
@@ -32,21 +32,21 @@ class ContactWatch {
            double proxy_distance_m = std::numeric_limits<double>::quiet_NaN());
   bool has_contact() const { return contact_.has_value(); }
 
-  // "wide spacing": a ball passes between the points at the first contact, or where the proxy came nearest to
-  // them if there was no contact, or where it got behind the true surface. See widest_gap(). Searches points
-  // up to 6 ball radii away. pre: ball_radius_m > 0.
+  // Returns a note "wide spacing" if a ball passes between the points at the first contact, or where the
+  // proxy came nearest to them if there was no contact, or where the proxy passed the true surface. See
+  // widest_gap(). Searches points up to 6 ball radii away. pre: ball_radius_m > 0.
   std::vector<Note> spacing_notes(double ball_radius_m, const Kernels& kernels) const;
 
-  // "starts in contact": at the tick of the first frame the hand is behind the true surface, or nearer to it
-  // than rest_distance_m, and points are there too. If the true surface is not known, a point is nearer than
-  // that. rest_distance_m: see RenderedContact, 0 or more.
+  // Returns a note "starts in contact" if, at the tick of the first frame, the hand is behind the true
+  // surface or nearer to it than rest_distance_m, and points are there too. If the true surface is not known,
+  // a point must be nearer to the hand than rest_distance_m. rest_distance_m: see RenderedContact, 0 or more.
   std::vector<Note> start_notes(const Scenario& scenario, double rest_distance_m,
                                 const Kernels& kernels) const;
 
-  // "lost at the first touch": at the end the proxy is behind the true surface, which it passed before a
-  // third frame came after the first contact, and the surface moved towards the proxy. Case 1 and case 2 of
-  // analysis/theory/first_touch.h lose the proxy at the first and second frame after the touch; after two
-  // frames it has an estimate of the velocity. ball_radius_m: as in spacing_notes().
+  // Returns a note "lost at the first touch" if the proxy is behind the true surface at the end, passed it
+  // before a third frame came after the first contact, and the surface moved towards the proxy. Case 1 and
+  // case 2 of analysis/theory/first_touch.h lose the proxy at the first and second frame after the touch.
+  // After two frames the proxy has an estimate of the velocity. ball_radius_m: as in spacing_notes().
   std::vector<Note> first_touch_notes(const Scenario& scenario, double ball_radius_m,
                                       const Kernels& kernels) const;
 

@@ -4,7 +4,7 @@ namespace remote_touch {
 
 namespace {
 
-// 0 for a name that is not in the list.
+// Returns the index of a kind; 0 for a name that is not in the list.
 std::size_t number_of_kind(const std::string& name) {
   const std::vector<NoteKind>& kinds = note_kinds();
   for (std::size_t i = 0; i < kinds.size(); ++i)

@@ -15,8 +15,7 @@ struct NoteKind {
 };
 
 // Kind i has bit i of the dataset `notes`. The order is part of the file format of sweeps, so new kinds are
-// appended. Kind 0 stands for all kinds that are not in the list, for example from scenarios of other
-// programs.
+// appended. Kind 0 includes all kinds that are not in the list, for example from scenarios of other programs.
 const std::vector<NoteKind>& note_kinds();
 std::vector<std::string> note_kind_names();
 

@@ -13,9 +13,9 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kRounding = 1e-9;  // relative, of distances that are equal
+constexpr double kRounding = 1e-9;  // relative difference of distances that count as equal
 
-// The points in their plane, with the position as the origin. Empty if they define no plane.
+// Returns the points in their plane, with the position as the origin. Returns none if they define no plane.
 std::vector<Vec2> in_their_plane(const std::vector<Vec3>& points, const Vec3& position) {
   constexpr double kLine = 1e-6;  // ratio of the variances across and along points on a line
   if (points.size() < 3) return {};
@@ -53,11 +53,11 @@ struct Disk {
   double radius_m;
 };
 
-// The widest angle, seen from the centre of the disk, in which no point is at its border.
+// The widest angle, seen from the centre of a disk, in which no point lies on the border of the disk.
 struct OpenAngle {
   double width;    // radians, up to 2 pi
   Vec2 direction;  // its bisector
-  Vec2 side;       // a point at its side
+  Vec2 side;       // a point on the border, at one side of the angle
 };
 
 OpenAngle widest_open_angle(const std::vector<Vec2>& points, const Disk& disk) {
@@ -86,7 +86,7 @@ std::optional<Disk> held_disk(const std::vector<Vec2>& points, Vec2 centre) {
     const Disk disk{centre, nearest_m(points, centre)};
     const OpenAngle open = widest_open_angle(points, disk);
     if (open.width <= std::numbers::pi * (1 + kRounding)) return disk;
-    // The disk around centre + t direction whose border has the side of the angle meets q at this t.
+    // The disk moves to centre + t direction and keeps open.side on its border. Its border meets q at this t.
     double t = std::numeric_limits<double>::infinity();
     for (const Vec2& q : points) {
       const double farther = (q - centre).squaredNorm() - disk.radius_m * disk.radius_m;
@@ -102,9 +102,10 @@ std::optional<Disk> held_disk(const std::vector<Vec2>& points, Vec2 centre) {
 
 }  // namespace
 
-// Every gap at the position reaches into the disk of radius ball_radius_m around it: a disk that touches the
-// position and lies in the gap is there. So the search starts from the cells of a lattice over that disk. A
-// cell with a point within the ball's radius of all of it cannot be the centre of a gap.
+// A gap at the position is wider than the ball. It contains a disk of radius ball_radius_m that contains the
+// position, so the centre of that disk is at most ball_radius_m from the position. The search starts from the
+// cells of a lattice over these centres. A cell is skipped if one point is within the ball's radius of all of
+// the cell: no such disk can have its centre there.
 PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
                     double known_m) {
   const std::vector<Vec2> flat = in_their_plane(points, position);

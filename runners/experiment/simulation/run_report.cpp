@@ -17,7 +17,8 @@ std::string seconds(double time_s) {
   return text;
 }
 
-// A press into a moving scene that begins when the scene has come to rest.
+// Adds a note for each phase of the hand, such as a press, that begins only after the motion of the scene has
+// ended.
 void add_late_phases(const std::vector<Phase>& of_scene, const std::vector<Phase>& of_hand, double end_s,
                      std::vector<Note>& notes) {
   if (of_scene.empty()) return;
@@ -71,7 +72,8 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
   const std::vector<Phase> of_scene = scenario.phases(), of_hand = trajectory.phases();
   add_missed_phases(of_scene, end_s, report.notes);
   add_missed_phases(of_hand, end_s, report.notes);
-  // A ticks' time is made of its number, and the end of a motion is a sum of times: both are rounded.
+  // The time of a tick is computed from its number, and the end of a motion is a sum of times. Both are
+  // rounded, so times that are nearly equal count as equal.
   if (trajectory.duration_s() > end_s + kSameTime_s)
     report.notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) +
                                                      ", before the trajectory ends at " +

@@ -24,10 +24,11 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
 // The note "no contact", for a run or a session in which nothing was touched.
 Note no_contact_note();
 
-// Adds a note for each phase that begins at end_s or later, one for phases of the same name.
+// Adds a note for each phase that begins at end_s or later. Phases of the same name get only one note.
 void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes);
 
-// Returns "  read LINE\n" for each input, "  hand: LINE\n" and "  note: LINE\n" for each note.
+// Returns "  read LINE\n" for each input, "  hand: LINE\n" if there is one, and "  note (KIND): TEXT\n" for
+// each note.
 std::string text_of(const RunReport& report);
 
 // Appends the attributes `frames_read`, `hand` and `notes`, one line for each entry; an attribute without a

@@ -21,7 +21,7 @@ std::size_t tick_count(const Experiment& experiment, const Trajectory& trajector
   const double duration = settings.duration_s > 0 ? settings.duration_s : trajectory.duration_s();
   if (!(duration > 0))
     throw InputError("duration_s = 0", "the trajectory has no end: expected a duration above 0");
-  // A millionth of a tick is rounding, not a tick more.
+  // An excess of a millionth of a tick is a rounding error and not one more tick.
   const double ticks = std::ceil(duration * settings.haptic_rate_hz - 1e-6);
   if (!(ticks >= 1))
     throw InputError("duration_s = " + std::to_string(duration),
@@ -51,8 +51,8 @@ Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact&
   return {distance_m - contact.rest_distance_m, hip_distance_m};
 }
 
-// The normal at the place that the renderer touches, below the proxy. A tool touches with an area, so its
-// normal is known only on a plane.
+// Returns the true normal where the renderer touches, below the proxy; NaN without a contact. A tool touches
+// with an area, so its normal is known only on a plane.
 Vec3 true_normal(const Scenario& scenario, const RenderOutput& out, double time_s) {
   const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (out.state == ContactState::free || out.force_N.isZero(0)) return unknown;
@@ -73,8 +73,8 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// A renderer that notes how long it takes to take a frame, shows it to who wants to see it, and keeps the
-// points of the newest frame.
+// Passes each frame to a renderer and measures how long the renderer needs for it. Calls
+// SimulationOptions::on_frame before, and keeps the points of the first and of the newest frame.
 class ObservedFrames final : public Renderer {
  public:
   ObservedFrames(Renderer& renderer, const SimulationOptions& options)
@@ -106,7 +106,8 @@ void add(std::vector<Note> more, std::vector<Note>& notes) {
   for (Note& note : more) notes.push_back(std::move(note));
 }
 
-// The notes on the contacts of a run without a tool, which touches with an area.
+// Returns the notes on the contacts of a run without a tool. A tool touches with an area and not at a
+// position.
 std::vector<Note> contact_notes(const ContactWatch& watch, const Scenario& scenario,
                                 const RenderedContact& contact, bool has_fixtures, const Kernels& kernels) {
   std::vector<Note> notes;
@@ -145,7 +146,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   StopWatch watch;
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     if (options.stop && *options.stop) throw Interrupted{};
-    // Time is made from the tick's number, never added up.
+    // The time is computed from the number of the tick and is not a sum, so that rounding errors do not add
+    // up.
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     if (trajectory->is_missed(time_s)) continue;
     changes.make_until(time_s);

@@ -30,13 +30,14 @@ double shown_depth(const PointCloud& cloud, const RigidTransform& X_CW, const Ve
   return depths.empty() ? unknown : median_in_place(depths);
 }
 
-// Null if the frames are no images.
+// Returns the newest frame at a time; null if it is not an image.
 const PointCloud* SurfaceWatch::image_at(double time_s) {
   const int frame = std::clamp(scenario_.newest_frame(time_s), 0, scenario_.frame_count() - 1);
   if (frame == frame_) return cloud_;
   frame_ = frame;
   points_ = scenario_.points(frame);
-  // A search by the image has the points in the order of the pixels; of others the frame is copied.
+  // An ImageWindowSearch stores the points in the order of the pixels. The frame is copied for any other
+  // search.
   if (const auto* image = dynamic_cast<const ImageWindowSearch*>(points_.get())) {
     cloud_ = &image->cloud();
   } else {
@@ -73,7 +74,7 @@ void SurfaceWatch::add(const Vec3& hand_W, double time_s) {
   if (behind_m > plan->max_depth_m) {
     if (behind_++ == 0) first_behind_s_ = time_s;
     if (behind_m > deepest_m_) deepest_m_ = behind_m, allowed_m_ = plan->max_depth_m;
-  } else if (plan->touches && !(behind_m >= plan->min_depth_m)) {  // also if it is unknown
+  } else if (plan->touches && !(behind_m >= plan->min_depth_m)) {  // also if behind_m is NaN
     if (off_++ == 0) first_off_s_ = time_s;
   }
 }

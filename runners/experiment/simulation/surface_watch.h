@@ -38,7 +38,7 @@ class SurfaceWatch {
 
   const Scenario& scenario_;
   const Trajectory& trajectory_;
-  int frame_ = -1;  // the frame that is held
+  int frame_ = -1;  // number of the frame that was read last
   std::shared_ptr<const NeighbourSearch> points_;
   std::optional<PointCloud> copy_;
   const PointCloud* cloud_ = nullptr;  // the cloud in points_ or copy_

@@ -12,7 +12,7 @@ Parameters parameters(LoadedSpheres::Settings& s) {
 
 std::string validate(const LoadedSpheres::Settings& s) {
   if (const std::string tool = validate(s.tool); !tool.empty()) return tool;
-  // PairChoice lets go what no motion of half the look-ahead can run into.
+  // PairChoice drops the pairs that no motion of up to half the look-ahead can violate.
   if (2 * s.motion.max_step_m > s.motion.look_ahead_m)
     return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) + ": expected twice max_step_m or more";
   return validate(s.motion);

@@ -13,9 +13,10 @@ class LoadedSpheres final : public Renderer {
   struct Settings {
     ToolSettings tool{.mesh = "key"};
     int leaves = 112;
-    // Regions are round, so the motion approaches its end by a fraction at a time; a hundredth of a
-    // millimetre is less than a hand can feel. When a frame has enclosed the tool, about ten detections lead
-    // out; ticks that need many more slide along creases, and can go on in the next tick.
+    // Regions are round, so each step of the motion covers only a fraction of the way to its end. A tick ends
+    // when a step is shorter than a hundredth of a millimetre, which is less than a hand can feel. When a
+    // frame has enclosed the tool, about ten detections lead out. Ticks that need many more slide along
+    // creases, and the motion can continue in the next tick.
     ToolParameters motion{.detections_per_tick = 30, .rest_threshold_m = 1e-5};
   };
 

@@ -1,5 +1,5 @@
-// 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6, by the
-// same on tracked sheets, or by those to compare with, penalty and god-object.
+// 6-DOF renderers for experiments: a tool made from a mesh, and one of four motions. These are the motion of
+// chapter 6, the same on tracked sheets, and two motions for comparison, penalty and god-object.
 #pragma once
 
 #include <memory>

@@ -43,7 +43,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// Vertices by their positions, each once.
+// Adds vertices to a mesh. Several vertices at the same position are added once.
 class Welded {
  public:
   explicit Welded(TriangleMesh& mesh) : mesh_(mesh) {}
@@ -71,7 +71,8 @@ class Welded {
   throw std::runtime_error(problem.str());
 }
 
-// A corner that is given twice in a row is one.
+// Cuts a polygon into triangles and adds them. A corner that is given twice in a row counts once. A polygon
+// with fewer than three corners is left out.
 void add_polygon(std::vector<int> polygon, TriangleMesh& mesh) {
   polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
   while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
@@ -103,8 +104,8 @@ void add_mesh(const aiMesh& from, Welded& welded, TriangleMesh& mesh) {
   }
 }
 
-// While one exists: whether the library logs that it left out a part of a facet of an STL file, or took two
-// facets for one. It says so nowhere else.
+// Listens to the log of the library while it exists. found() is true if the library has logged that it left
+// out a part of a facet of an STL file, or took two facets for one. The library reports this nowhere else.
 class FacetWatch final : public Assimp::LogStream {
  public:
   FacetWatch() {
@@ -137,8 +138,9 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 namespace {
 
-// Owned by the importer. The library gets the bytes without a byte order mark and without what it reads
-// wrongly; what they do not say clearly is refused before.
+// Returns the scene, which the importer owns; null if the library cannot read the file. The library receives
+// the bytes without a byte order mark and without the parts that it reads wrongly. A text that it could
+// misread is refused before, by std::runtime_error.
 const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   const std::string ending = ending_of(file);
   constexpr std::string_view kMark = "\xEF\xBB\xBF";

@@ -11,13 +11,13 @@ namespace remote_touch {
 // True if the file's name ends like that of a mesh file, in upper or lower case.
 bool is_mesh_file(const std::filesystem::path& file);
 
-// All meshes of the file as one, vertices at equal positions welded, polygons cut into triangles of their
-// area (polygon_triangles.h); lines and points are left out. Coordinates have single precision, in the unit
-// of the file. Throws InputError, naming the file, also for a polygon that cannot be cut. run: runs the child
-// process in which alone the library reads the file.
+// Returns all meshes of the file as one mesh. Vertices at equal positions are welded, and polygons are cut
+// into triangles of their area (polygon_triangles.h). Lines and points are left out. Coordinates have single
+// precision, in the unit of the file. Throws InputError, with the name of the file, also for a polygon that
+// cannot be cut. run: runs the child process, because the library reads the file only there.
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
-// The reader's version: another one may read a file differently.
+// Returns the version of the reader. Another version may read a file differently.
 std::string mesh_reader_version();
 
 }  // namespace remote_touch

@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-// std::from_chars takes no plus.
+// std::from_chars does not accept a plus sign.
 std::string_view without_plus(std::string_view word) {
   const bool has_one = word.size() > 1 && word[0] == '+' && word[1] != '-';
   return has_one ? word.substr(1) : word;

@@ -1,5 +1,6 @@
-// Words and numbers of mesh files that are text. The library that reads them takes the beginning of a word
-// for a number ("0x9" for 0, "9D-1" for 9) and goes on in the next line for what is missing in this one.
+// Words and numbers of mesh files that are text. They are checked here, because the library that reads these
+// files accepts a word that only begins with a number ("0x9" as 0, "9D-1" as 9), and reads numbers that are
+// missing in a line from the next line.
 #pragma once
 
 #include <cstddef>

@@ -27,7 +27,7 @@ std::size_t end_of_line(const std::string& text, std::size_t at) {
   }
 }
 
-// "vt", "vn" and "vp" begin with the letter of a vertex.
+// Returns false for mtllib, and for "vt", "vn" and "vp", which begin with the letter of a vertex.
 bool is_used(std::string_view line) {
   return !line.starts_with("mtllib") && !(line.size() > 1 && line[0] == 'v' && !is_blank(line[1]));
 }
@@ -36,12 +36,12 @@ bool has_corners(std::string_view line) {
   return line.size() > 1 && (line[0] == 'f' || line[0] == 'l' || line[0] == 'p') && is_blank(line[1]);
 }
 
-// The words of a line and its continuations, up to a comment.
+// Returns the words of a line and its continuations, up to a comment.
 std::vector<std::string_view> words_before_comment(std::string_view line) {
   return words_of(line.substr(0, line.find('#')), "\\");
 }
 
-// Copies the lines that say something of the shape, one by one.
+// Copies the lines that describe the shape, one by one.
 class ShapeLines {
  public:
   explicit ShapeLines(const std::string& obj) : obj_(obj) { text_.reserve(obj.size()); }
@@ -56,7 +56,8 @@ class ShapeLines {
       text_ += line;
   }
 
-  // Faces may come before their vertices.
+  // Returns the copied text. The numbers of the vertices are checked only here, because faces may come before
+  // their vertices. Throws std::runtime_error for a vertex that does not exist.
   std::string take() {
     if (farthest_ > vertices_)
       refuse_line(obj_, farthest_at_,

@@ -43,7 +43,7 @@ class TextRows {
  public:
   TextRows(const std::string& ply, std::size_t at) : ply_(ply), at_(at) {}
 
-  // The data of one element.
+  // Returns the data of one element.
   std::string pass(const PlyElement& element) {
     std::string data;
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
@@ -61,7 +61,7 @@ class TextRows {
   }
 
  private:
-  // The words of the next line that has any; none at the end.
+  // Returns the words of the next line that is not empty; none at the end.
   std::vector<std::string_view> next_line() {
     while (at_ < ply_.size()) {
       line_at_ = at_;
@@ -100,7 +100,7 @@ class TextRows {
   std::size_t at_, line_at_ = 0;
 };
 
-// The same of a binary file.
+// Copies the data of a binary file, element by element.
 class BinaryRows {
  public:
   BinaryRows(const std::string& ply, std::size_t at, bool is_big_endian)
@@ -119,7 +119,7 @@ class BinaryRows {
     return ply_.substr(begin, at_ - begin);
   }
 
-  // A line feed does no harm.
+  // Accepts line feeds and blanks after the last element, and nothing else.
   void finish() const {
     if (ply_.find_first_not_of(" \t\r\n\v\f", at_) == std::string::npos) return;
     throw std::runtime_error("it has " + std::to_string(ply_.size() - at_) + " bytes after the last element");
@@ -161,7 +161,7 @@ bool is_vertex(const PlyElement& element) {
   return element.name == "vertex";
 }
 
-// The vertices first.
+// Returns the file with the vertices first.
 template <class Rows>
 std::string in_order(const PlyHeader& header, Rows rows) {
   std::string vertex_lines, lines, vertex_data, data;
@@ -171,7 +171,8 @@ std::string in_order(const PlyHeader& header, Rows rows) {
   }
   rows.finish();
   const std::string body = vertex_data + data;
-  // The library takes a line feed that begins binary data for the end of the header.
+  // The library counts a line feed at the beginning of binary data as a part of the header. A second one is
+  // therefore added.
   const char* const kept = !header.is_ascii() && body.starts_with('\n') ? "\n" : "";
   return with_line_feeds(header.opening + vertex_lines + lines) + "end_header\n" + kept + body;
 }

@@ -5,11 +5,11 @@
 
 namespace remote_touch {
 
-// Returns the file with the vertices first, as the library needs them, and without empty lines; other
-// elements stay in their order. pre: ply_problem() finds none. Throws std::runtime_error for a format or a
-// type that is unknown, for data that end before the last element, and for anything but blanks after it. In a
-// text each element is a line with all its values and no others, integers where the type is one; the message
-// has the number of the line.
+// Returns the file with the vertices first, as the library needs them, and without empty lines. The other
+// elements keep their order. pre: ply_problem() finds none. Throws std::runtime_error for a format or a type
+// that is unknown, for data that end before the last element, and for anything but blanks after it. Each
+// element of a text must be a line with all its values and no others, and with integers if the type is an
+// integer type; the message then has the number of the line.
 std::string with_vertices_first(const std::string& ply);
 
 }  // namespace remote_touch

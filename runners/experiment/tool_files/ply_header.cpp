@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxHeader = 1 << 20;
 
-// Returns the least number of bytes of an element. In a text, each value is a digit and a separator. A list
+// Returns the least number of bytes of an element. Each value of a text is a digit and a separator. A list
 // may have no members. An unknown type counts as one byte.
 std::uint64_t min_bytes(const PlyElement& element, bool is_ascii) {
   std::uint64_t bytes = 0;
@@ -66,7 +66,8 @@ PlyHeader ply_header_in(const std::string& bytes) {
     header.size = end + (bytes.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     header.ends = line == "end_header";
     take(line, header);
-    // The library loses the properties that follow a comment within an element.
+    // Comments are left out, because the library loses the properties that follow a comment within an
+    // element.
     if (header.ends || line.starts_with("comment") || line.starts_with("obj_info")) continue;
     std::string& part = header.elements.empty() ? header.opening : header.elements.back().lines;
     part += bytes.substr(begin, header.size - begin);
@@ -93,7 +94,7 @@ std::string ply_problem(const std::filesystem::path& file) {
         __builtin_add_overflow(elements, element.count, &elements))
       return "its header claims more than any file holds";
   }
-  // The last number of all needs nothing behind it.
+  // The last number of a text needs no separator behind it.
   if (claimed > rest + (header.is_ascii() ? 1 : 0))
     return "its header claims " + std::to_string(elements) + " elements, more than its " +
            std::to_string(rest) + " bytes hold";

@@ -10,7 +10,8 @@ namespace {
 
 const CacheKind kSpheresKind{"spheres", kSpheresFormat};
 
-// A tree follows from its leaves and how many each node of the lowest level has.
+// A tree as lists. It can be built again from its leaves and the number of leaves of each node of the lowest
+// level.
 struct FlatTree {
   std::vector<double> leaves;  // x, y, z, radius
   std::vector<std::uint32_t> counts;
@@ -25,7 +26,7 @@ FlatTree flat(const SphereTree& tree) {
   return all;
 }
 
-// False where the counts are not those of the leaves, or there are none.
+// Builds the tree. Returns false if the counts do not fit the number of leaves, or if there are none.
 bool grow(const FlatTree& flat, SphereTree& tree) {
   std::size_t at = 0;
   for (const std::size_t count : flat.counts) {
@@ -40,7 +41,7 @@ bool grow(const FlatTree& flat, SphereTree& tree) {
   return true;
 }
 
-// Every field, in order, for both directions.
+// Packs or unpacks every field, in the same order.
 template <class Direction, class Tree, class Spheres>
 void visit(Direction& pack, Tree& tree, Spheres& spheres) {
   pack.list(tree.leaves), pack.list(tree.counts);

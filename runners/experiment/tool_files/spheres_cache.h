@@ -1,4 +1,4 @@
-// The cache of tools' sphere trees on disk, beside that of the tools.
+// The cache of the tools' sphere trees on disk, in the folder of the tools' cache.
 #pragma once
 
 #include <filesystem>

@@ -21,7 +21,7 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
                     [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
 }
 
-// Reads solids word by word, and writes them.
+// Reads solids word by word, and writes them in the form of plain_stl().
 class Solids {
  public:
   explicit Solids(const std::string& text) : text_(text) { plain_.reserve(text.size()); }
@@ -32,7 +32,7 @@ class Solids {
   }
 
  private:
-  // The next word; empty at the end of the file.
+  // Returns the next word without passing it; empty at the end of the file.
   std::string_view word() {
     const std::size_t begin = std::min(text_.find_first_not_of(kStlBlanks, at_), text_.size());
     const std::size_t end = std::min(text_.find_first_of(kStlBlanks, begin), text_.size());
@@ -52,7 +52,7 @@ class Solids {
     pass(found);
   }
 
-  // A name may have any words, up to the end of its line.
+  // Passes the name of a solid, which may have any words, up to the end of its line.
   void pass_name() { at_ = std::min(text_.find_first_of("\r\n", at_), text_.size()); }
 
   void read_solid() {

@@ -1,4 +1,4 @@
-// STL files of text as the library that reads them can take them.
+// Converts STL files of text to a form that the library reads correctly.
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@ namespace remote_touch {
 // that a binary file with their number of facets has.
 bool is_stl_text(const std::string& bytes);
 
-// The same triangles, written as the library expects it: keywords in lower case, no names, and normals of 0,
-// which a tool does not use. Throws std::runtime_error, with the number of the line, for a facet that has not
-// three vertices of three numbers, and for any other word than those of the format, also at the end.
+// Returns the same triangles, written as the library expects them: keywords in lower case, no names, and
+// normals of 0, because a tool does not use normals. Throws std::runtime_error, with the number of the line,
+// for a facet without exactly three vertices of three numbers, and for any word that the format does not
+// have, also at the end.
 std::string plain_stl(const std::string& text);
 
 }  // namespace remote_touch

@@ -15,7 +15,7 @@ const CacheKind kToolKind{"tool", kToolFormat};
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));  // lists of vectors are lists of numbers
 
-// Every field, in order, for both directions.
+// Packs or unpacks every field, in the same order.
 template <class Direction, class Stored>
 void visit(Direction& pack, Stored& stored) {
   auto& tool = stored.tool;
@@ -31,7 +31,8 @@ void visit(Direction& pack, Stored& stored) {
   pack.text(stored.report);
 }
 
-// False if no program that makes tools can have written this tool, even if the hash is right.
+// Returns false for a tool that no program that makes tools can have written, even if the hash of the file is
+// right.
 bool is_sound(const VoxelTool& tool) {
   std::size_t cells = 1, nodes = 1;
   for (const int along : tool.grid.cells)

@@ -12,8 +12,8 @@ namespace remote_touch {
 // Part of the key: raise it whenever the result of make_voxel_tool() or of the generated tools changes.
 inline constexpr int kToolFormat = 2;
 
-// The name of the tool's file, from all that it depends on: a SHA-256 of the mesh (or of what it is read
-// from) and the settings, to the last bit.
+// Returns the key of the tool in the cache: a hash of all that the tool depends on. This is a SHA-256 of the
+// mesh (or of the file from which it is read) and the settings, to the last bit.
 std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings);
 std::string sha256_of_mesh(const TriangleMesh& mesh);
 
@@ -23,8 +23,8 @@ struct StoredTool {
   std::string report;
 };
 
-// Returns nothing if there is no such file, or if it is damaged, cut off, or of another key. Its SHA-256 is
-// verified.
+// Returns nothing if there is no such file, or if it is damaged, cut off, or of another key. The SHA-256 of
+// the file is verified.
 std::optional<StoredTool> read_tool(const std::filesystem::path& folder, const std::string& key);
 
 // Writes the file under a temporary name and renames it, so that other processes see the whole file or none.

@@ -73,7 +73,8 @@ KeyedTool built_or_cached(const ToolSettings& s) {
   const fs::path file = built_in != nullptr ? fs::path() : find_mesh(s.mesh);
   TriangleMesh mesh;
   if (built_in != nullptr) mesh = built_in->make();
-  // Reading a mesh takes longer than its tool from the cache: a file counts by its bytes.
+  // The key of a mesh file comes from its bytes and not from its mesh, because reading the mesh takes longer
+  // than reading its tool from the cache.
   const std::string source =
       built_in != nullptr ? sha256_of_mesh(mesh)
                           : sha256_of_file(file) + file.extension().string() + " " + mesh_reader_version();

@@ -23,15 +23,17 @@ struct ToolSettings {
 Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_voxel_m, tool_repair
 std::string validate(const ToolSettings& settings);
 
-// The mesh file that the result depends on; none for a built-in tool.
+// Returns the mesh file on which the result depends; none for a built-in tool.
 std::vector<RecordingPart> input_files(const ToolSettings& settings);
 
-// A file is searched for like a recording, see find_recording(). A built-in tool takes precedence over a file
-// of its name. Throws MissingRecording if there is neither, InputError as read_mesh() and make_voxel_tool()
-// do. report: the text(ToolReport) from when it was made.
+// Returns the tool. A mesh file is searched for like a recording, see find_recording(). A built-in tool takes
+// precedence over a file of its name. Throws MissingRecording if there is neither, InputError as read_mesh()
+// and make_voxel_tool() do. report: receives text(ToolReport) of the time when the tool was made; may be
+// null.
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
 
-// The same tool with its sphere tree, which is made once for each number of leaves and kept beside it.
+// The same tool with its sphere tree. The tree is made once for each number of leaves, and stored in the
+// cache beside the tool.
 struct ToolOfSpheres {
   std::shared_ptr<const VoxelTool> tool;
   std::shared_ptr<const ToolSpheres> spheres;

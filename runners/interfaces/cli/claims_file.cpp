@@ -30,8 +30,8 @@ ClaimsFile::ClaimsFile(std::filesystem::path file, std::vector<std::string> orde
     : file_(std::move(file)),
       order_(std::move(order)),
       claims_(std::make_unique<std::vector<Json>>(order_.size() + 1, Json::array())) {
-  require_writable(file_);                   // before it is read: a pipe would wait for one who writes
-  const Json earlier = json_in_file(file_);  // absent or damaged: nothing to keep
+  require_writable(file_);                   // checked first, because reading a pipe would wait for a writer
+  const Json earlier = json_in_file(file_);  // if absent or damaged, there is nothing to keep
   if (!earlier.is_array()) return;
   for (const auto& claim : earlier) {
     const auto name = claim.is_object() ? claim.find("figure") : claim.end();

@@ -27,7 +27,7 @@ class ClaimsFile {
  private:
   std::filesystem::path file_;
   std::vector<std::string> order_;
-  std::unique_ptr<std::vector<nlohmann::ordered_json>> claims_;  // a list per name; the last: other figures
+  std::unique_ptr<std::vector<nlohmann::ordered_json>> claims_;  // a list for each name; last: other figures
 };
 
 }  // namespace remote_touch

@@ -15,7 +15,7 @@ namespace remote_touch {
 
 namespace {
 
-// Their renderers join the catalog; results name them.
+// Adds the renderers of the plug-ins to the catalog. Results record the plug-ins and their hashes.
 void take_plugins(const std::vector<std::string>& files) {
   if (files.empty()) return;
   Catalog catalog = catalog_in_use();
@@ -28,7 +28,7 @@ void take_plugins(const std::vector<std::string>& files) {
   identify_program(std::move(program));
 }
 
-// An unknown command is named, which CLI11 leaves to guess.
+// Returns an error that names an unknown command, because CLI11's own error does not.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
   CLI::App* place = &app;
@@ -60,7 +60,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   int threads = -1;
   Subcommands commands{app, line, act, threads};
-  // The order of --help.
+  // The commands are added in the order of --help.
   add_commands_of_experiments(commands);
   add_commands_of_comparisons(commands);
   add_commands_of_machines(commands);

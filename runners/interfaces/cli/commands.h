@@ -25,9 +25,9 @@ struct CommandLine {
   std::atomic<bool>* rearm = nullptr;
 };
 
-// Prints a line on standard error for each --set that a later --set replaces (changed_settings.h): the result
-// is that of the last one, and the user may have meant another parameter. To be called at the end of a
-// command, so that an error stays one line.
+// Prints a line on standard error for each --set that a later --set replaces (changed_settings.h): only the
+// last one has an effect, and the user may have meant another parameter. Call it at the end of a command, so
+// that an error stays one line; command_live() calls it before its loop.
 void print_replaced(const std::vector<std::string>& overrides);
 
 struct ListRequest {};
@@ -51,7 +51,7 @@ struct FigureRequest {
   std::vector<std::string> names;
   std::string folder;
   int coarse = 1;      // uses every coarse-th value of a map's axes
-  bool quick = false;  // makes maps that take minutes coarse
+  bool quick = false;  // uses coarse maps where a map takes minutes
 };
 int command_figure(const CommandLine& line, const FigureRequest& request);
 
@@ -160,7 +160,7 @@ int command_hashes(const CommandLine& line, const HashesRequest& request);
 struct LiveRequest {
   std::string experiment;
   std::vector<std::string> overrides;
-  std::string device, depth = "sim:";  // device empty: browser: with view, else sim:
+  std::string device, depth = "sim:";  // empty device: browser: if view, else sim:
   std::string record, output, report;  // files to write; empty: none
   std::optional<double> duration_s;    // none: until a signal comes
   bool strict = false;

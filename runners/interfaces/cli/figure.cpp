@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// Each once.
+// Returns each requested figure once, the quickest first.
 std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
   for (const std::string& name : request.names) {
     const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
@@ -27,7 +27,8 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
   return quickest_first(chosen);
 }
 
-// A recording that is not there is no failure of the method: the claim says so and the rest goes on.
+// A missing recording is no failure of the method: the figure gets a claim that says so, and the others are
+// made.
 Figure made_or_not_run(const FigureEntry& entry, const FigureContext& context) {
   try {
     return entry.make(context);

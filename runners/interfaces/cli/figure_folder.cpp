@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A claim may be of any length: a buffer would cut off the end of its line.
+// No buffer of fixed size is used for the line, because a claim may have any length.
 std::string line_of(const Claim& claim) {
   const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
   const std::string paper =
@@ -29,7 +29,7 @@ std::string line_of(const Claim& claim) {
          claim.criterion + paper + ")\n";
 }
 
-// A share of a coarse map is not that of the whole.
+// Leaves claims about whole maps open, because a share of a coarse map is not that of the whole map.
 void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
   figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
                     std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +

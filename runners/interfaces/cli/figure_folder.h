@@ -1,4 +1,4 @@
-// A folder that figures are written into, and what is said of them.
+// A folder into which figures are written, and the texts that are printed about them.
 #pragma once
 
 #include <filesystem>
@@ -19,13 +19,13 @@ class FigureFolder {
   FigureFolder(const CommandLine& line, const std::string& folder, const std::vector<FigureRun>& runs);
   ~FigureFolder();
 
-  // The two calls of make_figures().
+  // make_figures() calls finish() and report().
   void finish(std::size_t run, const FigureContext& context, Figure figure);
   // Prints the lines of the figures in the order of the figures, whichever was made first.
   void report(const FigureProgress& progress, Progress& shown);
 
-  // A claim that failed comes before all else. What was not made is said on the standard error too; where
-  // that is all, nothing was done.
+  // Returns kCheckFailed if a claim failed. Otherwise returns kBadInput if no figure was made, and kDone if
+  // one was. Also prints on standard error which figures were not made, and why.
   int exit_code() const;
 
  private:

@@ -56,7 +56,7 @@ void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
     try {
       const std::vector<JobProgress> progress = pool.progress();
       report({progress, time_left(expected, progress, threads)});
-    } catch (...) {  // not before the jobs have ended, which would outlive what they work on
+    } catch (...) {  // rethrown when the jobs have ended, because they use local objects
       failures.back() = std::current_exception();
     }
   });

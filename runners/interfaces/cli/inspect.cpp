@@ -23,8 +23,8 @@ void print_dataset(const std::string& path, const std::string& extent, const std
   std::printf("  %-32s %12s  %-6s", path.c_str(), extent.c_str(), units.c_str());
 }
 
-// "867 x 3": rows and numbers in a row. An array of a sweep, which is over its axes and replicates, has their
-// lengths instead: "3 x 7 x 3".
+// "867 x 3": rows, and numbers in a row. An array of a sweep has one value for each cell and replicate. Its
+// text is the lengths of the axes and the number of replicates instead: "3 x 7 x 3".
 class Extents {
  public:
   explicit Extents(const Hdf5Content& content) {
@@ -52,7 +52,7 @@ class Extents {
   int dimensions_ = 0;
 };
 
-// Least, mean and greatest of the finite values, and how many are not.
+// Prints the least, the greatest and the mean of the finite values, and how many values are not finite.
 void print_numbers(const std::vector<double>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
   std::size_t finite = 0;
@@ -112,7 +112,7 @@ void print_values(const Column& column) {
     print_states(column, integers);
 }
 
-// A unit is printed where a number is.
+// The unit is printed only for columns whose values are printed as numbers.
 void print_datasets(const Hdf5Content& content) {
   const Extents extents(content);
   const std::string note_kinds = attribute(content.attributes, "note_kinds");
@@ -128,7 +128,7 @@ void print_datasets(const Hdf5Content& content) {
   }
 }
 
-// A text of several lines, as input files make it, stays in its column.
+// Indents the lines of a text, such as the hashes of several inputs, to the column of values.
 void print_attribute(const std::string& name, std::string value) {
   constexpr const char* kNextLine = "\n               ";
   for (std::size_t at = value.find('\n'); at != std::string::npos; at = value.find('\n', at + 1))

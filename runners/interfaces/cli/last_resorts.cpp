@@ -64,7 +64,8 @@ void take_if_free(int signal) {
   ::sigaction(signal, &now, nullptr);
 }
 
-// The library may use up the stack: it calls itself without end where its first call finds no memory.
+// The HDF5 library may use up the stack: it calls itself endlessly if its first call finds no memory. The
+// signal handlers therefore run on a stack of their own.
 void use_own_stack() {
   static char room[1 << 16];
   stack_t own{};

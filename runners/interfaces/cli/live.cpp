@@ -45,7 +45,7 @@ void report_line(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
 }
 
-// The files that a live run reads: those of the experiment, of replay:FILE and of pcd:FILE.
+// Returns the files that a live run reads: the files of the experiment, of replay:FILE and of pcd:FILE.
 std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment& experiment) {
   std::vector<std::string> files = with_parts(request.experiment, experiment.inputs());
   for (const std::string& address : {request.depth, request.device})
@@ -53,7 +53,8 @@ std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment&
   return files;
 }
 
-// A haptic device must be let go whatever ends the program, and a program that is halted holds on to it.
+// Makes SIGQUIT end the program as SIGINT does, and ignores SIGPIPE and SIGTSTP. A haptic device must be
+// released however the program ends, and a stopped program would not release it.
 void see_to_every_end() {
   struct sigaction interrupt {};
   sigaction(SIGINT, nullptr, &interrupt);
@@ -62,8 +63,9 @@ void see_to_every_end() {
   std::signal(SIGTSTP, SIG_IGN);
 }
 
-// A page that leads to the address. The address itself would be in the list of all processes, and whoever has
-// it can move the hand.
+// Writes a page that redirects to the address. Returns its file, or an empty name if it cannot be written.
+// The browser gets this file as its argument and not the address, because the arguments of all processes can
+// be read, and whoever has the address can move the hand.
 std::string page_that_leads_to(const std::string& address) {
   std::string file = (std::filesystem::temp_directory_path() / "remote-touch-XXXXXX.html").string();
   const int descriptor = mkstemps(file.data(), 5);  // only this user can read it
@@ -76,8 +78,8 @@ std::string page_that_leads_to(const std::string& address) {
 }
 
 // Opens the address in the browser of the desktop; Ctrl-C does not end that browser. Without a desktop
-// nothing is opened, and the user reads the address. Returns a file that is to be removed at the end, or an
-// empty name.
+// nothing is opened, and the user reads the printed address. Returns a file that is to be removed at the end,
+// or an empty name.
 std::string show_in_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
   std::string program = "xdg-open", place = page_that_leads_to(address);
@@ -101,8 +103,8 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
   return view;
 }
 
-// Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
-// The page only shows the run if the session has another device.
+// Prints the address, and opens it in a browser if there is a desktop. Returns the file that redirects to it,
+// or an empty name. If the session has a device other than browser:, the page only shows the run.
 std::string lead_to(const LiveView& view, const std::string& device) {
   std::printf("open this page to see the run%s: %s\n", device == "browser:" ? " and to move the hand" : "",
               view.address().c_str());
@@ -110,7 +112,7 @@ std::string lead_to(const LiveView& view, const std::string& device) {
   return show_in_browser(view.address());
 }
 
-// Removed with the run.
+// Removes the page when the run has ended.
 struct LeadingPage {
   std::string file;
   ~LeadingPage() {
@@ -118,7 +120,7 @@ struct LeadingPage {
   }
 };
 
-// While it runs: a file that cannot be written does not end it.
+// Reports while the run continues. A file that cannot be written does not end the run.
 void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
   report_line("so far\n" + text(report));
   if (!file.empty()) write_figure(file, live_figure(report), origin);
@@ -126,7 +128,8 @@ void report_now(const LiveReport& report, const std::string& file, const TextAtt
   report_line(error.what());
 }
 
-// Writes it, if it is wanted, and tells its digest, which that of the recording is.
+// Writes the trace if --output is given. If all ticks were kept, prints its digest, which a replay of the
+// recording has too.
 void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttributes& origin) {
   const std::string sum = request.output.empty()
                               ? digest(log.trace.columns())
@@ -138,7 +141,8 @@ void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttri
                 log.trace.length(), static_cast<long long>(log.ticks));
 }
 
-// A hand motion cannot be repeated: that one file cannot be written is no reason to leave out the others.
+// Calls write() and adds its failure to `lost`. The other files are still written, because the motion of a
+// hand cannot be repeated.
 void note_failure(std::string& lost, const std::function<void()>& write) {
   std::string why;
   try {
@@ -152,13 +156,14 @@ void note_failure(std::string& lost, const std::function<void()>& write) {
   lost += (lost.empty() ? "" : "; ") + why;
 }
 
-// The files of a run that was refused say why, and state no hashes of files that it may not have read.
+// Adds the reason to the attributes of a run that was refused. Removes the hashes of its inputs, because the
+// run may not have read files with these hashes.
 void add_refusal(TextAttributes& origin, const LiveResult& result) {
   std::erase_if(origin, [](const auto& attribute) { return attribute.first == "input_digests"; });
   origin.emplace_back("ended", result.ended);
 }
 
-// Printed before the loop begins.
+// Prints where recording and trace are kept until the end. Called before the loop begins.
 void print_files(const LiveRequest& request) {
   if (!request.record.empty())
     report_line("recording " + request.record + "; until the end it is " +
@@ -225,7 +230,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   note_failure(lost, [&] {
     if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
   });
-  // No InputError: after Ctrl-C the program takes that for the end of a wait, and does not print it.
+  // This is no InputError: after Ctrl-C the program would take that for the end of a wait, and not print it.
   if (lost.empty()) lost = result.refused;
   if (!lost.empty()) throw std::runtime_error(lost);
   if (request.strict) refuse_notes(result.report);

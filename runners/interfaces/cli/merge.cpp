@@ -43,7 +43,7 @@ void require_same_origin(const ShardFile& part, const ShardFile& first) {
   const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
   for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
     for (const auto& [name, value] : *attributes)
-      // The way to one file may be written differently.
+      // The path of the same file may be written differently.
       if (name != "input_digests" && name != "command" && name != kRecipe &&
           attribute(ours, name) != attribute(theirs, name))
         throw InputError(part.file, "has another " + name + " than " + first.file +
@@ -54,7 +54,7 @@ void require_same_origin(const ShardFile& part, const ShardFile& first) {
                                     first.file + ": " + input.before + "): expected shards of one sweep");
 }
 
-// Every shard once.
+// Throws InputError unless each shard is there exactly once, and all are of the same origin.
 void require_complete(const std::vector<ShardFile>& parts) {
   const ShardFile& first = parts.front();
   std::map<int, std::string> seen;
@@ -92,7 +92,8 @@ void add(const ShardFile& part, SweepResult& whole) {
 
 namespace {
 
-// A map that was refined, or gone on with, holds more than its shards: it is not replaced.
+// Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
+// continued. Such a file is not replaced.
 void require_nothing_more(const std::string& file, const SweepResult& whole) {
   std::error_code unreachable;
   if (!std::filesystem::is_regular_file(file, unreachable)) return;

@@ -34,7 +34,7 @@ std::string other_kind(const std::string& name, const std::string& command) {
   if (is_of(command, name) || std::filesystem::exists(name, unreachable)) return {};
   if (is_of("run", name)) return advice("an experiment", "run", name, "FILE");
   if (is_of("sweep", name)) return advice("a sweep", "sweep", name, "FILE");
-  // Figures have plain numbers, experiments and sweeps their files' names: fig4.12.
+  // The name of a figure is its number. Experiments and sweeps are named like their files: fig4.12.
   for (const std::string& number : {name, name.starts_with("fig") ? name.substr(3) : std::string()})
     if (is_of("figure", number)) return advice("a figure", "figure", number, "FOLDER");
   return {};

@@ -5,8 +5,8 @@
 
 namespace remote_touch {
 
-// "is a sweep: expected `remote-touch sweep NAME -o FILE`" if the name is not a file and is a stored name
-// that this command does not take; empty otherwise. command: run, sweep or figure.
+// Returns "is a sweep: expected `remote-touch sweep NAME -o FILE`" if the name is not a file, and is a stored
+// name that this command does not accept. Returns an empty text otherwise. command: run, sweep or figure.
 std::string other_kind(const std::string& name, const std::string& command);
 
 }  // namespace remote_touch

@@ -46,7 +46,7 @@ void require_distinct(const std::vector<OutputOption>& outputs);
 
 inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
-inline constexpr const char* kConfiguration = "{\"title\":";  // as written, in one line
+inline constexpr const char* kConfiguration = "{\"title\":";  // opening of JSON that is in one line
 inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
 inline constexpr const char* kPage = "<!DOCTYPE html>\n<!-- remote-touch view -->";
 

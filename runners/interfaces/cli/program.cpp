@@ -41,13 +41,13 @@ void request_rearm(int) {
   rearm_requested = true;
 }
 
-// REMOTE_TOUCH_ISA: the instruction set of the kernels, in place of the fastest one.
+// REMOTE_TOUCH_ISA: the instruction set of the kernels, instead of the fastest one.
 const Kernels& chosen_kernels() {
   const char* forced = std::getenv("REMOTE_TOUCH_ISA");
   return choose_kernels(forced != nullptr ? forced : "", cache_folder());
 }
 
-// REMOTE_TOUCH_DATA: where recordings and meshes with relative names are, if not here.
+// REMOTE_TOUCH_DATA: the folder of recordings and meshes with relative names that do not exist here.
 void take_data_folder() {
   if (const char* folder = std::getenv("REMOTE_TOUCH_DATA")) set_data_folder(folder);
 }
@@ -56,7 +56,7 @@ void complain(const std::string& problem) {
   std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(problem).c_str());
 }
 
-// Before the constants of all files are made, which may find no memory.
+// Runs before the constants of all files are initialised, because that may find no memory.
 [[gnu::constructor(101)]] void take_last_resorts() {
   install_last_resorts(kBadInput);
 }
@@ -96,7 +96,8 @@ int flushed(int code) {
 
 // make_catalog may throw.
 int run(const std::function<Catalog()>& make_catalog, int argc, char** argv) {
-  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
+  // Sweeps build and destroy thousands of scenes. Without these settings, a tenth of the time is spent on
+  // returning memory to the system.
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   const CommandLine line = with_signals();
@@ -107,7 +108,7 @@ int run(const std::function<Catalog()>& make_catalog, int argc, char** argv) {
   } catch (const Interrupted&) {
     return interrupted();
   } catch (const InputError& error) {
-    if (stop_requested) return interrupted();  // it ended the wait for a file
+    if (stop_requested) return interrupted();  // the signal ended the wait for a file
     complain(error.what());
   } catch (const std::bad_alloc&) {
     complain("out of memory");

@@ -7,22 +7,22 @@
 
 namespace remote_touch {
 
-// "25 %, 2.5 %/s, 30 s left"; without the time left while the fraction is 0.
+// Returns "25 %, 2.5 %/s, 30 s left"; only "25 %" if the fraction or the time is 0.
 std::string progress_text(double fraction, double elapsed_s);
 // The same for counted things. `earlier` of them were done before this program began: "30 of 100 runs, 2/s,
 // 35 s left".
 std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
                           double elapsed_s);
 
-// A line that is overwritten on a terminal, and a line every ten seconds elsewhere. Not for use from several
-// threads at once.
+// Overwrites one line on a terminal, and prints a line every ten seconds elsewhere. Only one thread at a time
+// may use it.
 class Progress {
  public:
   Progress(std::string what, bool quiet);
   ~Progress();
   void update(double fraction);  // 0 to 1
   void update(const std::string& text);
-  void clear();  // before something else is printed
+  void clear();  // call it before something else is printed
   void update(std::size_t done, std::size_t total, std::size_t earlier, const char* things);
 
  private:

@@ -17,7 +17,7 @@ namespace remote_touch {
 
 namespace {
 
-// Prints each measure beside the stored one. True when they agree bit for bit, or nothing is stored.
+// Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
   const bool stored = result.state[run] == RunState::done;
   bool same = true;
@@ -33,10 +33,11 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
   return same;
 }
 
-// Why the values may be others: who made the sweep, and which of the run's recordings have changed since.
+// Prints possible reasons for different values: the commit that made the sweep, and the recordings of this
+// run that have changed since.
 void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
   std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
-  std::vector<RecordingPart> parts;  // all that the sweep reads of them: it has one hash for that
+  std::vector<RecordingPart> parts;  // all parts that the sweep reads, because one hash covers them
   for (const RecordingPart& part : sweep.inputs())
     for (const RecordingPart& mine : experiment.inputs())
       if (part.path == mine.path) parts.push_back(part);

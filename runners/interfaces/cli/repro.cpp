@@ -34,7 +34,7 @@ void comment(const std::string& text) {
   std::printf("%s\n", lines.c_str());
 }
 
-// A stored result, and the program's own build to hold against it.
+// A stored result, and the means to make it again with this program.
 class Repro {
  public:
   Repro(const CommandLine& line, const std::string& file) : Repro(line, Hdf5Reader(file)) {}
@@ -42,7 +42,7 @@ class Repro {
   std::string of(const char* name) const { return attribute(attributes_, name); }
   std::string config() const { return stored_configuration(of("config")); }
 
-  // Comments about the build, then what to type.
+  // Prints comments about the build, and then the commands to type.
   void print() const {
     comment(file_ + ": version " + of("version") + ", commit " + of("git_commit") +
             (of("git_dirty") == "yes" ? " with local changes, " : ", ") + of("compiler") + ", " +
@@ -113,7 +113,7 @@ class Repro {
                               [&] { return Sweep::from_json(config(), file_ + " config"); });
   }
 
-  // A replay's command is that of its sweep, and then its own.
+  // A replay needs two commands: that of its sweep, and then its own.
   void print_command() const {
     auto all = commands(*recipe_);
     all[0].insert(all[0].end(), {"-o", all.size() > 1 ? "map.h5" : "again.h5"});

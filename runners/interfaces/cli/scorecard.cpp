@@ -27,7 +27,7 @@ std::string normalised(const ScorecardRequest& request) {
   return command + " --seeds " + std::to_string(request.seeds);
 }
 
-// Returns the digest.
+// Writes the HDF5 file and the JSON file of the scorecard. Returns the digest.
 std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& plan,
                           const ScorecardReport& report) {
   const std::filesystem::path folder = request.folder;
@@ -38,7 +38,8 @@ std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& 
   return sum;
 }
 
-// A method or a scene may be a file in the folder; none that is written there.
+// Throws InputError if a method or a scene is one of the files that are written to the folder. It may be any
+// other file there.
 void require_inputs_kept(const ScorecardRequest& request) {
   for (const auto* names : {&request.methods, &request.scenes})
     for (const std::string& name : *names)

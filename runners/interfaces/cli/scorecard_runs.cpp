@@ -16,7 +16,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes: there may be hundreds
+constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes of one page; there may be hundreds of pages
 
 struct NoteOfRuns {
   std::string kind, first;  // first: a run that has it, as arguments of `replay`

@@ -16,7 +16,7 @@ namespace remote_touch {
 
 namespace {
 
-// The runs of a plan without the audit, in its folder, and their scores.
+// Does the runs of the plan, without the audit, in its folder. Returns their scores.
 Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
   std::vector<BenchmarkSweep> sweeps;
   for (const ScenePlan& one : plan.scenes) sweeps.insert(sweeps.end(), one.sweeps.begin(), one.sweeps.end());
@@ -45,7 +45,7 @@ int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest
   require_folder(request.folder);
   const BenchmarkPlan plan =
       plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
-  std::vector<std::string> files = request.methods;  // names, or files
+  std::vector<std::string> files = request.methods;  // each is a name or a file
   files.insert(files.end(), request.scenes.begin(), request.scenes.end());
   for (const BenchmarkSweep& sweep : plan.sweeps())
     require_distinct({{"--output", sweep.file.string()}, {"--stored", request.file}});

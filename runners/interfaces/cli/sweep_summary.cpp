@@ -15,8 +15,8 @@ namespace remote_touch {
 
 namespace {
 
-// "mean 0.25  0 .. 1 1, of 4 of 5 runs": a run whose value is not finite is left out, and then the text says
-// of how many runs the mean is. An unknown outcome is neither 0 nor 1.
+// "mean 0.25  0 .. 1 1, of 4 of 5 runs". Runs whose value is not finite are left out, because an unknown
+// outcome is neither 0 nor 1. The text then states the number of runs in the mean.
 std::string summary_of(const std::vector<double>& values, const std::vector<std::size_t>& done,
                        const std::string& units) {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;

@@ -25,7 +25,8 @@ std::string text(const CheckResult& result) {
   return all + (result.remark.empty() ? "" : "; " + result.remark);
 }
 
-// One line a check over all scenes: the worst of each quantity that has a tolerance or is off.
+// Prints one line for a check over all scenes. Below it prints the worst deviation of each quantity that has
+// a tolerance or deviates.
 void print_check(const CheckName& check, const std::vector<CheckResult>& results) {
   int scenes = 0, failed = 0, ticks = 0;
   std::map<std::string, Deviation> worst;

@@ -114,7 +114,8 @@ bool describe_scene(const std::string& name, std::FILE* out) {
   return false;
 }
 
-// A built-in tool or a mesh file in metres: what was made of it, as the renderers do by default.
+// Prints what the renderers make of a built-in tool or a mesh file in metres by default. Returns false if the
+// name is neither.
 bool describe_tool(const std::string& name, std::FILE* out) {
   const GeneratedTool* built_in = find_generated_tool(name);
   if (built_in == nullptr && !is_mesh_file(name)) return false;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxRenderers = 1000, kMaxSettings = 1000;
 
-// The loader's own text begins with the file's name, which the error has already.
+// Removes the file's name from the start of the loader's text, because the error already has it.
 std::string loader_problem(const std::string& file) {
   const char* said = ::dlerror();
   std::string text = said ? said : "cannot be loaded";

@@ -152,7 +152,7 @@ class PluginFactory final : public RendererFactory {
     for (std::size_t i = 0; i < functions.setting_count; ++i) values_.push_back(functions.settings[i].value);
   }
   Parameters settings() override { return parameters_of(functions_, values_); }
-  // The library itself checks values together when it makes a renderer of them.
+  // The library checks combinations of values when it makes a renderer, so one is made and destroyed here.
   std::string validate() const override {
     Problem problem;
     void* made = guarded(functions_, "create", [&] {

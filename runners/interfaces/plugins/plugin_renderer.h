@@ -1,4 +1,4 @@
-// A renderer of a shared library as one of this program.
+// Adapts a renderer of a shared library to the Renderer interface.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace remote_touch {
 
-// All methods throw InputError if the library throws. prepare(), on_frame() and step() also throw it if the
-// library reports a problem.
+// All methods except the destructor throw InputError if the library throws. prepare(), on_frame() and step()
+// also throw it if the library reports a problem.
 class PluginRenderer final : public Renderer {
  public:
   // functions must outlive this object. Throws InputError if the library makes no renderer of these values.
@@ -35,7 +35,7 @@ class PluginRenderer final : public Renderer {
   PointCloud buffer_;  // the points of a frame that is not stored as a cloud
   void* renderer_ = nullptr;
   FrameOrder order_;
-  std::shared_ptr<const FramePreparation> prepared_;  // newest frame's: the library may point into it
+  std::shared_ptr<const FramePreparation> prepared_;  // newest frame's result; the library may point into it
 };
 
 using RendererFactory = Factory<Renderer, double, const Kernels&>;

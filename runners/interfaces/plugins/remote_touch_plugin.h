@@ -3,12 +3,13 @@
  *   remote-touch --plugin ./mine.so run fig4.12 --set renderer.name=mine -o mine.h5
  *
  * The library has one function, remote_touch_plugin(), which describes its renderers. This header is all that
- * it needs; it links nothing of remote-touch. Metres, newtons, seconds, world frame; quaternions are w, x, y,
- * z.
+ * it needs; it links nothing of remote-touch. Units are metres, newtons and seconds. Vectors are in the world
+ * frame. Quaternions are w, x, y, z.
  *
- * What every renderer keeps, and runners/evaluation/contract tests: no force in free space; the same calls
- * give the same bits; step() takes no lock and allocates nothing. Several renderers may exist at once, each
- * used by one thread at a time: keep no global state. No function may throw through this interface.
+ * Every renderer must obey these rules, which runners/evaluation/contract tests: no force in free space; the
+ * same calls give the same bits; step() takes no lock and allocates nothing. Several renderers may exist at
+ * once, so keep no global state. One thread at a time uses a renderer, except for prepare(). No function may
+ * throw through this interface.
  */
 #ifndef REMOTE_TOUCH_PLUGIN_H
 #define REMOTE_TOUCH_PLUGIN_H
@@ -20,8 +21,8 @@
 extern "C" {
 #endif
 
-/* Of this interface. It changes when a structure or a meaning does; libraries of another version are refused.
- */
+/* The version of this interface. It changes when a structure or a meaning does. Libraries of another version
+ * are refused. */
 #define REMOTE_TOUCH_PLUGIN_VERSION 1
 
 /* A number that experiments, sweeps and --set can change, with its range, ends included. */
@@ -35,16 +36,16 @@ typedef struct {
 /* One frame. The arrays have `points` entries each and are valid during the call only. A point that was not
  * measured is NaN in x, y and z. */
 typedef struct {
-  int32_t index;   /* grows; frames can be lost */
-  int32_t columns; /* of an organised frame, stored row by row; 0: unorganised */
+  int32_t index;   /* increases; there are gaps where frames were lost */
+  int32_t columns; /* of an organised frame, which is stored row by row; 0: unorganised */
   double captured_s, arrives_s;
   size_t points;
   const double *x, *y, *z;
   const double *nx, *ny, *nz;      /* unit normals towards the sensor; null: none */
-  const double* fixture_radius_m;  /* of forbidden regions; null: none */
-  const double* stiffness_N_per_m; /* of regions, NaN: the renderer's own; null: none */
-  const uint32_t* colour;          /* 0xRRGGBB, 0xFF000000: not known; null: none */
-  void* prepared;                  /* in on_frame: what prepare returned; null: it was not called */
+  const double* fixture_radius_m;  /* radii of forbidden regions; null: none */
+  const double* stiffness_N_per_m; /* stiffness of the regions; NaN: the renderer's own; null: none */
+  const uint32_t* colour;          /* 0xRRGGBB; 0xFF000000: not known; null: none */
+  void* prepared;                  /* in on_frame: the result of prepare; null: it was not called */
 } remote_touch_frame;
 
 /* The device: the haptic interface point (HIP), the orientation of its handle, its buttons, one bit each. */
@@ -63,36 +64,36 @@ enum {
   REMOTE_TOUCH_DEVICE_NOT_FINITE = 4
 };
 
-/* What a tick gives. It comes with the proxy at the HIP and without force, state and status 0, slave_m NaN.
- */
+/* The output of one tick. step() receives it with these values: proxy_m is the HIP, slave_m is NaN,
+ * nearest_distance_m is infinite, tool_orientation is that of the device, and all others are 0. */
 typedef struct {
   double proxy_m[3];
   double force_N[3];            /* on the hand */
   double slave_m[3];            /* commanded position of a slave robot; NaN: none yet */
-  double normal[3];             /* of the surface, out of it; zero: not known */
+  double normal[3];             /* of the surface, pointing out of it; zero: not known */
   double frame_correction_m[3]; /* how far new frames moved the proxy since the last tick */
   double surface_velocity_m_per_s;
-  double nearest_distance_m; /* of the proxy to the nearest point; infinite: nothing near */
+  double nearest_distance_m; /* from the proxy to the nearest point; infinite: nothing near */
   int32_t state, status;
   int32_t steps, converged, contact_count;
-  /* Of a renderer with six degrees of freedom; proxy_m is then the tool's centre of mass. */
+  /* Only for a renderer with six degrees of freedom; proxy_m is then the tool's centre of mass. */
   double tool_orientation[4];
   double torque_Nm[3]; /* on the hand, about the HIP */
   int32_t active_constraints, contact_clusters, detections, budget_exhausted;
   double tool_penetration_m;
 } remote_touch_output;
 
-/* What constrains the proxy: tests and comparisons depend on it. */
+/* The things that constrain the proxy. Tests and comparisons depend on this choice. */
 enum {
   REMOTE_TOUCH_POINTS = 0,  /* all points of a cloud */
   REMOTE_TOUCH_REGIONS = 1, /* only forbidden regions around points */
   REMOTE_TOUCH_MESH = 2,    /* triangles between neighbours in an organised frame */
   REMOTE_TOUCH_SHEET = 3,   /* a surface fitted along the world's axes */
-  REMOTE_TOUCH_NOTHING = 4, /* points only push: a HIP pressed deeper passes them */
+  REMOTE_TOUCH_NOTHING = 4, /* points only push: a HIP that is pressed deeper passes them */
   REMOTE_TOUCH_ORIENTED = 5 /* points, and the direction to the sensor */
 };
 
-/* One renderer. `values` are those of its settings, in their order. */
+/* One renderer. `values`: the values of its settings, in the order of `settings`. */
 typedef struct {
   const char* name;           /* lower case letters, digits, - and _ */
   const char* summary;        /* one line */
@@ -100,37 +101,40 @@ typedef struct {
   int32_t contact_model;      /* REMOTE_TOUCH_POINTS ... */
   size_t setting_count;
   const remote_touch_setting* settings;
-  /* Upper bound of how fast |force| grows with the displacement of the HIP: the live loop's safety depends on
-   * it. */
+  /* Returns an upper bound of the growth of |force| with the displacement of the HIP. The safety of the live
+   * loop depends on it. */
   double (*max_stiffness_N_per_m)(const double* values);
-  /* Distance of proxy_m from the surface that it touches; null or NaN: not known, then no contact measures.
-   */
+  /* Returns the distance of proxy_m from the surface that it touches. May be null or return NaN if it is not
+   * known; there are no contact measures then. */
   double (*rest_distance_m)(const double* values);
-  /* Null if values make no sense together, or there is no memory; then `problem` (of `size` bytes) says why
-   * in one line, for values as "reach_m = 2: expected below 1". haptic_rate_hz: how often step is called. It
-   * is also called to check values, and what it made destroyed at once. */
+  /* Makes a renderer. Returns null if the values make no sense together, or if there is no memory. It then
+   * writes the reason into `problem` (of `size` bytes), in one line. A reason about values is written like
+   * "reach_m = 2: expected below 1". haptic_rate_hz: calls of step per second. create is also called to check
+   * values; that renderer is destroyed at once. */
   void* (*create)(const double* values, double haptic_rate_hz, char* problem, size_t size);
   void (*destroy)(void* renderer);
-  /* Frames will have up to so many points; may be null. */
+  /* Announces that frames will have up to this number of points; may be null. */
   void (*reserve)(void* renderer, size_t points);
-  /* The slow part of taking a frame, so that on_frame is short; may be null, with release. It may run in
-   * another thread while step() runs, so it reads nothing that step() or set_values() write. Returns what
-   * on_frame gets as `prepared`, which stays until a later frame was taken; release then frees it. Null: a
-   * failure, with `problem`. */
+  /* Does the slow part of the work on a frame, so that on_frame is short. prepare and release may both be
+   * null. prepare may run in another thread while step() runs, so it must read nothing that step() or
+   * set_values() write. on_frame receives its result as `prepared`. The result exists at least until on_frame
+   * has received a later frame; release then frees it. If prepare fails, it returns null and writes the
+   * reason into `problem`. */
   void* (*prepare)(const void* renderer, const remote_touch_frame* frame, char* problem, size_t size);
   void (*release)(void* prepared);
-  /* A new frame, later than all before: the program drops frames that come too late, and reports them in the
-   * status. Returns 0; anything else ends the run with `problem`. */
+  /* Receives a new frame, captured later than all before. The program drops other frames and reports this in
+   * the status. Returns 0; any other value ends the run with `problem`. */
   int32_t (*on_frame)(void* renderer, const remote_touch_frame* frame, char* problem, size_t size);
-  /* One tick of the haptic loop. Returns as on_frame does. */
+  /* Makes one tick of the haptic loop. Returns the same as on_frame. */
   int32_t (*step)(void* renderer, const remote_touch_device* device, double time_s,
                   remote_touch_output* output, char* problem, size_t size);
-  /* Live settings have changed, between two steps; null if none is live. */
+  /* Receives the values after live settings have changed, between two steps; null if none is live. */
   void (*set_values)(void* renderer, const double* values);
 } remote_touch_renderer;
 
-/* The function of the library: the renderer of that number, from 0; null after the last. `version` is that of
- * the program; return null for one that you do not know. `size` is sizeof(remote_touch_renderer) there. */
+/* The function of the library. Returns the renderer of this number, from 0, and null after the last one. It
+ * must also return null for a `version` that it does not know; that is the program's version of this
+ * interface. `size` is sizeof(remote_touch_renderer) in the program. */
 typedef const remote_touch_renderer* (*remote_touch_plugin_function)(uint32_t version, size_t size,
                                                                      size_t number);
 #define REMOTE_TOUCH_PLUGIN_FUNCTION "remote_touch_plugin"

@@ -21,7 +21,7 @@ std::string shape_text(const py::array& array) {
   return text + ")";
 }
 
-// Numbers of any type that NumPy converts without loss of meaning; no texts, no objects, no complex ones.
+// Converts numbers of any integer or floating type. Refuses truth values, texts, objects and complex numbers.
 Doubles doubles_of(const py::handle& value, const Subject& subject, const char* expected) {
   const py::array any = py::array::ensure(value);
   if (!any) {
@@ -114,7 +114,7 @@ Eigen::Quaterniond quaternion_of(const py::handle& value, const Subject& subject
   const double off = std::abs(q.norm() - 1);
   if (!(off <= 1e-6))
     throw InputError(subject(), "its length is not 1: expected a unit quaternion w, x, y, z");
-  return off > 1e-12 ? q.normalized() : q;  // one that comes from here keeps its bits
+  return off > 1e-12 ? q.normalized() : q;  // a quaternion that was made here keeps its bits
 }
 
 py::array_t<double> array_of(const Vec3& vector) {

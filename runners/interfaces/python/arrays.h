@@ -23,8 +23,8 @@ pybind11::array owning_array(std::vector<Number> values, std::vector<pybind11::s
   return pybind11::array_t<Number>(std::move(shape), kept->data(), owner);
 }
 
-// (name, units, long_name, values, value_names): values is an array of the shape, or of (rows) or (rows,
-// width) if the shape is empty; a list of texts for a column of texts.
+// Returns the tuple (name, units, long_name, values, value_names). `values` is an array of this shape; if the
+// shape is empty, its shape is (rows) or (rows, width). A column of texts has a list of texts instead.
 pybind11::tuple to_python(Column column, std::vector<pybind11::ssize_t> shape = {});
 pybind11::list to_python(std::vector<Column> columns);
 pybind11::list to_python(const TextAttributes& attributes);  // list of (name, value)
@@ -35,21 +35,21 @@ Column column_of(const pybind11::handle& tuple);
 // Returns the subject of an error; called only if there is one: "renderer mine: Mine.step: force_N".
 using Subject = std::function<std::string()>;
 
-// Three finite numbers, or any with any_number. Throws InputError.
+// Returns three finite numbers; with Numbers::any they may also be infinite or NaN. Throws InputError.
 enum class Numbers { finite, any };
 Vec3 vector_of(const pybind11::handle& value, const Subject& subject, Numbers allowed = Numbers::finite);
-// w, x, y, z; normalised. Throws InputError unless its length is 1 within 1e-6.
+// Returns the quaternion w, x, y, z, normalised. Throws InputError unless its length is 1 within 1e-6.
 Eigen::Quaterniond quaternion_of(const pybind11::handle& value, const Subject& subject);
 pybind11::array_t<double> array_of(const Vec3& vector);
 pybind11::array_t<double> array_of(const Eigen::Quaterniond& quaternion);
 
-// The columns of an array of n rows of three finite numbers; a row of three NaN is a point that is missing.
-// Throws InputError.
+// The columns of an array of n rows of three finite numbers. A row of three NaN is a missing point.
+// points_of() throws InputError for any other array.
 struct PythonPoints {
   std::vector<double> x, y, z;
 };
 PythonPoints points_of(const pybind11::handle& array, const Subject& subject);
-// n numbers of 0 or more; where may_be_missing, NaN too. Throws InputError.
+// Returns n finite numbers of 0 or more; if may_be_missing, NaN is allowed too. Throws InputError.
 std::vector<double> lengths_of(const pybind11::handle& array, std::size_t n, bool may_be_missing,
                                const Subject& subject);
 std::vector<std::uint32_t> colours_of(const pybind11::handle& array, std::size_t n, const Subject& subject);

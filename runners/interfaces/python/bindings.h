@@ -1,5 +1,5 @@
-// The parts of the module remote_touch._core. What users call is in the Python files of remote_touch/, which
-// check and convert arguments and make data sets of the columns.
+// The parts of the module remote_touch._core. Users call the Python files of remote_touch/ instead, which
+// check and convert the arguments and make data sets of the columns.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,7 +16,7 @@ void bind_sweeps(pybind11::module_& module);
 void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
 
-// Returns the text that print() writes to its file of C.
+// Returns the text that print() writes to the C file that it is given.
 std::string printed(const std::function<void(std::FILE*)>& print);
 
 }  // namespace remote_touch

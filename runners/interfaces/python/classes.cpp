@@ -1,4 +1,4 @@
-// Classes of Python in the catalog of this process.
+// Adds Python classes to the catalog of this process.
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
                         model, std::move(needs)));
 }
 
-// A class of the same name takes the place of an earlier one: a cell of a notebook is run again.
+// A class replaces an earlier one of the same name, because a cell of a notebook may be run again.
 void register_class(const std::string& kind, const std::string& name, const std::string& summary,
                     const py::object& type, const py::list& settings) {
   require_no_long_work("register");

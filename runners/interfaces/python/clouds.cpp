@@ -21,7 +21,8 @@ namespace py = pybind11;
 
 namespace {
 
-// A view of a column of the cloud that keeps the cloud, read only; None where the cloud has no such column.
+// Returns a read-only array that shares the memory of a column of the cloud and keeps the cloud alive.
+// Returns None if the column is empty.
 template <class Number>
 py::object view(const std::vector<Number>& column, const py::object& owner) {
   if (column.empty()) return py::none();
@@ -43,7 +44,8 @@ py::array_t<double> rows_of(const std::vector<double>& x, const std::vector<doub
   return rows;
 }
 
-// The method takes their length for 1 wherever it multiplies by them.
+// Throws InputError for a normal whose length is not 1, because the method multiplies by normals as unit
+// vectors.
 void require_unit_length(const PythonPoints& normals, const std::string& subject) {
   for (std::size_t i = 0; i < normals.x.size(); ++i) {
     const double length = std::hypot(normals.x[i], normals.y[i], normals.z[i]);

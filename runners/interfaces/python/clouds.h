@@ -33,7 +33,7 @@ struct PythonFrame : PythonCloud {
   double captured_s, arrives_s;
 };
 
-// An array of points, or a Cloud. Throws InputError.
+// Converts an array of points, or a Cloud. Throws InputError, also for points that are far from the origin.
 PointCloud cloud_of(const pybind11::handle& value, const Subject& subject);
 
 // The output that step() returns. Its proxy is the HIP unless it was given.
@@ -44,8 +44,8 @@ struct PythonOutput {
   std::optional<Eigen::Quaterniond> tool_orientation = {};
 };
 
-// A scenario of the catalog, for classes of Python. The scene owns it, or it is lent to a trajectory and
-// taken back.
+// A scenario of the catalog, for classes of Python. This object owns the scenario, or it refers to one that
+// is lent to a trajectory until take_back().
 class PythonScene {
  public:
   PythonScene(std::unique_ptr<const Scenario> scenario) : own_(std::move(scenario)), scenario_(own_.get()) {}

@@ -1,4 +1,4 @@
-// A run, and a run of a sweep again.
+// Runs an experiment, or repeats one run of a sweep.
 #include <pybind11/stl.h>
 
 #include <nlohmann/json.hpp>
@@ -66,7 +66,7 @@ TextAttributes trace_attributes(const TextAttributes& origin, const std::string&
 }
 
 struct RunRequest {
-  std::string subject;              // a name or a file; of a text its label
+  std::string subject;              // a name or a file; if `text` is given, its label
   std::optional<std::string> text;  // JSON
   Texts overrides;
   std::string output;  // empty: no file
@@ -127,7 +127,7 @@ StoredSweep stored_sweep(const std::string& file) {
   return read_sweep(file);
 }
 
-// A sweep that was run in this process is known by its attributes alone.
+// Returns a sweep that was run in this process. Only its attributes are known, so none of its runs is stored.
 StoredSweep sweep_of(const TextAttributes& attributes) {
   StoredSweep stored;
   stored.attributes = provenance_of(attributes);

@@ -29,7 +29,7 @@ const Kernels*& kernels_in_use() {
   return kernels;
 }
 
-// The end of the work, as the waiting thread sees it.
+// The end of the work, for the thread that waits for it.
 class Ending {
  public:
   void tell(std::exception_ptr failure) {
@@ -66,7 +66,7 @@ void work_in_thread(int threads, const std::function<void()>& work, Ending& endi
   ending.tell(std::move(failure));
 }
 
-// Null, or the exception of a signal's handler or of the report.
+// Returns null, or the exception that a signal's handler or the report has raised.
 std::shared_ptr<py::error_already_set> look_for_signals(const py::object& report, double fraction) {
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

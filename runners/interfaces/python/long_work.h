@@ -14,27 +14,27 @@ namespace remote_touch {
 struct LongWork {
   const Kernels& kernels;
   const std::atomic<bool>& stop;         // set by Ctrl-C: the work ends with Interrupted
-  std::function<void(double)> progress;  // takes the fraction that is done; from any thread
+  std::function<void(double)> progress;  // receives the fraction that is done; any thread may call it
 };
 
-// Does the work in a thread of its own, with this number of OpenMP threads (0: OpenMP decides), while this
-// thread waits without the lock and checks for signals. report: a callable that receives the fraction about
-// 20 times a second, or None. Throws the exception of the work; error_already_set if a signal or the report
-// raised an exception.
+// Does the work in a thread of its own, with this number of OpenMP threads (0: OpenMP decides). Meanwhile
+// this thread waits without the lock and checks for signals. report: None, or a callable that receives the
+// fraction about 20 times a second. Throws the exception of the work, or error_already_set if a signal or the
+// report raised an exception.
 void do_long_work(const pybind11::object& report, int threads,
                   const std::function<void(const LongWork&)>& work);
 
-// Throws InputError while such work goes on: the catalog must not change then.
+// Throws InputError while such work is running, because the catalog must not change then.
 void require_no_long_work(const char* subject);
 
-// The kernels that all calls use: of the forced x86-64 level; empty: of the fastest one. Throws InputError if
-// the machine does not have that level.
+// Chooses the kernels that all calls use: those of the forced x86-64 level, or of the fastest one if `forced`
+// is empty. Throws InputError if the machine does not have that level.
 void choose_python_kernels(const std::string& forced);
 const Kernels& chosen_python_kernels();
 
 // The HDF5 library is not made for several threads: one call reads or writes at a time, and none while a
-// sweep or a scorecard is written. Throws InputError instead of waiting for that, because the caller may be a
-// class in Python that the sweep itself runs.
+// sweep or a scorecard is written. Throws InputError instead of waiting for the end of a sweep, because the
+// caller may be a class in Python that the sweep itself runs.
 class FileTurn {
  public:
   enum class For { a_moment, a_sweep };

@@ -18,8 +18,8 @@ PyObject* input_error_type = nullptr;  // belongs to the module, which is never 
 
 void bind_errors(py::module_& module) {
   input_error_type = py::register_exception<InputError>(module, "InputError", PyExc_ValueError).ptr();
-  // Called before the translator above. The exception that a class raised becomes the cause of the
-  // InputError.
+  // pybind11 calls this translator before the one above. The exception that a class raised becomes the cause
+  // of the InputError.
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));

@@ -15,7 +15,7 @@
 
 namespace remote_touch {
 
-// An exception that a class raised: one line, with the exception as its cause.
+// An exception that a Python class raised, as an InputError of one line. raised() is its cause.
 class PythonProblem : public InputError {
  public:
   PythonProblem(const std::string& subject, const std::string& problem, pybind11::error_already_set raised)
@@ -27,7 +27,7 @@ class PythonProblem : public InputError {
   std::shared_ptr<pybind11::error_already_set> raised_;
 };
 
-// Says what an exception was: "ValueError: the spring broke (mine.py, line 12)".
+// Returns the exception as text: "ValueError: the spring broke (mine.py, line 12)".
 std::string problem_text(const pybind11::error_already_set& raised);
 
 // Converts a number of Python. Throws error_already_set, with Python's own message, if it is none.
@@ -42,7 +42,8 @@ struct PythonSetting {
   std::variant<double, int, bool, std::string, Vec3> value;
 };
 
-// The values of one object. Copies have their own; parameters() points into them.
+// The values of one object. A copy has values of its own; parameters() returns pointers to those of this
+// object.
 class PythonSettings {
  public:
   // settings: objects with name, value, low, high, help, live and integer; see rt.Setting. Throws InputError.
@@ -62,8 +63,8 @@ class PythonClass {
   const std::string& name() const { return name_; }
   std::string subject(const char* method) const;  // "renderer mine: Mine.step"
 
-  // An object with its settings and whatever else is given as attributes; made: __init__ was called. pre: the
-  // lock.
+  // Returns a new object. Its attributes are the settings and the members of `given`. made: Made::yes also
+  // calls __init__. pre: this thread holds the interpreter's lock.
   enum class Made { settings_only, yes };
   pybind11::object object(const PythonSettings& settings, Made made, const pybind11::dict& given = {}) const;
 
@@ -87,7 +88,7 @@ class PythonClass {
   const pybind11::object& type_;  // never destroyed
 };
 
-// An object of Python in an object of C++ that is destroyed without the lock.
+// Holds an object of Python for an object of C++ that may be destroyed without the interpreter's lock.
 class HeldObject {
  public:
   HeldObject() = default;

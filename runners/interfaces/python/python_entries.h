@@ -33,7 +33,8 @@ class PythonFactory : public Factory<Seam, Arguments...> {
  public:
   explicit PythonFactory(const PythonEntry& entry) : type_(entry.type), settings_(entry.settings) {}
   Parameters settings() override { return settings_.parameters(); }
-  // Returns the problem that the class reports of its settings; empty if it returns None: they are valid.
+  // Returns the problem that validate() of the class reports; empty if it returns None (the settings are
+  // valid).
   std::string validate() const override {
     return type_->call("validate", [&]() -> std::string {
       const pybind11::object said =

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxFrames = 1 << 28;  // a frame's number is part of the noise key
 
-// An attribute, or what a method of that name returns.
+// Returns the attribute of that name; if it is a method, returns the result of a call.
 py::object value_of(const py::object& object, const char* name) {
   py::object value = object.attr(name);
   return PyCallable_Check(value.ptr()) != 0 ? value() : value;

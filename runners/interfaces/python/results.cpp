@@ -1,4 +1,4 @@
-// Stored results, comparisons of two, and what has a name.
+// Reads stored results, compares two of them, and describes everything that has a name.
 #include <pybind11/stl.h>
 
 #include <cstdio>
@@ -73,7 +73,7 @@ Tolerances tolerances_of(const py::dict& given) {
   return all;
 }
 
-// The outcome's exit code, what the command prints, and its report as JSON.
+// Returns the exit code of the outcome, the text that the command prints, and its report as JSON.
 py::tuple as_tuple(const ResultComparison& comparison) {
   return py::make_tuple(static_cast<int>(comparison.outcome),
                         printed([&](std::FILE* out) { print_comparison(comparison, out); }),
@@ -93,7 +93,7 @@ py::tuple compare_files(const std::string& baseline, const std::string& candidat
   return as_tuple(comparison);
 }
 
-// Two traces in memory: lists of columns and of attributes of each.
+// Compares two traces in memory, each given as a list of columns and a list of attributes.
 py::tuple compare_traces_given(const py::list& baseline, const TextAttributes& baseline_attributes,
                                const py::list& candidate, const TextAttributes& candidate_attributes,
                                const py::dict& tolerances) {

@@ -1,4 +1,4 @@
-// A sweep, in memory or into a file.
+// Runs a sweep, in memory or into a file.
 #include <pybind11/stl.h>
 
 #include <atomic>

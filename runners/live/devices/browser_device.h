@@ -1,9 +1,10 @@
 // A hand without a haptic device: someone moves it with the mouse in a page of the viewer. Input only, six
 // axes, no motors.
 //
-// A page sends some sixty poses a second, and the loop needs one each millisecond: the hand follows the
-// newest pose as a critically damped spring would, with a lag of about 30 ms, and never faster than
-// kMaxSpeed.
+// A page sends about sixty poses a second, and the loop needs one in each tick. The position therefore
+// follows the newest pose as a critically damped spring would, and the orientation approaches it
+// exponentially. Both lag by about 30 ms, and neither is faster than kMaxSpeed_m_per_s and
+// kMaxTurning_rad_per_s.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +28,12 @@ using HandPoses = TripleBuffer<HandPose>;
 
 class BrowserDevice final : public HapticDevice {
  public:
-  static constexpr double kNaturalFrequency_rad_per_s = 60;  // of the spring
+  static constexpr double kNaturalFrequency_rad_per_s = 60;  // natural frequency of the spring
   static constexpr double kMaxSpeed_m_per_s = 1;  // a third of what the safety gate allows by default
   static constexpr double kMaxTurning_rad_per_s = 6;
 
-  // start: the state of the hand until the page moves it. placement: that of the loop.
+  // start: the state of the hand until the page moves it. placement: must describe the same pose and motion
+  // scale of the device as the placement of the loop.
   BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
                 double rate_hz, Clock& clock);
 
@@ -46,7 +48,7 @@ class BrowserDevice final : public HapticDevice {
   void follow(double interval_s);
   void turn(double interval_s);
 
-  // The largest number of steps in one read(). After a longer pause the hand continues from its last pose.
+  // The largest number of steps in one read(). The hand does not move in the earlier part of a longer pause.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::shared_ptr<HandPoses> poses_;

@@ -1,5 +1,4 @@
-// The clock of everything live: sensors, devices and the loop between them take their times from it and wait
-// on it.
+// The clock of a live run: sensors, devices and the loop between them read the time from it and wait on it.
 #pragma once
 
 #include <cmath>
@@ -13,7 +12,7 @@ class Clock {
  public:
   virtual ~Clock() = default;
   virtual std::int64_t now_ns() const noexcept = 0;
-  // Returns at that time or later; at once if it has passed.
+  // Returns at moment_ns or later. Returns at once if that time has passed.
   virtual void sleep_until_ns(std::int64_t moment_ns) noexcept = 0;
 
   double now_s() const noexcept { return 1e-9 * static_cast<double>(now_ns()); }

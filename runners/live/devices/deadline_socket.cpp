@@ -19,7 +19,7 @@ namespace remote_touch {
 
 namespace {
 
-// EAGAIN for everything that says to try again later.
+// Returns EAGAIN for every error that means that the call should be tried again later.
 int kind_of(int error) {
   return error == EWOULDBLOCK || error == EINTR ? EAGAIN : error;
 }
@@ -93,7 +93,8 @@ int DeadlineSocket::connect_within(const void* address, unsigned size, double de
   return error;
 }
 
-// Looks once also after the deadline: a thread that was not running meanwhile finds what has come.
+// Polls at least once, also after the deadline, so that a thread that did not run meanwhile still finds data
+// that have arrived.
 int DeadlineSocket::wait(short events, double deadline_s) noexcept {
   for (;;) {
     const double remaining_s = std::max(0.0, deadline_s - clock_->now_s());

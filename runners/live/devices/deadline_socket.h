@@ -1,5 +1,6 @@
-// A connected stream socket on which no call waits beyond a deadline, a time of its clock in seconds; what is
-// possible without waiting is done even after the deadline. The operating system does the waiting.
+// A connected stream socket. No call waits beyond its deadline, which is a time of the socket's clock in
+// seconds. A transfer that is possible without waiting is made even after the deadline. The operating system
+// does the waiting.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +22,12 @@ class DeadlineSocket {
   DeadlineSocket(DeadlineSocket&& other) noexcept;
   DeadlineSocket& operator=(DeadlineSocket&& other) noexcept;
 
-  // Returns why it could not connect; empty on success. Resolving a name may take longer than the deadline.
-  // Small messages are sent at once (TCP_NODELAY).
+  // Returns the reason why it could not connect; an empty text on success. Resolving a name may take longer
+  // than the deadline. Small messages to a host are sent at once (TCP_NODELAY).
   std::string connect_to_host(const std::string& host, const std::string& port, double deadline_s);
   std::string connect_to_path(const std::string& path, double deadline_s);
 
-  // Reads what has arrived, without waiting; EAGAIN if nothing has.
+  // Reads the bytes that have arrived, without waiting. The error is EAGAIN if none have arrived.
   Transfer read_ready(void* data, std::size_t size) noexcept;
   // Returns 0 if there is something to read, or if the stream has ended; else an errno value.
   int wait_readable(double deadline_s) noexcept;

@@ -30,7 +30,7 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
   place_ = address.substr(0, mark);
   if (mark == std::string::npos) return;
   std::istringstream settings(address.substr(mark + 1));
-  settings.exceptions(std::ios::badbit);  // throws without memory, instead of reporting the end
+  settings.exceptions(std::ios::badbit);  // throws if there is no memory; otherwise it would report the end
   for (std::string setting; std::getline(settings, setting, '&');) {
     const std::size_t equals = setting.find('=');
     const std::string key = setting.substr(0, equals);
@@ -43,7 +43,8 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
   }
 }
 
-// A message begins with the address and a colon: one that ends with its scheme's colon has it already.
+// InputError adds a colon after its subject. The final colon of an address such as "haply:" is removed, so
+// that the message has only one.
 InputError DeviceAddress::refusal(const std::string& problem) const {
   const bool is_scheme = written_.back() == ':';
   return InputError(is_scheme ? written_.substr(0, written_.size() - 1) : written_, problem);

@@ -1,6 +1,5 @@
 // The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
-// scheme, a place and settings. Throws InputError through choice() and number() for values that are not
-// allowed.
+// scheme, a place and settings. choice() and number() throw InputError for a value that is not allowed.
 #pragma once
 
 #include <map>
@@ -13,7 +12,7 @@ namespace remote_touch {
 
 class DeviceAddress {
  public:
-  // address: without the scheme. Throws InputError when it has a setting that is not known, or one twice.
+  // address: without the scheme. Throws InputError if a setting is unknown, has no value or is given twice.
   DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
 
   const std::string& place() const { return place_; }  // empty if the user gave none
@@ -22,7 +21,8 @@ class DeviceAddress {
 
   bool has(const std::string& key) const { return settings_.count(key) > 0; }
   std::string word(const std::string& key, const std::string& otherwise) const;
-  // One of allowed; without the setting, the first of them.
+  // Returns the value of the setting, which must be one of `allowed`. Returns the first of them if the
+  // setting is not given.
   std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
   double number(const std::string& key, double otherwise, double min, double max) const;
 

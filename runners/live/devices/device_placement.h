@@ -1,4 +1,4 @@
-// A device in the world: poses from it, forces to it.
+// The placement of a device in the world. Converts poses to the world and forces to the device.
 #pragma once
 
 #include "core/rendering/frame.h"
@@ -8,20 +8,21 @@
 
 namespace remote_touch {
 
-// Factor on all forces so that no spring exceeds the maximum stiffness of the device; 1 if none does, or if
-// the limit is 0 (unknown). A motion scale of device_scale makes springs stiffer by that factor.
+// Returns a factor for all forces with which no spring exceeds the maximum stiffness of the device; 1 if no
+// spring exceeds it, or if the limit is 0 (unknown). The motion scale device_scale makes springs stiffer by
+// that factor.
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
 // Transforms device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and
-// torques are rotated but not scaled, so the hand feels scale times the stiffness. to_device() multiplies
-// them by fraction, see force_scale().
+// torques are rotated but not divided by `scale`, so the hand feels `scale` times the stiffness. to_device()
+// also multiplies them by `fraction`, see force_scale().
 class DevicePlacement {
  public:
   explicit DevicePlacement(const LiveSettings& s, double fraction = 1);
 
   DeviceState in_world(const DeviceReading& reading) const;
   Wrench to_device(const Wrench& wrench_W) const;
-  // The inverse functions, for simulated devices.
+  // The inverse functions, for simulated devices. in_world(wrench_D) does not undo `fraction`.
   DeviceReading of_device(const DeviceState& state) const;
   Wrench in_world(const Wrench& wrench_D) const;
   double scale() const { return scale_; }

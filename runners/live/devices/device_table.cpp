@@ -57,7 +57,7 @@ std::unique_ptr<HapticDevice> open_haply_service(const std::string& address, Clo
   return open_haply(address, clock);
 }
 
-// The recorded hand, in real time; it feels nothing.
+// Opens the hand of a recorded session. It moves in real time and does not respond to forces.
 std::unique_ptr<HapticDevice> open_session(const std::string& address, const DeviceContext& context) {
   const Experiment& experiment = context.experiment;
   const auto scenario = experiment.build_scenario(context.kernels);

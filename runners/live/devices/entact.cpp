@@ -22,7 +22,7 @@ struct Eapi {
   static constexpr int kOk = 1;
 
   SharedLibrary library;
-  int (*open)(Handle handles[], int size) = nullptr;  // returns how many answered
+  int (*open)(Handle handles[], int size) = nullptr;  // returns the number of devices that answered
   int (*connect_device)(Handle handles[], int index, char ip_address[]) = nullptr;
   int (*close)() = nullptr;
   int (*set_mode)(Handle, int mode) = nullptr;
@@ -30,7 +30,7 @@ struct Eapi {
   int (*read_task_position)(Handle, double* position, int size) = nullptr;
   int (*read_task_velocity)(Handle, double* velocity, int size) = nullptr;
   int (*write_force)(Handle, double* force, int size) = nullptr;
-  // Functions that some versions lack; null then.
+  // Functions that some versions lack. A function that is missing is null.
   int (*is_homed)(Handle) = nullptr;
   int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
 };
@@ -141,7 +141,7 @@ DeviceFault Entact::sense(DeviceReading& reading) noexcept {
   reading.position_m = from_user_right_up(Vec3(pose.data())) * kMetrePerMm;
   reading.velocity_m_per_s = from_user_right_up(Vec3(velocity.data())) * kMetrePerMm;
   reading.angular_velocity_rad_per_s = from_user_right_up(Vec3(velocity.data() + 3));
-  reading.buttons = 0;  // it has none that the library knows
+  reading.buttons = 0;  // the library reports no buttons
   const Eigen::Matrix3d rotation =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.data() + 3);
   if (!is_rotation(rotation)) return kNoRotation;

@@ -14,8 +14,8 @@ namespace remote_touch {
 
 namespace {
 
-// The DHD of version 3: SI units, x towards the user, y to the right, z up. Below 0 is an error; above it, a
-// note on the timing or on motors at their limit.
+// The DHD library, version 3: SI units, x towards the user, y to the right, z up. A result below 0 is an
+// error. A result above 0 is a notice about the timing or about motors at their limit.
 struct Dhd {
   Dhd();
 
@@ -33,7 +33,7 @@ struct Dhd {
   int (*set_force_and_torque_and_gripper_force)(double fx, double fy, double fz, double tx, double ty,
                                                 double tz, double gripper, char id) = nullptr;
   const char* (*error_get_last_str)() = nullptr;
-  // Functions that older versions lack; null then.
+  // Functions that older versions lack. A function that is missing is null.
   int (*error_get_last)() = nullptr;
   const char* (*get_system_name)(char id) = nullptr;
   bool (*has_active_wrist)(char id) = nullptr;
@@ -118,7 +118,7 @@ ForceDimension::~ForceDimension() {
   dhd_.close(id_);
 }
 
-// A limit below 0 is one that is not set.
+// The library reports a limit below 0 if none is set. Such a limit is stored as 0 (unknown).
 void ForceDimension::learn_traits() {
   if (dhd_.get_system_name != nullptr)
     if (const char* name = dhd_.get_system_name(id_); name != nullptr) traits_.name = name;

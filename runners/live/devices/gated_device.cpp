@@ -13,9 +13,9 @@ bool is_finite(const DeviceReading& r) {
 
 }  // namespace
 
-// Either release() sees that a call is in progress, or that call sees at its end that it must switch off;
-// both happen if they overlap. Every order leaves the motors off, since a force is written only after they
-// are on.
+// If a call and release() overlap, release() sees that a call is in progress and waits for it, or the call
+// sees at its end that it must switch the motors off, or both happen. Every order leaves the motors off,
+// because a force is written only after they are on.
 void GatedDevice::leave_vendor() noexcept {
   if (released_) switch_off();
   in_vendor_ = false;
@@ -43,13 +43,13 @@ DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
   if (!is_on_) {
     if (const DeviceFault fault = switch_on()) return fault;
     is_on_ = true;
-    if (released_) return kReleased;  // the motors went on after they were switched off
+    if (released_) return kReleased;  // release() came during switch_on(); leave_vendor() switches them off
   }
   return exert(wrench);
 }
 
-// Few vendors' functions allow calls from two threads: waits for a call in progress, but at most
-// kPatience_ns, which is longer than a call should take.
+// Waits for a call in progress before the motors are switched off, because few vendors' functions allow calls
+// from two threads. It waits at most kPatience_ns, which is longer than a call should take.
 void GatedDevice::release() noexcept {
   released_ = true;
   const std::int64_t until_ns = clock().now_ns() + kPatience_ns;

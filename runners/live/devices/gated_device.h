@@ -21,13 +21,15 @@ class GatedDevice : public HapticDevice {
   bool is_released() const { return released_; }
 
  private:
-  // Fills in all that the vendor reports; the caller checks that it is finite. Called in the thread of the
-  // ticks.
+  // Stores everything that the vendor reports. The caller checks that the values are finite. Called in the
+  // thread of the ticks.
   virtual DeviceFault sense(DeviceReading& reading) noexcept = 0;
-  // Called once, before any force command.
+  // write() calls it before the first force command, and again after each rearm(). If it fails, the next
+  // write() calls it again.
   virtual DeviceFault switch_on() noexcept = 0;
   virtual DeviceFault exert(const Wrench& wrench) noexcept = 0;
-  // Zero force and motors off; called from any thread, more than once, also while one of the others hangs.
+  // Switches the motors off. Any thread may call it, more than once, even while another thread hangs in one
+  // of the functions above.
   virtual void switch_off() noexcept = 0;
 
   DeviceFault exert_if_on(const Wrench& wrench) noexcept;

@@ -12,8 +12,8 @@ namespace remote_touch {
 namespace {
 
 constexpr double kOpenWithin_s = 1;
-// Their sum, with 1 ms each for the rest of a message that has begun, is below 10 ms: by then a tick must
-// have reported a fault.
+// A tick must report a fault within 10 ms. The sum of these times is below that, with 1 ms added to each for
+// the rest of a message that has begun.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
 constexpr double kLastAnswerWithin_s = 20e-3;
 constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kTurnNap_ns = 100'000;
@@ -79,7 +79,7 @@ struct Opened {
   std::string device_id, handle_id;  // empty: no handle
 };
 
-// Connects and takes the inventory; nothing is commanded.
+// Connects and reads the inventory. Sends no command.
 Opened open_service(const DeviceAddress& address, const Clock& clock, double time_s,
                     const HaplyLinkOpener& open_link) {
   const double deadline_s = clock.now_s() + time_s;
@@ -141,8 +141,8 @@ class Haply final : public HapticDevice {
   void release() noexcept override;
 
  private:
-  // Exclusive use of the link during one call. Only release() competes for it, and keeps it, so no tick
-  // waits.
+  // Exclusive use of the link during one call. Only release() competes for the link, and keeps it when it has
+  // got it, so no tick waits.
   class TickGuard {
    public:
     explicit TickGuard(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
@@ -183,7 +183,7 @@ DeviceFault Haply::send(const Vec3& force_N, double deadline_s) noexcept {
   return {};
 }
 
-// Receives the answer that is due, if one is.
+// Receives the answer to the last command, if it has not been received yet.
 DeviceFault Haply::receive_due_answer(std::string_view& text, double deadline_s) noexcept {
   if (!is_answer_due_) return {};
   const DeviceFault fault = opened_.link->receive(text, deadline_s);
@@ -191,8 +191,8 @@ DeviceFault Haply::receive_due_answer(std::string_view& text, double deadline_s)
   return fault;
 }
 
-// Returns the answer to the last command in text. If that is older than kStateLasts_s, or no answer is due,
-// sends a command with zero force and returns the answer to that.
+// Stores the answer to the last command in `text`. If that command is older than kStateLasts_s, or no answer
+// is due, it sends a command with zero force and stores the answer to that one.
 DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
   const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
   if (const DeviceFault fault = receive_due_answer(text, deadline_s)) return fault;

@@ -1,8 +1,8 @@
 #include "runners/live/devices/haply_link.h"
 
 #ifdef REMOTE_TOUCH_HAPLY
-// The one file that includes Boost.Beast, which takes ten seconds to compile. The thread sanitizer does not
-// support Asio's fences between threads that run handlers; there are no such threads here.
+// The one file of this folder that includes Boost.Beast, which takes ten seconds to compile. The thread
+// sanitizer does not support Asio's fences between threads that run handlers; there are no such threads here.
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -34,18 +34,19 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-// Far more than an inventory of some devices; a longer message is refused.
+// The largest message, in bytes: far more than an inventory of several devices needs. A longer one is
+// refused.
 constexpr std::size_t kMaxMessage = 1 << 16;
 // Time for the rest of a message that has begun to arrive: on one machine it arrives at once.
 constexpr double kRestWithin_s = 1e-3;
 
-// The number of transfers that one call may make regardless of the deadline. With a peer that causes more,
-// for instance one ping after the other, each of which is answered, the call ends at the deadline even if it
-// never had to wait.
+// The number of transfers that one call may make without a check of the deadline. A peer may cause more, for
+// instance with one ping after the other, each of which is answered. The call then ends at the deadline even
+// if it never had to wait.
 constexpr int kMaxParts = 64;
 
-// The stream below Beast's blocking calls. These have no deadline, and they may wait on a socket more than
-// once for one message; here each wait ends by the deadline of the whole call.
+// The stream below Beast's blocking calls. These calls have no deadline, and one call may wait on the socket
+// more than once. Here each wait ends by the deadline of the whole call.
 class DeadlineStream {
  public:
   // NOLINTNEXTLINE(readability-identifier-naming): the name that Beast asks for
@@ -107,7 +108,7 @@ class DeadlineStream {
   int parts_ = 0;
 };
 
-// Beast calls it when a connection ends; its own for sockets waits for the peer.
+// Beast calls this function when a connection ends. Beast's own function for sockets waits for the peer.
 void teardown(beast::role_type, DeadlineStream& stream, error_code& ec) {
   stream.socket.cut();
   ec = {};
@@ -146,9 +147,10 @@ class BeastLink final : public HaplyLink {
   }
 
   DeviceFault receive(std::string_view& text, double deadline_s) noexcept override {
-    // Beast is not called until bytes have arrived, because a wait that ends without bytes breaks its stream.
-    // Its buffer cannot hold a whole message, except the first, which may arrive with the handshake: after
-    // that the service answers each command once, and one command is in progress.
+    // Beast is called only after bytes have arrived, because a wait that ends without bytes breaks its
+    // stream. The first message is an exception: it may have arrived with the handshake and be in Beast's
+    // buffer. A later message cannot be there, because the service answers each command once, and one command
+    // is in progress.
     if (has_first_ && !lost_)
       if (const int error = web_.next_layer().socket.wait_readable(deadline_s))
         return {"the Haply service does not answer", error};

@@ -15,9 +15,10 @@ class HaplyLink {
  public:
   virtual ~HaplyLink() = default;
 
-  // Both return by the deadline, a time of the clock; receive() up to 1 ms later if a message has begun by
-  // then. They allocate nothing once the first command has been sent. If the service is only late, the next
-  // receive() may get the message; after any other fault the link cannot be used any more.
+  // send() and receive() return by the deadline, a time of the clock in seconds. receive() returns up to 1 ms
+  // later if a message has begun to arrive by then. They allocate nothing once the first command has been
+  // sent. If the service is only late, a later receive() may still return the message. After any other fault
+  // the link cannot be used any more.
   virtual DeviceFault send(std::string_view text, double deadline_s) noexcept = 0;
   // text: valid until the next call.
   virtual DeviceFault receive(std::string_view& text, double deadline_s) noexcept = 0;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kMaxId = 256;
 
-// Members of an object that are numbers with these one-letter names; every one must be there.
+// Reads the members of an object that have these one-letter names and are numbers. Returns false unless every
+// name is present.
 template <class Vector>
 bool components(JsonReader& json, std::string_view names, Vector& value) {
   unsigned seen = 0;
@@ -92,7 +93,7 @@ bool read_handle(JsonReader& json, HaplyHandleState& handle) {
   });
 }
 
-// An element is read before its name is known: the members of an object have no order.
+// An element is read completely before its id is compared, because the members of an object have no order.
 template <class State>
 bool read_matching(JsonReader& json, bool (*read)(JsonReader&, State&), std::string_view requested,
                    std::optional<State>& found) {

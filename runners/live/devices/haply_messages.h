@@ -23,7 +23,7 @@ struct HaplyDeviceState {
   Vec3 force_N = Vec3::Zero();  // force that the service reports as commanded now
 };
 
-// State of the handle on it.
+// State of the handle on the Inverse3, from one message.
 struct HaplyHandleState {
   std::string_view id;
   bool has_orientation = false;
@@ -36,12 +36,13 @@ struct HaplyMessage {
   std::optional<HaplyHandleState> handle;
 };
 
-// Reads the first device and the first handle, or those with these ids. False: not a message of the service,
-// for instance because a value that is read is not finite.
+// Reads the first device and the first handle, or those with these ids. Returns false if the text is not a
+// message of the service, for instance because a value that is read is not finite.
 bool read_haply_message(std::string_view text, std::string_view device_id, std::string_view handle_id,
                         HaplyMessage& message) noexcept;
 
-// The documentation of 3.5 names the force "vector"; clients written for 3.1 to 3.4 send "values".
+// Key of the force in a command: "vector" according to the documentation of 3.5; clients written for 3.1 to
+// 3.4 send "values".
 enum class HaplyForceKey { vector, values };
 
 // The command that sets the force.

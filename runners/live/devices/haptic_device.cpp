@@ -4,8 +4,8 @@
 
 namespace remote_touch {
 
-// The moments of the ticks are fixed by the first, so that lateness does not add up; those that pass during a
-// long tick are left out.
+// The start of the run fixes the times of all ticks, so that lateness does not add up. Times that pass during
+// a long tick are skipped.
 void HapticDevice::run(DeviceCycle& cycle) {
   const std::int64_t period_ns = std::llround(1e9 / traits().tick_rate_hz);
   std::int64_t due_ns = clock_.now_ns();

@@ -12,10 +12,11 @@
 
 namespace remote_touch {
 
-// Why a reading or a command failed; what: a text that lives as long as the device.
+// The reason why a reading or a command failed; no fault if `what` is null. what: a text that lives as long
+// as the device.
 struct DeviceFault {
   const char* what = nullptr;
-  int code = 0;  // the vendor's, if there is one
+  int code = 0;  // the vendor's error code, if there is one
 
   explicit operator bool() const { return what != nullptr; }
 };
@@ -24,13 +25,13 @@ inline constexpr DeviceFault kReleased{"the device was released"};
 
 struct DeviceReading {
   Vec3 position_m = Vec3::Zero();
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // takes the handle's axes to the device's
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // rotates handle axes to device axes
   Vec3 velocity_m_per_s = Vec3::Zero();
   Vec3 angular_velocity_rad_per_s = Vec3::Zero();
   std::uint32_t buttons = 0;  // one bit for each button, set while it is down
 };
 
-// The capabilities of a device; 0 if the vendor does not report them.
+// The capabilities of a device. A force, torque or stiffness is 0 if the vendor does not report it.
 struct DeviceTraits {
   std::string name;
   int sensed_axes = 3, actuated_axes = 3;  // 0, 3 or 6; an input device has no motors
@@ -41,17 +42,17 @@ struct DeviceTraits {
   double tick_rate_hz = 1000;  // rate of the device's own loop
 };
 
-// One tick: reads, renders and writes.
+// One cycle of the haptic loop: reads the device, renders and writes the force.
 class DeviceCycle {
  public:
   virtual ~DeviceCycle() = default;
-  // False: no more ticks.
+  // Returns false after the last tick.
   virtual bool tick() noexcept = 0;
 };
 
-// run() is called once, in its own thread, which the adapter or its vendor's library drives; tick() of the
-// cycle calls read() and then write(), once each. The constructor opens the device and throws InputError with
-// what is missing and what would help; the force is off until the first write().
+// run() is called once, in a thread of its own. The adapter or its vendor's library then calls tick() of the
+// cycle, which calls read() and then write(), once each. The constructor opens the device. It throws
+// InputError, which says what is missing and what would help. The force is off until the first write().
 class HapticDevice {
  public:
   explicit HapticDevice(Clock& clock) : clock_(clock) {}
@@ -59,20 +60,21 @@ class HapticDevice {
 
   virtual const DeviceTraits& traits() const = 0;
 
-  // Calls tick() at the device's rate until that returns false; by default every millisecond of its clock. A
-  // missed tick is not made up for.
+  // Calls tick() at the device's rate until tick() returns false. The default version uses the clock and
+  // traits().tick_rate_hz. A tick that was missed is skipped, not made later.
   virtual void run(DeviceCycle& cycle);
 
-  // read() and write() are called within a tick; no allocation, no lock, no wait beyond the vendor's call.
+  // read() and write() are called within a tick. They must not allocate, lock, or wait beyond the vendor's
+  // call.
   virtual DeviceFault read(DeviceReading& reading) noexcept = 0;
-  // Wrench on the hand, device axes; the caller has already limited it.
+  // wrench: on the hand, in the device's axes. The caller has already limited it.
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
   // Sets the force to zero from now on, even if another thread hangs in a tick; read() and write() may then
   // return kReleased. Any thread may call it, more than once.
   virtual void release() noexcept = 0;
-  // Called from a tick: undoes release() if the device can exert forces again. False: the device has to be
-  // opened again.
+  // Called from a tick. Undoes release() if the device can exert forces again. Returns false if the device
+  // has to be opened again.
   virtual bool rearm() noexcept { return false; }
 
  protected:

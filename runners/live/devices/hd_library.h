@@ -1,5 +1,5 @@
-// The functions of OpenHaptics' HD library that its adapter calls: mm, mm/s, rad/s, N, mN m and N/mm;
-// matrices by columns; x to the right, y up, z towards the user.
+// The functions of OpenHaptics' HD library that its adapter calls. Units: mm, mm/s, rad/s, N, mN m and N/mm.
+// Matrices are stored column by column. Axes: x to the right, y up, z towards the user.
 #pragma once
 
 #include "runners/libraries/shared_library.h"
@@ -7,7 +7,7 @@
 namespace remote_touch {
 
 struct HdLibrary {
-  HdLibrary();  // throws InputError where it is not found
+  HdLibrary();  // throws InputError if the library is not found
 
   struct Error {
     unsigned code = 0;

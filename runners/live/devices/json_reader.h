@@ -1,6 +1,6 @@
 // Reads JSON text once, front to back, without a copy or an allocation: for messages in a haptic tick. Every
-// function returns whether the text matched; after a false, do not read on. Strings and keys are returned as
-// in the text, with their escapes.
+// function returns true if the text matched. The reader must not be used any more after it has returned
+// false. Strings and keys are returned as in the text, with their escapes.
 #pragma once
 
 #include <string_view>
@@ -25,7 +25,7 @@ class JsonReader {
     return items('[', ']', element);
   }
 
-  // Reads a finite number; false for text that is not JSON, such as NaN.
+  // Reads a finite number. Returns false if there is none, for instance for NaN, which is not JSON.
   bool number(double& value);
   bool boolean(bool& value);
   bool string(std::string_view& value);

@@ -1,5 +1,5 @@
-// Texts for vendors' error codes that are valid for the whole program run, as the vendors' own texts may not
-// be.
+// Texts for vendors' error codes. They are valid for the whole run of the program; the vendors' own texts may
+// not be.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ struct KnownFault {
   const char* what;
 };
 
-// The fault with its known text; what: the text for an unknown code.
+// Returns the fault of this code with its known text. what: the text for an unknown code.
 inline DeviceFault fault_of(std::span<const KnownFault> known, int code, const char* what) {
   for (const KnownFault& fault : known)
     if (fault.code == code) what = fault.what;

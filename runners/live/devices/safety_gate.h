@@ -8,18 +8,20 @@
 
 namespace remote_touch {
 
-// The limits, with max_force_N and max_torque_Nm reduced to 0.9 of the device's, if it reports them.
+// Returns the limits, with max_force_N and max_torque_Nm reduced to at most 0.9 of the device's own maxima,
+// if the device reports them.
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits);
 
 enum class GateState { waiting, ramping, engaged, latched };
 
 // Independent rules:
-// - A fault of the device, a reading or a command that is not finite, or a hand faster than the limits: no
-//   force, until rearm().
-// - No tick for max_command_age_s, or a command older than that: force falls to zero at the slew rate, and
-//   must then start again as described next.
-// - Force starts only while the command is below engage_force_N, and its torque below the same fraction of
-//   its limit, and rises linearly over ramp_s, so that it does not jump when the hand is inside something.
+// - A fault of the device, a reading or a command that is not finite, or a hand that is faster than the
+//   limits sets the force to zero until rearm().
+// - If no tick came for max_command_age_s, or the command is older than that, the force falls to zero at the
+//   slew rate. It must then start again as described next.
+// - The force starts only while the command is below engage_force_N, and its torque is below the same
+//   fraction of its limit. It then rises linearly over ramp_s, so that it does not jump when the hand is
+//   inside something.
 // - Force and torque are limited to their maximum magnitudes, and change no faster than the slew rates.
 // The gate allocates nothing, takes no lock and has no clock of its own. It is not a certified safety
 // function.
@@ -27,13 +29,13 @@ class SafetyGate {
  public:
   explicit SafetyGate(const SafetyLimits& limits) : limits_(limits) {}
 
-  // Returns the part of a command made at command_time_s that may be written at now_s, which never decreases.
-  // fault: that of the reading.
+  // Returns the wrench that may be written at now_s, for a command that was made at command_time_s. now_s
+  // must never decrease. fault: the fault of the reading, if any.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
               double command_time_s) noexcept;
   // Sets the force to zero until rearm(), as after a fault of the device.
   void latch(const DeviceFault& reason) noexcept;
-  // Starts again after the device was released from outside; a latch stays.
+  // Starts again without force after the device was released from outside. A latch remains.
   void restart() noexcept;
   // Ends a latch at the next pass(), on request of the user. Any thread may call it.
   void rearm() noexcept { rearm_.store(true, std::memory_order_relaxed); }

@@ -13,18 +13,19 @@
 
 namespace remote_touch {
 
-// Follows its clock: when a tick was missed the hand has still moved on, by ticks of its own rate. Starts
-// with run().
+// Follows its clock: the hand also moves during ticks that were missed, in steps of its own rate. Its time
+// starts with run().
 class SimulatedDevice final : public HapticDevice {
  public:
-  // placement: that of the loop; inverted here.
+  // placement: that of the loop. It is used here in the inverse direction.
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
   const DeviceTraits& traits() const override { return traits_; }
-  // Throws what the script threw, after the loop has ended: an InputError if a frame cannot be used.
+  // Rethrows the exception of the script after the loop has ended, such as an InputError for an unusable
+  // frame.
   void run(DeviceCycle& cycle) override;
-  // A fault, from then on, if the script throws.
+  // Returns a fault, from then on in every call, if the script throws.
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
   void release() noexcept override { armed_.store(false, std::memory_order_relaxed); }

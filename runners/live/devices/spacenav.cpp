@@ -16,13 +16,14 @@ namespace {
 
 constexpr double kConnectWithin_s = 0.5;
 constexpr double kHolds_s = 0.5;
-constexpr double kMaxStep_s = 0.1;  // longest step of one reading: no jump of the pose after a pause
+constexpr double kMaxStep_s = 0.1;  // longest step of one reading: the pose must not jump after a pause
 constexpr int kMaxFrames = 256;     // most frames in one reading; the daemon sends some hundred a second
 
 constexpr DeviceFault kGone{"spacenavd has closed the connection"};
 constexpr DeviceFault kNoFrame{"the socket sends data that are not spacenavd's messages"};
 
-// The daemon sends frames of an event and its numbers. Other events report changes of mice and settings.
+// The daemon sends frames: the number of an event and its values. Other events report changes of mice and
+// settings.
 enum Event : std::int32_t { kMotion = 0, kPress = 1, kRelease = 2, kLastEvent = 15 };
 using Frame = std::array<std::int32_t, 8>;
 

@@ -7,21 +7,21 @@
 
 namespace remote_touch {
 
-// One producer, one consumer; both calls are a single atomic exchange. A slot belongs to one side at a time,
-// so its old value is freed by the side that overwrites it.
+// One producer, one consumer. publish() and take() each need one atomic exchange. A slot belongs to one side
+// at a time, so its old value is freed by the side that overwrites it.
 template <class T>
 class TripleBuffer {
  public:
   // The producer's slot, to be written before publish().
   T& back() { return slots_[back_]; }
-  // The value written becomes the newest. False: the one before was never taken.
+  // Makes the written value the newest one. Returns false if the value before it was never taken.
   bool publish() {
     const std::uint32_t before = middle_.exchange(back_ | kNew, std::memory_order_acq_rel);
     back_ = before & kSlot;
     return (before & kNew) == 0;
   }
 
-  // Takes the newest value, if there is a new one since the last call; front() then returns it.
+  // Returns true if a value was published since the last call. front() then returns the newest one.
   bool take() {
     if ((middle_.load(std::memory_order_relaxed) & kNew) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kSlot;

@@ -12,10 +12,11 @@ struct Uri {
   std::string scheme, address;  // the address may be empty
 };
 
-// Throws InputError without a colon. flag: "--depth" or "--device".
+// Throws InputError if the text has no scheme or no colon. flag: "--depth" or "--device".
 Uri parse_uri(const std::string& flag, const std::string& text);
 
-// The entry of that scheme; throws InputError with the known ones.
+// Returns the entry of that scheme. Throws InputError, which lists an example of each entry, if there is
+// none.
 template <class Entry>
 const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag, const Uri& uri) {
   std::string known;

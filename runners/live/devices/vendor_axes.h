@@ -1,5 +1,5 @@
-// Conversion of vendors' axes: x towards the user, y to the right, z up, as Force Dimension and Entact use
-// them; and rotation matrices.
+// Converts the axes of vendors: x towards the user, y to the right, z up, as Force Dimension and Entact use
+// them. Also converts and checks rotation matrices.
 #pragma once
 
 #include "core/geometry/vector.h"

@@ -46,9 +46,9 @@ class CameraFeed {
   bool step(double patience_s) noexcept;
 
   // Other threads may call the following functions, except sensed().
-  CameraCounts counts() const;  // so far
-  std::string ended() const;    // why there will be no more frames; empty while there may be
-  // True if they ended with an input error: a frame that cannot be used, as ended() says.
+  CameraCounts counts() const;  // counts up to the newest frame
+  std::string ended() const;    // reason why there are no more frames; empty while there may be more
+  // True if an input error has ended the frames: a frame cannot be used, and ended() names it.
   bool has_refused() const { return refused_.load(std::memory_order_acquire); }
   // The time of the clock when the newest frame was ready; the start of the run before the first frame.
   double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }
@@ -71,7 +71,7 @@ class CameraFeed {
   const double start_s_;
   TripleBuffer<LiveFrame>& out_;
   const FrameSink sink_;
-  const std::function<void(const Frame&)> on_frame_;  // a viewer's; may be empty
+  const std::function<void(const Frame&)> on_frame_;  // called with every frame that is sent; may be empty
   SensorFrame sensed_;
   CameraCounts counts_;
   SensedPoints sensed_points_;  // points in the frames that were sent

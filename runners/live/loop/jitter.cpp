@@ -25,7 +25,7 @@ class NoDevice final : public HapticDevice {
   DeviceTraits traits_;
 };
 
-// Lateness against the grid of the first tick; the loop keeps to a grid of its own.
+// Measures lateness against a time grid that starts with the first tick. The loop itself uses another grid.
 class Watch final : public DeviceCycle {
  public:
   Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop, const Clock& clock)

@@ -1,4 +1,4 @@
-// Measures the lateness of the ticks of a haptic loop on this machine, if a tick has nothing to do.
+// Measures the lateness of the ticks of a haptic loop on this machine; the ticks themselves do nothing.
 #pragma once
 
 #include <atomic>
@@ -15,10 +15,12 @@ struct Jitter {
   std::string real_time;       // rights that the system granted, see become_real_time()
 };
 
-// Measures the loop of devices that have none of their own. stop: ends it early.
+// Measures the loop that is used for devices without a loop of their own. stop: may end it early; may be
+// null.
 Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock);
 
-// Rows of "from to count bar", each twice as wide as the one before.
+// Returns rows of "from to count bar". Each row ends at twice the time of the row before; empty rows are
+// omitted.
 std::string histogram(const std::vector<double>& late_s);
 
 }  // namespace remote_touch

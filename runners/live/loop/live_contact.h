@@ -13,19 +13,20 @@ namespace remote_touch {
 
 class LiveContact {
  public:
-  // Watches nothing if the renderer is not a ball that single points hold (RenderedContact), or if fixtures
-  // add regions that are larger than the ball.
+  // Watches nothing if the renderer is not a ball that single points hold (RenderedContact), or if the
+  // experiment has fixtures, because their regions may be larger than the ball.
   explicit LiveContact(const Experiment& experiment);
 
-  // Each frame that is sent to the renderer, from the camera's thread.
+  // The camera's thread calls it with each frame that is sent to the renderer.
   void add(const Frame& frame);
-  // Each tick in order, from another thread. A tick whose frame is no longer kept is skipped.
+  // Another thread calls it with each tick, in order. A tick whose frame is no longer kept is skipped.
   void add(const LiveTick& tick, double time_s);
   // See ContactWatch::spacing_notes(). pre: no thread calls add() any more.
   std::vector<Note> notes(const Kernels& kernels) const;
 
  private:
-  // A tick is read within about one period of the logger after it was made, and few frames come meanwhile.
+  // The number is large enough, because a tick is read within about one period of the logger after it was
+  // made, and few frames come meanwhile.
   static constexpr std::size_t kKeptFrames = 8;
   struct KeptFrame {
     int index = -1;

@@ -1,5 +1,5 @@
-// Collects the rows of the servo and the frames of the camera: into the log, and on disk if a session is
-// recorded.
+// Collects the rows of the servo in the log. If a session is recorded, it also writes the rows and the frames
+// of the camera to disk.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace remote_touch {
 
 class LiveLogger {
  public:
-  // recorder: null if nothing is recorded. on_tick: gets every row; must not throw; may be empty.
+  // recorder: null if nothing is recorded. on_tick: receives every row; must not throw; may be empty.
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionRecorder> recorder,
              std::function<void(const LiveTick&)> on_tick = {});
 
@@ -44,7 +44,8 @@ class LiveLogger {
   // empty if neither has failed. Other threads may call it.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // pre: finish() was called
-  // Calls the question once, in a step(), with the log at that time.
+  // Calls the question once, in the next step(), with the log at that time. A question that waits is
+  // replaced.
   void ask(std::function<void(const LiveLog&)> question);
 
  private:

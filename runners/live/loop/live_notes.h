@@ -1,4 +1,4 @@
-// The report of a live session: what it has read, and notes if it may not have done what was meant.
+// The report of a live session: its inputs, and notes on what the user may not have intended.
 #pragma once
 
 #include <string>

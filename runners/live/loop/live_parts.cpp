@@ -22,7 +22,8 @@ std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
                         : std::numeric_limits<std::int64_t>::max();
 }
 
-// A run whose time is over may have read files that have changed meanwhile.
+// Adds the refusal if `ended` does not contain it: a run that reached its duration may have read a changed
+// file.
 std::string with_refusal(const std::string& ended, const std::string& refused) {
   if (refused.empty() || ended.find(refused) != std::string::npos) return ended;
   return ended + (ended.empty() ? "" : "; ") + refused;
@@ -96,7 +97,7 @@ std::unique_ptr<SessionRecorder> LiveParts::recorder(const Experiment& experimen
   return std::make_unique<SessionRecorder>(options_.record, view, registered, provenance, names);
 }
 
-// Ticks are numbered in steps of the experiment's rate, so the time of a faster loop would run ahead.
+// Ticks are numbered at the experiment's rate. The tick time of a faster loop would run ahead of the clock.
 void LiveParts::require_rate() const {
   const double device_hz = device_->traits().tick_rate_hz;
   if (std::abs(device_hz - rate_hz_) > 0.01 * rate_hz_)

@@ -1,5 +1,5 @@
-// Everything of a live run except its threads: each thread only calls one of these steps repeatedly. Without
-// threads, on a simulated clock, the same steps make the same run.
+// All parts of a live run except its threads. Each thread only repeats one of the steps below. The same
+// steps, called without threads on a simulated clock, make the same run.
 #pragma once
 
 #include <atomic>
@@ -23,16 +23,16 @@ std::size_t expected_points(const SensorView& view);
 
 class LiveParts {
  public:
-  // All arguments must outlive it. Throws InputError if they do not fit each other, or the recording cannot
-  // be opened.
+  // The objects that are passed by reference must outlive it. Throws InputError if the arguments do not fit
+  // each other, or if the recording cannot be opened.
   LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
             std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source);
 
   // Runs the haptic loop until the run ends, and then releases the device.
   void run_loop() noexcept;
   // While the loop runs, other threads must call camera().step(), heartbeat().check(), logger().step() and
-  // logger().sync(). One thread must call is_over() and report_changes() every kReportPeriod_s, which inform
-  // the user.
+  // logger().sync(). One thread must call is_over() every kReportPeriod_s, and then report_changes(), which
+  // informs the user.
   CameraFeed& camera() { return *camera_; }
   Heartbeat& heartbeat() { return servo_->heartbeat(); }
   LiveLogger& logger() { return *logger_; }

@@ -16,7 +16,8 @@ LiveReport::Times times_of(const char* name, const char* word, const Samples& sa
   return times;
 }
 
-// The least and the greatest are of all samples.
+// Fractions 0 and 1 return the least and the greatest of all samples. Others are of the samples that were
+// kept.
 double quantile_of(const LiveReport::Times& times, double fraction) {
   return fraction <= 0 ? times.least : fraction >= 1 ? times.greatest : quantile(times.sorted, fraction);
 }
@@ -26,8 +27,8 @@ double missed_percent(const LiveLog& log, double ticks) {
   return ticks > 0 ? 100 * missed / (ticks + missed) : 0;
 }
 
-// Returns at most kSamples + 1 points of the share of times that were as long or longer, over the time. They
-// are closer where the share is small.
+// Returns at most kSamples + 1 points of a curve: the share of times that were as long or longer, over the
+// time. The points are closer where the share is small.
 Table longer_than(const LiveReport::Times& times) {
   constexpr double kSamples = 400;
   const auto count = static_cast<double>(times.sorted.size());

@@ -29,13 +29,14 @@ struct LiveReport {
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts);
 
-// Rows of minimum, p50, p99, p99.9 and maximum time, then of counts.
+// Returns a text table: least time, p50, p99, p99.9 and greatest time in each row, then the counts.
 std::string text(const LiveReport& report);
 
-// Tables `times` and `counts` with the same numbers; distributions of the times; when the loop was late.
+// Returns the tables `times` and `counts` with the same numbers, the distributions of the times, and a curve
+// of the longest time from tick to tick over the run.
 Figure live_figure(const LiveReport& report);
 
-// The value below which that fraction of the sorted values lies; NaN without values.
+// Returns the value at this fraction of the sorted values, by the nearest index; NaN if there are no values.
 double quantile(const std::vector<double>& sorted, double fraction);
 
 }  // namespace remote_touch

@@ -58,8 +58,8 @@ class LiveThreads {
       done_.set_value();
     });
   }
-  // Ends the loop if an exception has left the main thread's part: a thread that is not joined would end the
-  // program.
+  // Ends the loop if an exception leaves the main thread's part. The destructor of a thread that was not
+  // joined would end the program.
   ~LiveThreads() {
     if (!loop_.joinable()) return;
     parts_.stop();

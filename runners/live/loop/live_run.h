@@ -26,8 +26,8 @@ struct LiveOptions {
   double stall_s = 0.01;                                // the device is released if no tick comes for longer
   const Kernels* kernels = nullptr;                     // required
   const std::atomic<bool>* stop = nullptr;              // SIGINT and SIGTERM
-  std::atomic<bool>* report = nullptr;                  // SIGUSR1: calls on_report; reset
-  std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: re-arms after a latch; reset
+  std::atomic<bool>* report = nullptr;                  // set by SIGUSR1; calls on_report and is reset
+  std::atomic<bool>* rearm = nullptr;                   // set by SIGUSR2; re-arms after a latch and is reset
   std::function<void(const std::string&)> report_line;  // lines to the user while it runs
   std::function<void()> on_start;                       // device and sensor are open, and the loop begins
   // Called after the loop, before the recording is finished. It throws InputError if a file that the run has
@@ -40,8 +40,8 @@ struct LiveOptions {
   // every frame on its way to the renderer, in the camera's thread. They must not throw.
   std::function<void(const LiveTick&)> on_tick;
   std::function<void(const Frame&)> on_frame;
-  // Called with what does not work at every change of it, also when report_line is empty. The thread of
-  // run_live() calls it.
+  // Called in the thread of run_live() whenever the texts about what does not work have changed, also if
+  // report_line is empty.
   std::function<void(const LiveTrouble&)> on_trouble;
   std::shared_ptr<HandPoses> poses;        // required by the device browser:
   std::shared_ptr<LiveControls> controls;  // must belong to the same experiment; null: nothing changes
@@ -56,14 +56,14 @@ struct LiveResult {
   double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness
   std::string ended;       // reason why it ended
   bool failed = false;     // device, sensor or renderer failed, or the gate was latched at the end
-  // The frame or the file that cannot be used, an input error in one line: a frame that does not fit the view
-  // of its sensor, that the renderer or the simulated hand cannot use, or an input that has changed. Empty:
-  // none.
+  // An input error in one line: a frame does not fit the view of its sensor, the renderer or the simulated
+  // hand cannot use a frame, or an input file has changed. Empty: none of these.
   std::string refused;
   std::string lost;  // why the recording or the log is not whole, or there was no memory; empty: neither
 };
 
-// Throws InputError when something cannot be opened; then no force was exerted.
+// Throws InputError if something cannot be opened; then no force was exerted. Throws std::runtime_error if an
+// exception ended the run and a file keeps the recording; the message names the file.
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options);
 
 }  // namespace remote_touch

@@ -7,14 +7,14 @@
 
 namespace remote_touch {
 
-// Keeps every sample up to kMax of them; if there are more, every second, fourth, ... one, evenly over the
-// run. The number, the least and the greatest are those of all samples.
+// Keeps all samples while there are at most kMax. When there are more, it keeps every second one, then every
+// fourth, and so on, evenly over the run. size(), least() and greatest() are those of all samples.
 class Samples {
  public:
   static constexpr std::size_t kMax = 1 << 20;  // 8 MB; 17 minutes at 1 kHz until the first is left out
 
   void push_back(double value);
-  std::size_t size() const { return count_; }  // all of them
+  std::size_t size() const { return count_; }  // number of all samples
   double least() const { return least_; }
   double greatest() const { return greatest_; }
   const std::vector<double>& kept() const { return kept_; }
@@ -26,7 +26,8 @@ class Samples {
   double least_ = std::numeric_limits<double>::quiet_NaN(), greatest_ = least_;
 };
 
-// The greatest of each piece of a run: at most 2 kPieces of equal length, whatever the length of the run.
+// The greatest value of each piece of a run. Any run has at most 2 kPieces pieces, with equal numbers of
+// values.
 class GreatestOfPieces {
  public:
   static constexpr std::size_t kPieces = 1000;

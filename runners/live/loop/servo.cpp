@@ -60,7 +60,7 @@ void Servo::make_changes(LiveTick& row) {
   links_.renderer.parameters_changed();
 }
 
-// The slot belongs to the servo until it takes the next one, so the time of arrival can be written into it.
+// The slot belongs to the servo until the next take(), so the time of arrival can be written into it.
 void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
   if (!links_.frames.take()) return make_changes(row);

@@ -1,4 +1,5 @@
-// One live tick: device, newest frame, renderer, safety gate, device.
+// One live tick: reads the device, takes the newest frame, renders, applies the safety gate, writes to the
+// device.
 #pragma once
 
 #include <atomic>
@@ -28,8 +29,8 @@ struct LiveTick {
   std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;
   RenderOutput out;
-  ParameterChanges changed;  // made before this tick
-  int taken = -1;            // the frame that the renderer got before this tick; -1: none
+  ParameterChanges changed;  // changes made before this tick
+  int taken = -1;            // index of the frame that the renderer received before this tick; -1: none
   std::uint64_t hash = 0;    // hash of the newest frame taken
   Wrench written;            // wrench written to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
@@ -58,8 +59,9 @@ struct ServoLinks {
 
 // The servo allocates nothing, takes no lock, opens no file and reads no clock but the given one, except in
 // the device's calls. Ticks are numbered by the clock: a missed one leaves a gap; if the device is faster
-// than the rate, each tick still has its own number. Tick times are rounded up, and moved on if a frame was
-// captured while the device was read, so that no frame is taken before it was captured.
+// than the rate, each tick still has its own number. The time of a tick is rounded up to a full period. A
+// tick is moved to a later number if a frame was captured while the device was read, so that no frame is used
+// before it was captured.
 class Servo final : public DeviceCycle {
  public:
   // stall_s: longest time without a tick before the heartbeat releases the device.
@@ -71,13 +73,13 @@ class Servo final : public DeviceCycle {
 
   // Other threads may call the following functions.
   void rearm() noexcept { gate_.rearm(); }
-  // Its check() must be called beside the loop.
+  // Another thread must call its check() while the loop runs.
   Heartbeat& heartbeat() { return heartbeat_; }
   std::int64_t rows_lost() const { return rows_lost_.load(std::memory_order_relaxed); }
   bool is_latched() const { return latched_.load(std::memory_order_acquire); }
   // Reason of the newest latch or failure.
   const char* trouble() const { return trouble_.load(std::memory_order_acquire); }
-  // The device itself failed; rearm() does not help.
+  // True if the device or the loop has failed; rearm() does not help then.
   bool has_failed() const { return failed_.load(std::memory_order_acquire); }
 
  private:

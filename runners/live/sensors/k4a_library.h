@@ -35,7 +35,7 @@ struct Configuration {
   Fps camera_fps = fps_30;
   bool synchronized_images_only = false;
   std::int32_t depth_delay_off_colour_us = 0;
-  int wired_sync_mode = 0;  // alone
+  int wired_sync_mode = 0;  // 0: the camera works without others
   std::uint32_t subordinate_delay_off_master_us = 0;
   bool disable_streaming_indicator = false;
 };
@@ -50,8 +50,8 @@ struct Float3 {
   float x, y, z;
 };
 
-// Only the library writes and reads it: its own functions map points with it. So the adapter does not depend
-// on the layout (1032 bytes in version 1.4), nor on the lens model.
+// Only functions of the library write and read it, and the adapter maps points with them. So the adapter does
+// not depend on the layout (1032 bytes in version 1.4), nor on the lens model.
 struct alignas(16) Calibration {
   std::byte bytes[8192];
 };
@@ -86,7 +86,7 @@ struct K4aLibrary {
   int (*image_get_stride_bytes)(Image) = nullptr;
   std::uint64_t (*image_get_device_timestamp_us)(Image) = nullptr;
   void (*image_release)(Image) = nullptr;
-  // A function that some versions lack; null then.
+  // A function that some versions lack. It is null if it is missing.
   using LogCallback = void(void* context, LogLevel, const char* file, int line, const char* message);
   Result (*set_debug_message_handler)(LogCallback*, void* context, LogLevel min_level) = nullptr;
 };

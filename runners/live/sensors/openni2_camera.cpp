@@ -20,7 +20,7 @@ namespace {
 using openni2::driver_folder, openni2::is_file, openni2::error_text;
 using openni2::read_from, openni2::wait_for;
 
-// A longer pause means that a recording is damaged: its player shortens pauses to 2 s.
+// A longer pause means that a recording is damaged, because its player shortens pauses to 2 s.
 constexpr double kMaxPause_s = 5;
 // A slow machine may miss this much of the end of a recording.
 constexpr double kMaxMissed_s = 0.5;
@@ -243,8 +243,8 @@ SensorState Openni2Camera::take(SensorFrame& frame) {
   return SensorState::frame;
 }
 
-// Copies the newest colour frame if its time differs from that of depth by no more than a period. Returns
-// false if its size is wrong.
+// Copies the newest colour frame if its time differs from that of the depth by at most 1.1 periods. Otherwise
+// the frame has no colour. Returns false if the size of the colour frame is wrong.
 bool Openni2Camera::copy_colour(std::uint64_t depth_stamp, SensorFrame& frame) {
   frame.colour.clear();
   if (!colour_frame_.isValid()) return true;
@@ -264,9 +264,9 @@ SensorState Openni2Camera::fail_of_damage() {
               std::to_string(frame_count_) + ": expected an undamaged recording");
 }
 
-// Handles a recording that starts again from its first frame. The player does so at the end; a player that is
-// set to stop there sometimes crashes when it is closed. It also does so if it cannot find a frame: that is
-// damage.
+// Handles a recording that starts again from its first frame. The player does so at the end, because a player
+// that is set to stop there sometimes crashes when it is closed. The player also does so if it cannot find a
+// frame; then the recording is damaged.
 SensorState Openni2Camera::begins_anew() {
   const int missed = frame_count_ - last_number_;
   if (missed <= kMaxMissed_s * view_.frame_rate_hz) return end();

@@ -98,7 +98,8 @@ openni::VideoFrameRef read_from(const openni::VideoStream& stream) {
 }  // namespace remote_touch::openni2
 
 #ifdef __SANITIZE_THREAD__
-// The thread sanitizer does not understand the library's locks, from the moment at which it is loaded.
+// The thread sanitizer does not understand the library's locks, so it must ignore them from the moment at
+// which the library is loaded.
 extern "C" const char* __tsan_default_suppressions() {
   return "mutex:libOpenNI2.so\nmutex:libOniFile.so\ndeadlock:libOpenNI2.so\ndeadlock:libOniFile.so\n";
 }

@@ -9,15 +9,15 @@
 
 namespace remote_touch::openni2 {
 
-// The library's own text for its last error, in one line.
+// Returns the library's own text for its last error, in one line.
 std::string error_text();
 
-// The folder where the library searches for drivers: its own.
+// Returns the folder in which the library searches for drivers. It is beside the library's file.
 std::string driver_folder();
 
 bool is_file(const std::string& address);
 
-// The library is initialised while an object of this class exists, from any thread.
+// Keeps the library initialised while an object of this class exists. Any thread may make an object.
 class Library {
  public:
   Library();  // throws InputError if it cannot be initialised
@@ -29,7 +29,7 @@ class Library {
   std::vector<openni::DeviceInfo> cameras() const;
 };
 
-// Is notified, from a thread of the driver, that the camera with this URI was unplugged.
+// A thread of the driver notifies this object when the camera with this URI was unplugged.
 class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
  public:
   explicit LossListener(std::string uri);
@@ -43,7 +43,7 @@ class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> is_lost_ = false;
 };
 
-// Returns STATUS_OK if a frame is available.
+// Waits at most timeout_ms for a frame. Returns STATUS_OK if one is available.
 openni::Status wait_for(openni::VideoStream& stream, int timeout_ms);
 
 // Returns the newest frame; an invalid one on failure. pre: a frame is available. VideoStream::readFrame()

@@ -17,8 +17,8 @@ struct PixelRows {
   bool is_mirrored = false;
 };
 
-// Both undo the mirroring. They return false, and read nothing, if the image has another size than the
-// camera's, or fewer bytes than it needs.
+// copy_depth() and copy_rgb() undo the mirroring. They return false, and read nothing, if the image has
+// another size than the camera's, or fewer bytes than it needs.
 bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth);
 // Each pixel has three bytes: red, green, blue.
 bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour);

@@ -108,7 +108,7 @@ struct RealSenseLibrary {
   int (*get_frame_stride_in_bytes)(const Frame*, Error**) = nullptr;
   double (*get_frame_timestamp)(const Frame*, Error**) = nullptr;  // ms
   unsigned long long (*get_frame_number)(const Frame*, Error**) = nullptr;
-  // Functions that older versions lack; null then.
+  // Functions that older versions lack. A function that is missing is null.
   int (*get_frame_data_size)(const Frame*, Error**) = nullptr;
   void (*project_point_to_pixel)(float pixel[2], const Intrinsics*, const float point[3]) = nullptr;
   void (*deproject_pixel_to_point)(float point[3], const Intrinsics*, const float pixel[2],
@@ -153,7 +153,7 @@ class Calls {
       return result;
     }
   }
-  // The same for a function that returns a handle to be released.
+  // Does the same for a function that returns a handle. Throws InputError also if the handle is null.
   template <class Thing, class... Parameters, class... Arguments>
   Held<Thing> held(const char* what, Thing* (*function)(Parameters...), Arguments... arguments) const {
     Held<Thing> thing((*this)(what, function, arguments...), {&rs2_});

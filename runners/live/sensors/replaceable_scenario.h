@@ -30,8 +30,8 @@ class ShownScenario {
   std::shared_ptr<const Scenario> now_;
 };
 
-// A frame number beyond the last means the last frame: the camera may have chosen the number before the
-// scenario was replaced.
+// points() and cloud() return the last frame for a number beyond it, because the camera may have chosen the
+// number before the scenario was replaced.
 class ReplaceableScenario final : public Scenario {
  public:
   explicit ReplaceableScenario(std::shared_ptr<const ShownScenario> shown) : shown_(std::move(shown)) {}

@@ -36,7 +36,7 @@ SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   const auto due_s = [&](int i) {
     return scenario_->captured_s(std::min(i, last)) + std::max(0, i - last) / rate_hz;
   };
-  while (due_s(next_ + 1) <= now_s) ++next_;  // if several are due, the newest
+  while (due_s(next_ + 1) <= now_s) ++next_;  // if several are due, delivers the newest
   const double captured_s = due_s(next_);
   const double wait_s = captured_s - now_s;
   if (wait_s > 0) clock_.sleep_s(std::min(wait_s, timeout_s));

@@ -9,16 +9,16 @@
 
 namespace remote_touch {
 
-// Delivers the scenario's frame at the time since the first next(), at the scenario's frame rate; frames for
-// which there was no time are skipped. Depths are rounded, as a sensor does, see FrameEncoder. A scene at
-// rest is repeated.
+// Delivers the frames of the scenario at its frame rate; time 0 is the first next(). If several frames are
+// due, only the newest is delivered. Depths are rounded, as a sensor does, see FrameEncoder. The last frame
+// is repeated after the end of the scenario, so the camera never ends.
 class ScenarioCamera final : public DepthSource {
  public:
   ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock,
                  const FrameEncoder::Settings& settings = {});
 
   const SensorView& view() const override { return encoder_.view(); }
-  // Throws InputError, which names the frame, if it cannot be read or does not fit the view.
+  // Throws InputError, which names the frame, if a frame cannot be read or does not fit the view.
   SensorState next(SensorFrame& frame, double timeout_s) override;
 
  private:

@@ -6,10 +6,10 @@ namespace remote_touch {
 
 namespace {
 
-// Rate at which two crystals may drift apart. The offset rises at this rate: otherwise the frames of a sensor
+// Rate at which two crystals may drift apart. The offset rises at this rate. Otherwise the frames of a sensor
 // with the slower clock would appear older and older.
 constexpr double kDrift = 1e-4;
-// No frame is later than this: if one appears later, the sensor's clock has stood still.
+// No frame arrives later than this after its capture. If one seems to, the sensor's clock has stood still.
 constexpr double kLatest_s = 1;
 
 }  // namespace

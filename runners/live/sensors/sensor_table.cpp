@@ -23,13 +23,13 @@ Availability always(const char* what) {
   return {true, true, what};
 }
 
-// The depths of a recorded session keep their unit.
+// Returns the depth unit of a recorded session, so that its depths are encoded in the same unit.
 double session_unit_m(const std::string& path) {
   return SessionReader(find_recording(path)).view().metres_per_unit;
 }
 
-// Returns a check of the rules, for the scenario's own frames: a sensor with colours sends them in every
-// frame.
+// Returns a check of the rules for the scenario's own frames. The encoded frames cannot be checked instead,
+// because a sensor with colours sends colours in every frame, also for a frame that has none.
 std::function<void(const PointCloud&)> rules_of(const Experiment& experiment) {
   const auto fixtures = std::make_shared<const FixtureAssignment>(experiment.build_fixtures());
   return [fixtures](const PointCloud& cloud) { fixtures->require(cloud); };

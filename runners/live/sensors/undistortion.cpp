@@ -87,7 +87,8 @@ std::optional<Vector2d> Undistortion::seen_at(int u, int v, const Lens& lens) co
   return lens.pixel_of_ray({(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy});
 }
 
-// Returns pixel -1 outside the centres of the outermost pixels, because no depth is known there.
+// Returns pixel -1 for positions outside the centres of the outermost pixels, because no depth is known
+// there.
 Undistortion::Place Undistortion::place_of(const std::optional<Vector2d>& seen) const {
   const Vector2d last(camera_.width - 1, camera_.height - 1);
   if (!seen ||

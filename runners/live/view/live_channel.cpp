@@ -121,7 +121,8 @@ bool LiveChannel::next(Message& message) {
   {
     const std::lock_guard lock(mutex_);
     if (rows_.length() == 0) return false;
-    // Ticks and frames alternate: if the page is slower than the camera, there is always a new frame.
+    // Ticks and frames alternate. Otherwise a page that is slower than the camera would receive frames only,
+    // because a new frame is always ready.
     was_frame_ = sent_columns_ && frame_is_new_ && !was_frame_;
     if (was_frame_) points = points_, index = index_, frame_is_new_ = false;
   }

@@ -1,6 +1,6 @@
-// Connects a live run with one page that shows it: queues the messages to the page, and handles those from
-// it. The run never waits for the page. A slow page gets only the newest frame, and waiting ticks are dropped
-// when there are too many. LivePages has the channels of all pages of a run.
+// Connects a live run with one page that shows it: queues the messages for the page, and handles the messages
+// from the page. The run never waits for the page. A slow page receives only the newest frame, and all
+// waiting ticks are dropped when there are too many. LivePages has the channels of all pages of a run.
 #pragma once
 
 #include <atomic>
@@ -35,8 +35,8 @@ class LiveChannel {
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
 
-  // open(): a page has connected, and gets everything from now on. close(): the page has disconnected. The
-  // server's thread calls both. `trouble`: the newest trouble_message(); empty if there was none yet.
+  // open(): a page has connected, and receives everything from now on. close(): the page has disconnected.
+  // The server's thread calls both. `trouble`: the newest trouble_message(); empty if there was none yet.
   void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
   // Gives the hand to the page, which has only watched until now.
@@ -46,16 +46,16 @@ class LiveChannel {
   bool is_open() const { return is_open_; }
   bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
   // tell(): queues a text for the page, see view_messages.h. end(): queues the last text; the server closes
-  // the connection after it, or at once if it is empty. is_over(): true if the connection is to be closed.
-  // Any thread may call them.
+  // the connection after it, or at once if the text is empty. is_over(): true if the connection is to be
+  // closed. Any thread may call them.
   void tell(std::string text);
   void end(std::string last);
   bool is_over();
-  // Handles a message from the page. Returns false if it is malformed or if this page may not send
-  // it.
+  // Handles a message from the page. Returns false if it is malformed or if this page may not send it.
   bool receive(std::string_view bytes);
-  // Finds the next message to the page; false if there is none now. Texts are JSON, see view_messages.h. The
-  // columns are sent before all other texts; only the text of end() may come earlier.
+  // Stores the next message for the page in `message`. Returns false if there is none now. Texts are JSON,
+  // see view_messages.h. The columns are sent before all other texts; only the text of end() may come
+  // earlier.
   struct Message {
     std::string bytes;
     bool is_text = false;

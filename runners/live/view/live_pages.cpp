@@ -20,7 +20,7 @@ void LivePages::take(const Frame& frame) noexcept {
   for (Page& page : pages_) page.channel->take(frame);
 }
 
-// A page that connects meanwhile may get the message twice.
+// A page that connects meanwhile receives the message once, from here or from open(): both hold the mutex.
 void LivePages::tell(const LiveTrouble& trouble) {
   const std::lock_guard lock(mutex_);
   trouble_ = trouble_message(trouble);

@@ -33,7 +33,7 @@ class LivePages {
   // The run has ended: sends the reason to every page, also to pages that connect later. Only the first call
   // counts.
   void end(const std::string& why);
-  std::string ended() const;  // the reason; empty while the run goes on
+  std::string ended() const;  // the reason; empty until the run has ended
 
   // The server's thread calls these. open() returns the channel for a page, which belongs to the page until
   // close(), or null if is_full(page). page: the name that the page gave itself, at most kMaxName bytes.

@@ -1,4 +1,5 @@
-// The ticks of a live run as a page gets them: the columns of a trace, and what reached the device.
+// The ticks of a live run as a page receives them: the columns of a trace, and the wrench written to the
+// device.
 #pragma once
 
 #include <vector>
@@ -15,8 +16,9 @@ class LiveRows {
   std::size_t length() const { return trace_.length(); }
   void append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement);
 
-  // The columns of the trace, whose force and torque the renderer commands; device_force and, for a tool,
-  // device_torque, which the safety gate sent to the device; and gate, the state of the gate.
+  // Returns the columns of the trace, whose force and torque are those that the renderer commands. Adds
+  // `device_force` and, for a tool, `device_torque`, which were written to the device after the safety gate.
+  // Adds `gate`, the state of the gate.
   std::vector<Column> columns() const;
 
  private:

@@ -27,8 +27,8 @@ class LiveView {
   // Connects the run with this view: the view gets the ticks and frames, and the run gets the hand from the
   // page. This view must outlive the run.
   void connect(LiveOptions& options);
-  // The run has ended: sends the reason to all pages, and waits at most a second until they have closed. Only
-  // the first call counts. The destructor calls it too.
+  // Call it when the run has ended. Sends the reason to all pages, and waits at most a second until they have
+  // closed. Only the first call counts. The destructor calls it too.
   void end(const std::string& why) { server_->end(why); }
 
  private:

@@ -3,7 +3,7 @@
 #include "core/parameters/input_error.h"
 
 #ifdef REMOTE_TOUCH_VIEW_SERVER
-// The one file of this room that includes Boost.Beast.
+// The one file of this folder that includes Boost.Beast.
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK
 // Boost 1.74 does not know that clang++ 14 has the coroutines of C++20.
 #ifdef __clang__

@@ -36,7 +36,7 @@ struct Cell {
   void operator()(const std::vector<double>& values) const {
     const double value = values[place];
     if (std::isnan(value))
-      line += "nan";  // without the sign, which to_chars shows
+      line += "nan";  // without the sign that to_chars would print
     else
       add_number(line, value);
   }

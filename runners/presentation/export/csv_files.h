@@ -8,14 +8,15 @@
 
 namespace remote_touch {
 
-// x.csv, or x_NAME.csv for each of several tables, with one line of names; and x_columns.csv, a line for each
-// of those names: table, column, unit, meaning. Lines end with a line feed.
+// Writes x.csv, or x_NAME.csv for each of several tables, with one line of names. Also writes x_columns.csv
+// with a line for each of these names: table, column, unit, meaning. Lines end with a line feed.
 void write_csv(const ExportJob& job);
 
-// Vectors as name_x, name_y, name_z.
+// Returns the line of names. The names of a vector are name_x, name_y, name_z.
 std::string csv_header(const Table& table);
-// Rows first .. end - 1. Numbers as the shortest text that reads back as the same bits; nan, inf, -inf;
-// enumerations by the names of their values; texts in quotes where they need it (RFC 4180).
+// Returns the rows first .. end - 1. Numbers are the shortest text that is read back as the same bits, or
+// nan, inf, -inf. Enumerations have the names of their values. Texts are in quotes if they need them (RFC
+// 4180).
 std::string csv_rows(const Table& table, std::size_t first, std::size_t end);
 
 }  // namespace remote_touch

@@ -17,15 +17,15 @@ struct ExportFormat {
 };
 
 const std::vector<ExportFormat>& export_formats();
-// All of them in one line, for the help of the command.
+// Returns all formats in one line, for the help of the command.
 std::string known_formats();
 
 // Returns the format of the output's ending. Throws InputError, which names the known endings, if there is
 // none.
 const ExportFormat& export_format(const std::filesystem::path& output);
 
-// Writes all files of the export; they appear when job.files is finished. Throws InputError for a result of
-// another kind than the format takes, for one that is damaged, and as job.files; and Interrupted.
+// Writes all files of the export; they appear when job.files is finished. Throws InputError for a result of a
+// kind that the format does not accept, for one that is damaged, and as job.files does. Throws Interrupted.
 void export_result(const ExportFormat& format, const ExportJob& job);
 
 }  // namespace remote_touch

@@ -16,7 +16,8 @@ struct ExportJob {
   const Hdf5Reader& result;
   std::filesystem::path output;
   NewFiles& files;
-  // Throws InputError unless the file may be written: it is absent, or begins so, as a former export did.
+  // Throws InputError unless the file may be written: it must be absent, or begin with `opening` as an
+  // earlier export does.
   std::function<void(const std::filesystem::path& file, const std::string& opening)> require_allowed;
   const Kernels* kernels = nullptr;         // pre: set
   const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted

@@ -100,7 +100,7 @@ void for_each_frame(const ExportJob& job, const ExportedRun& run,
   frames_again(run.experiment, run.time_s, *job.kernels, job.stop, [&](const Frame& frame) {
     job.go_on();
     const auto first = std::lower_bound(run.frame.begin(), run.frame.end(), frame.index);
-    if (first == run.frame.end() || *first != frame.index) return;  // it came too late
+    if (first == run.frame.end() || *first != frame.index) return;  // no tick used it: it arrived too late
     now.first_tick = static_cast<std::size_t>(first - run.frame.begin());
     PointCloud buffer;
     const PointCloud& cloud = frame.points->every_point(*job.kernels, buffer);

@@ -1,4 +1,4 @@
-// A stored trace with its frames, which are made again: what is shown of a run in other programs.
+// A stored trace with its frames, which are made again, as other programs show it.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct ExportedRun {
   Experiment experiment;
   std::vector<double> time_s = {};  // finite, 0 or more
   std::vector<Vec3> hip_W = {}, proxy_W = {}, force_N = {}, torque_Nm = {};
-  // Identity without a tool.
+  // Identity if the trace does not have the column, as without a tool.
   std::vector<Eigen::Quaterniond> hip_orientation_W = {}, tool_orientation_W = {};
   std::vector<std::int32_t> frame = {};        // newest in use
   std::vector<std::uint64_t> frame_hash = {};  // 0: not computed
@@ -38,8 +38,8 @@ struct ExportedFrame {
   std::size_t first_tick = 0;  // first tick that used the frame
   PointCloud points;           // the measured ones
 };
-// Every frame that a tick used, in order. Throws InputError when the frames cannot be made again or are not
-// those of the run, and Interrupted.
+// Calls use() for every frame that a tick used, in order. Throws InputError if the frames cannot be made
+// again or are not those of the run. Throws Interrupted.
 void for_each_frame(const ExportJob& job, const ExportedRun& run,
                     const std::function<void(const ExportedFrame&)>& use);
 

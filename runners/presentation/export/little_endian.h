@@ -1,4 +1,4 @@
-// Numbers as they follow each other in files: little-endian, without gaps.
+// Writes numbers one after another, as files store them: little-endian, without gaps.
 #pragma once
 
 #include <bit>

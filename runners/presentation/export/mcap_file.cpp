@@ -26,8 +26,8 @@ McapTopic topic(const char* name, const RosSchema& schema) {
   return {name, schema.name, "ros2msg", schema.definition, "cdr"};
 }
 
-// Numbers of 32 bits, because the readers of ROS 2 expect them: of a distance of 1 m at most 0.06 micrometres
-// are lost.
+// Numbers have 32 bits, because readers of ROS 2 expect that. The rounding error is at most 0.06 micrometres
+// at a distance of 1 m.
 std::string cloud_message(const ExportedFrame& frame) {
   const PointCloud& cloud = frame.points;
   std::vector<RosField> fields{{"x", kRosFloat32}, {"y", kRosFloat32}, {"z", kRosFloat32}};
@@ -64,7 +64,7 @@ class RunMessages {
     add_ticks_before(frame.arrives_s);
     mcap_.message(cloud_, nanoseconds(frame.arrives_s), nanoseconds(frame.captured_s), cloud_message(frame));
   }
-  // Adds the messages of the ticks before time_s that are left, in the order of time.
+  // Adds the messages of the remaining ticks before time_s, in the order of time.
   void add_ticks_before(double time_s) {
     for (; tick_ < run_.ticks() && run_.time_s[tick_] < time_s; ++tick_) {
       const std::uint64_t now = nanoseconds(run_.time_s[tick_]);

@@ -92,7 +92,7 @@ void McapWriter::emit(const std::string& bytes) {
 
 std::uint16_t McapWriter::add_topic(const McapTopic& topic) {
   const auto [known, is_new] =
-      schemas_.try_emplace(topic.schema, static_cast<std::uint16_t>(schemas_.size() + 1));  // 0: none
+      schemas_.try_emplace(topic.schema, static_cast<std::uint16_t>(schemas_.size() + 1));  // 0: no schema
   if (is_new) {
     std::string content;
     put(content, known->second);
@@ -198,7 +198,7 @@ void McapWriter::finish() {
   add(Record::statistics, statistics());
   add(Record::chunk_index, chunk_indexes_);
   add(Record::metadata_index, metadata_indexes_);
-  // The sum is over all from the summary to the footer's own place for it.
+  // The CRC covers everything from the start of the summary to the footer's own field for it.
   std::string footer;
   put(footer, start), put(footer, start + summary.size());
   put(footer, std::uint32_t{0});

@@ -22,7 +22,7 @@ class McapWriter {
 
   McapWriter(const std::string& profile, const std::string& library,
              std::function<void(const std::string&)> write);
-  // Topics with a schema of the same name share it. Returns the number of its channel.
+  // Topics whose schemas have the same name share the schema. Returns the number of the topic's channel.
   std::uint16_t add_topic(const McapTopic& topic);
   void add_metadata(const std::string& name, const Texts& texts);
   void message(std::uint16_t channel, std::uint64_t log_ns, std::uint64_t publish_ns,

@@ -11,7 +11,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-// The header with its length is a multiple of 64 bytes, so that the values are aligned.
+// Returns the header. Its length, including the 10 bytes of the opening, is a multiple of 64, so that the
+// values are aligned.
 std::string npy_header(const std::string& type, const std::string& shape) {
   constexpr std::size_t kOpening = 10, kAlignment = 64;
   std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";

@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// Little-endian: <f8, <i4, <u8, or <U for texts; of shape (n,), or (n, width).
+// Returns an array of shape (n,) or (n, width), little-endian: <f8, <i4, <u8, or <U for texts.
 std::string npy_array(const Column& column);
 // One text, of shape ().
 std::string npy_text(const std::string& text);

@@ -21,7 +21,7 @@ Table table_of_trace(const Hdf5Reader& result) {
   return table;
 }
 
-// The value of each run in a column that has one for each place.
+// Returns a column with the value of each run, from a column with a value for each position on an axis.
 template <class PlaceOf>
 Column over_runs(const Column& column, std::size_t runs, PlaceOf place_of) {
   Column all = column;
@@ -41,7 +41,7 @@ std::vector<std::int32_t> states_of(const SweepResult& result) {
   return states;
 }
 
-// The kinds of notes on each run, with "; " between two of them.
+// Returns the kinds of notes on each run, separated by "; ".
 std::vector<std::string> notes_of(const SweepResult& result) {
   std::vector<std::string> texts;
   for (const std::int32_t bits : result.notes) {

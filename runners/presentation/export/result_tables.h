@@ -12,15 +12,15 @@ namespace remote_touch {
 // "trace", "sweep" or "figure"; the table of a scorecard is a figure. Throws InputError for anything else.
 std::string exported_kind(const Hdf5Reader& result);
 
-// A trace: one table, a row for each tick, with step_duration if it was measured.
-// A sweep: one table, a row for each run: its value on each axis, replicate if there are several, state, the
-// measures, round with refinement, and error.
-// A figure: its tables.
-// The columns of each have the same length. Throws InputError for a file that is damaged.
+// A trace has one table, a row for each tick, with step_duration if it was measured.
+// A sweep has one table, a row for each run: its value on each axis, replicate if there are several, state,
+// the measures, round with refinement, notes if there are any, and error.
+// A figure has its own tables.
+// The columns of each table have the same length. Throws InputError for a file that is damaged.
 std::vector<Table> result_tables(const Hdf5Reader& result);
 
-// The names of the numbers in a row: force_x, force_y, force_z; of a quaternion w, x, y, z; of another
-// width 0, 1, ...; of width 1 the name of the column.
+// Returns the names of the numbers in a row: force_x, force_y, force_z. The endings of a quaternion are w, x,
+// y, z, and those of another width 0, 1, ... A column of width 1 has its own name.
 std::vector<std::string> component_names(const Column& column);
 
 }  // namespace remote_touch

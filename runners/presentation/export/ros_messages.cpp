@@ -38,7 +38,8 @@ constexpr RosSchema kPointCloud{
 #undef HEADER_PARTS
 #undef PART_OF_MESSAGE
 
-// A number begins at a multiple of its size, counted from behind the four bytes that name the encoding.
+// Each number begins at a multiple of its size, counted from the end of the four bytes that name the
+// encoding.
 class CdrMessage {
  public:
   explicit CdrMessage(std::uint64_t time_ns) {

@@ -1,5 +1,5 @@
-// Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). Only those
-// that an export has.
+// Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). There are
+// only the messages that an export contains.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace remote_touch {
 
-// name: "geometry_msgs/msg/PoseStamped". definition: with those of all messages that are parts of it, as the
-// schema encoding `ros2msg` of MCAP demands.
+// name: "geometry_msgs/msg/PoseStamped". definition: also contains the definitions of all messages that are
+// parts of it, as the schema encoding `ros2msg` of MCAP demands.
 struct RosSchema {
   const char* name;
   const char* definition;
@@ -20,7 +20,8 @@ const RosSchema& pose_schema();
 const RosSchema& wrench_schema();
 const RosSchema& point_cloud_schema();
 
-// All in the frame `world`, in metres, newtons and newton metres; time in nanoseconds since the start.
+// All messages are in the frame `world`, in metres, newtons and newton metres; time in nanoseconds since the
+// start.
 std::string pose_message(std::uint64_t time_ns, const Vec3& position_W,
                          const Eigen::Quaterniond& orientation_W);
 std::string wrench_message(std::uint64_t time_ns, const Vec3& force_N, const Vec3& torque_Nm);

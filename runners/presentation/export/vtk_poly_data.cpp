@@ -39,7 +39,8 @@ VtkArray integers(const std::string& name, const std::vector<std::int64_t>& valu
   return array;
 }
 
-// Cells as VTK has them: the points of all, and where those of each end.
+// Cells as VTK stores them: the points of all cells one after another, and the index behind the last point of
+// each.
 struct Cells {
   std::vector<std::int64_t> points, ends;
   template <class Points>

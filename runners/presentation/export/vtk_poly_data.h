@@ -29,11 +29,11 @@ struct VtkPolyData {
 
 inline constexpr const char* kVtkOpening = "<?xml version=\"1.0\"?>\n<!-- remote-touch export -->\n";
 
-// The whole file. Numbers follow the XML as they are (appended, raw): coordinates with 64 bits, so that no
-// digit is lost.
+// Returns the whole file. The numbers follow the XML unchanged (appended, raw). Coordinates have 64 bits, so
+// that no digit is lost.
 std::string vtp_file(const VtkPolyData& data);
 
-// A text as the value of an attribute.
+// Returns a text as it must be written in the value of an attribute.
 std::string xml_escaped(const std::string& text);
 
 }  // namespace remote_touch

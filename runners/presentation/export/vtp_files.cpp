@@ -21,7 +21,7 @@ VtkArray numbers_of(const std::string& name, const char* type, const std::vector
   return array;
 }
 
-// Both lines have the same ticks: every value twice.
+// Returns every value of the column twice, because both lines have the same ticks.
 VtkArray twice(const Column& column) {
   VtkArray array{column.name, "Float64", column.width, {}};
   if (std::holds_alternative<std::vector<std::int32_t>>(column.values)) array.type = "Int32";
@@ -84,7 +84,7 @@ VtkPolyData tool_at(const VoxelTool& tool, const ToolPose& pose, double time_s) 
   return data;
 }
 
-// The files of one thing over time.
+// The files that show one thing at several times.
 struct Series {
   std::vector<std::string> names;
   std::vector<double> time_s;
@@ -114,7 +114,7 @@ class VtpFolder {
     job_.begin(path_of(name), kVtkOpening);
     job_.files.append(content);
   }
-  // Everything over time: of each time its cloud and tool, and the paths.
+  // Writes STEM.pvd, which shows everything over time: the paths, and the cloud and the tool of each time.
   void write_collection(const Series& clouds, const Series& tools) {
     std::string xml =
         std::string(kVtkOpening) +

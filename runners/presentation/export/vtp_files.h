@@ -5,9 +5,10 @@
 
 namespace remote_touch {
 
-// x.vtp: the paths of the HIP and of the proxy, two lines, with the columns of the trace at each point.
-// x_cloud_0000.vtp ...: the measured points of each frame in use, x_tool_0000.vtp ...: the tool, where it was
-// when the frame came; x_cloud.vtp.series, x_tool.vtp.series: with their times, as ParaView reads them.
+// x.vtp: the paths of the HIP and of the proxy as two lines, with the columns of the trace at each point.
+// x_cloud_0000.vtp ...: the measured points of each frame in use.
+// x_tool_0000.vtp ...: the tool at its pose in the first tick that used the frame.
+// x_cloud.vtp.series, x_tool.vtp.series: the names of these files with their times, as ParaView reads them.
 // x.pvd: everything over time.
 void write_vtp(const ExportJob& job);
 

@@ -13,7 +13,7 @@ namespace remote_touch {
 class ZipArchive {
  public:
   explicit ZipArchive(std::function<void(const std::string& bytes)> write) : write_(std::move(write)) {}
-  // Throws std::length_error beyond 4 GiB or 65534 members, where a ZIP archive ends without its extensions.
+  // Throws std::length_error beyond 4 GiB or 65534 members, the limits of a ZIP archive without extensions.
   void add(const std::string& name, const std::string& content);
   void finish();
 

@@ -16,7 +16,7 @@ namespace remote_touch {
 
 namespace {
 
-// Takes the place of the renderer.
+// Receives the frames in place of the renderer.
 class FrameObserver final : public Renderer {
  public:
   explicit FrameObserver(const std::function<void(const Frame&)>& on_frame) : on_frame_(on_frame) {}
@@ -58,7 +58,7 @@ void frames_again(const Experiment& experiment, std::span<const double> time_s, 
   FrameObserver observer(on_frame);
   const auto scenario = experiment.build_scenario(kernels);
   FrameProcessing processing = experiment.build_processing(kernels);
-  processing.needs = {};  // a run of an earlier version, which refused nothing, can be shown, too
+  processing.needs = {};  // so that a run of an earlier version, which refused nothing, can be shown too
   FrameStream stream(*scenario, std::move(processing), experiment.settings().transport,
                      experiment.settings().key, false);
   for (const double now_s : time_s) {

@@ -13,9 +13,9 @@
 
 namespace remote_touch {
 
-// The experiment of a stored trace. Throws InputError, about the name, for a trace of a live run, whose
-// frames came from a sensor at times that only its recording knows; when the configuration cannot be run; and
-// when a recording is not the one that was read.
+// Returns the experiment of a stored trace. Throws InputError, about the name, in three cases: the trace is
+// of a live run, whose frames came from a sensor at times that only its recording contains; the configuration
+// cannot be run; or a recording is not the one that was read.
 Experiment experiment_of_run(const TextAttributes& trace, const std::string& name);
 
 // Passes to on_frame the frames that had arrived at one of the times, in order of arrival, as the renderer

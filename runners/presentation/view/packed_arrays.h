@@ -1,4 +1,4 @@
-// Arrays of numbers behind each other, for a page to read: little endian, each at a multiple of eight bytes.
+// Arrays of numbers one after another, for a page to read: little endian, each at a multiple of eight bytes.
 #pragma once
 
 #include <cstddef>

@@ -49,7 +49,7 @@ std::string escaped(const std::string& text) {
   return html;
 }
 
-// "</script>" in a string of JSON would end the element.
+// Replaces each '<', because "</script>" in a string of JSON would end the element.
 std::string in_script(const std::string& json) {
   std::string text;
   for (const char c : json) text += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMaxNumber = 65535;
-constexpr double kOutside_m = 0.15;  // points that touch may be so far outside of the box: forbidden regions
+constexpr double kOutside_m = 0.15;  // points that touch may be this far outside the box, by their regions
 
 std::vector<std::uint16_t> numbers_of(const PointCloud& cloud, const std::vector<std::uint32_t>& points,
                                       const PointScale& scale) {
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> all_of(const TouchingPoints& lists) {
   return all;
 }
 
-// Keeps of each frame what is shown.
+// Keeps the part of each frame that is shown.
 class FrameViewer {
  public:
   FrameViewer(const RunPath& path, const ShownPointsRule& rule, const Kernels& kernels)
@@ -61,7 +61,7 @@ class FrameViewer {
     const auto [first, last] = std::equal_range(path_.frame.begin(), path_.frame.end(), frame.index);
     const auto begin = static_cast<std::size_t>(first - path_.frame.begin()),
                end = static_cast<std::size_t>(last - path_.frame.begin());
-    if (begin == end) return;  // it came too late
+    if (begin == end) return;  // no tick used it: it arrived too late
     PointCloud buffer;
     const PointCloud& cloud = frame.points->every_point(kernels_, buffer);
     const std::uint64_t hash = path_.frame_hash.empty() ? 0 : path_.frame_hash[begin];
@@ -127,7 +127,7 @@ ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others) {
     }
     if (!frame.fixture_radius_m.empty()) some.fixture_radius_m.push_back(frame.fixture_radius_m[i]);
   }
-  for (const std::uint32_t i : frame.touching) some.touching.push_back(place[i]);  // rank 0: still there
+  for (const std::uint32_t i : frame.touching) some.touching.push_back(place[i]);  // rank 0: never left out
   some.touching_end = frame.touching_end;
   return some;
 }

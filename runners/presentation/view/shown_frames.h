@@ -38,9 +38,8 @@ struct ShownFrame {
   std::vector<std::uint16_t> positions;
   std::vector<std::uint8_t> colours;    // red, green and blue of each point; empty: no colour
   std::vector<float> fixture_radius_m;  // r_f of each point; empty: no fixture
-  // The points that touch the tool, as indices in the list of shown points, tick after tick from the first
-  // that used the frame. touching_end: the index behind the last of these points, for each tick. Both are
-  // empty without a tool.
+  // The points that touch the proxy or tool, as indices in the list of shown points, tick after tick from the
+  // first tick that used the frame. touching_end: for each tick, the index behind the last of its points.
   std::vector<std::uint32_t> touching, touching_end;
 };
 

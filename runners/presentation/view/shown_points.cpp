@@ -7,7 +7,8 @@ namespace remote_touch {
 
 namespace {
 
-// Spread evenly over 1 to 2^32 - 1 for numbers that follow each other (multiplicative hashing, Knuth 6.4).
+// Returns a rank from 1 to 2^32 - 1. The ranks of successive numbers are spread evenly (multiplicative
+// hashing, Knuth 6.4).
 std::uint32_t rank_of(std::uint32_t number) {
   number *= 2654435769u;
   number ^= number >> 16;
@@ -15,7 +16,8 @@ std::uint32_t rank_of(std::uint32_t number) {
   return std::max(number ^ number >> 13, 1u);
 }
 
-// The proxy moves little from one tick to the next: places in the same cube of this side are looked at once.
+// Returns the path without positions that are within side_m of the last one that was kept. The proxy moves
+// little from one tick to the next, so most positions need not be compared with the points.
 std::vector<Vec3> thinned_path(std::span<const Vec3> path_W, double side_m) {
   std::vector<Vec3> kept;
   for (const Vec3& p : path_W)

@@ -18,9 +18,9 @@ struct ShownPointsRule {
 };
 
 struct ShownPoints {
-  std::vector<std::uint32_t> indices;  // those of the points in the cloud, ascending
-  // Rank of each point: 0 for those that touch and those near the proxy. Other points are left out from the
-  // largest rank on.
+  std::vector<std::uint32_t> indices;  // indices of the points in the cloud, ascending
+  // Rank of each point: 0 for points that touch and points near the proxy. Among the other points, those with
+  // the largest ranks are left out first.
   std::vector<std::uint32_t> rank;
   std::size_t measured = 0, in_box = 0, others = 0;  // counts before any point is left out
 };
@@ -28,8 +28,8 @@ struct ShownPoints {
 // Returns the rank below which the other points are shown.
 std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others);
 
-// always: indices of points that are shown wherever they are, ascending. Other points are thinned by their
-// indices, so that a page shows the same pixels of an image in every frame.
+// always: indices, ascending, of points that are shown wherever they are. The other points are thinned by
+// their indices, so that a page shows the same pixels of an image in every frame.
 ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
                          std::span<const Vec3> proxies_W, const ShownPointsRule& rule);
 

@@ -40,12 +40,12 @@ std::vector<Vec3> vectors(const ColumnSource& columns, const std::string& name) 
   return list;
 }
 
-// A length of the renderer's; 0 for one without.
+// Returns a length among the renderer's parameters, or 0 if it has none of that name.
 double length_m(const Json& renderer, const char* name) {
   return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
 }
 
-// Hashes say nothing to the eye and are left out.
+// Returns the columns of numbers. Hashes are left out, because they mean nothing to a reader.
 Json columns_json(const ColumnSource& columns, PackedArrays& numbers) {
   Json list = Json::array();
   for (const std::string& name : columns.columns()) {
@@ -159,7 +159,7 @@ struct ShownRun::State {
             {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
             {"contact_radius_m", contact_radius_m}};
   }
-  // "activate right" of each step of the task.
+  // Returns the name of each step of the task, such as "activate right".
   std::vector<std::string> steps() const {
     std::vector<std::string> list;
     for (const SequenceStep& step : experiment.sequence()) list.push_back(name_of(step));

@@ -21,7 +21,7 @@ namespace remote_touch {
 
 namespace {
 
-// Finished, and as large as its configuration says.
+// Reads a sweep. Throws InputError if it is not finished.
 StoredSweep finished_sweep(const std::filesystem::path& file) {
   StoredSweep stored = read_sweep(file);
   if (stored.in_progress)
@@ -87,7 +87,7 @@ std::string name_of(const SweepResult& result, std::size_t run) {
   return result.replicates == 1 ? cell : cell + ", replicate " + std::to_string(result.replicate_of(run));
 }
 
-// Bit for bit; NaN is equal to NaN.
+// Compares bit for bit, so a NaN is equal only to a NaN with the same bits.
 bool measures_are_stored(const StoredSweep& stored, const Sweep& sweep, std::size_t run, const Trace& trace) {
   for (std::size_t i = 0; i < stored.result.measures.size(); ++i) {
     const double then = std::get<std::vector<double>>(stored.result.measures[i].values)[run];

@@ -16,7 +16,8 @@ double distance_m(const VoxelTool& tool, const ToolPose& pose, const Vec3& p_W) 
   return sample_field(tool, pose.q_WT.conjugate() * (p_W - pose.p_W)).distance_m;
 }
 
-// The points that can touch in any of the poses: distances change by no more than the tool moves.
+// Returns the points that can touch in any of the poses. The distance of a point changes by no more than the
+// tool moves. Returns none if no pose from the middle one on is finite.
 std::vector<std::uint32_t> candidates(const VoxelTool& tool, std::span<const ToolPose> poses,
                                       const PointCloud& cloud) {
   const auto middle =
@@ -27,7 +28,7 @@ std::vector<std::uint32_t> candidates(const VoxelTool& tool, std::span<const Too
   for (const ToolPose& pose : poses)
     if (is_known(pose))
       motion_m = std::max(motion_m, max_point_displacement_m(displacement(*middle, pose), tool.reach_m));
-  // Beside the field the distance is known to a voxel.
+  // Outside the distance field the distance is known only to within a voxel.
   const double max_m = motion_m + kTouchingTool_m + tool.grid.size_m, far_m = tool.reach_m + max_m;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;

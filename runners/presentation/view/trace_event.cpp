@@ -44,7 +44,7 @@ void find_force_jump(const ColumnSource& trace, std::vector<TraceEvent>& events)
   events.push_back({tick, "force jump", text});
 }
 
-// exhausted: the value that says so, in a column of numbers with names.
+// exhausted: the value of the column that means that the tick did not converge.
 void find_spells(const ColumnSource& trace, const std::string& name, std::int32_t exhausted,
                  std::vector<TraceEvent>& events) {
   const auto column = values_or_none<std::int32_t>(trace, name);
@@ -66,7 +66,7 @@ std::string name_of_step(std::int32_t step, const std::vector<std::string>& step
          (number < steps.size() ? " (" + steps[number] + ")" : "");
 }
 
-// Empty where the step had no goal.
+// Returns an empty text if the step had no goal.
 std::string from_goal(double distance_m, double angle_rad) {
   if (!std::isfinite(distance_m) || !std::isfinite(angle_rad)) return {};
   char text[80];
@@ -75,8 +75,8 @@ std::string from_goal(double distance_m, double angle_rad) {
   return text;
 }
 
-// Adds the events of the task's steps, with the words of `run`. If several steps end in one tick, only the
-// first can have missed its deadline.
+// Adds the events of the task's steps, with the words that `remote-touch run` prints. If several steps end in
+// one tick, only the first can have missed its deadline.
 void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& steps,
                      std::vector<TraceEvent>& events) {
   const auto step = values_or_none<std::int32_t>(trace, "sequence_step");

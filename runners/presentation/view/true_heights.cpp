@@ -11,8 +11,9 @@ namespace {
 constexpr std::size_t kMaxTimes = 200, kMaxChanges = 2000;
 constexpr double kEvery_s = 1.0 / 60, kAbove_m = 1e-6;
 
-// NaN also if the distance to the surface is unknown because it has vanished. The distance is that of a
-// position a little above: beyond the border of a surface nothing is known below it.
+// Returns NaN if the height is unknown, or if the distance to the surface is unknown because the surface has
+// vanished. The distance is that of a position slightly above the surface: beyond the border of a surface it
+// is unknown below.
 float height_at(const Scenario& scenario, double x, double z, double time_s) {
   const double y = scenario.surface_height(x, z, scenario.truth_time_s(time_s));
   if (std::isnan(y) || std::isnan(scenario.signed_distance({x, y + kAbove_m, z}, time_s)))
@@ -37,7 +38,7 @@ bool same(std::span<const float> a, std::span<const float> b) {
                     [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-// The ticks at which another capture is the last one.
+// Returns the first tick and each tick at which another capture became the newest one; at most kMaxChanges.
 std::vector<double> changes(const Scenario& scenario, std::span<const double> time_s) {
   std::vector<double> list = {time_s.front()};
   for (std::size_t i = 1; i < time_s.size(); ++i)

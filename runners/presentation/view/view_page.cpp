@@ -15,8 +15,8 @@ constexpr const char* kPageSchema = "remote-touch-view/1";
 constexpr std::size_t kMaxPointsOfFrame = 30000;
 constexpr int kTrials = 8;
 
-// Returns the number of points of a frame that fits at a first estimate. A point has six bytes of position
-// and three of colour, of which compression leaves about two thirds.
+// Returns a first estimate of the number of points of a frame that fits. A point has six bytes of position
+// and three of colour, and compression leaves about two thirds of them.
 std::size_t points_of_frame(const std::vector<std::unique_ptr<ShownRun>>& runs, std::size_t max_bytes) {
   std::size_t frames = 0;
   for (const auto& run : runs) frames += run->frame_count();

@@ -1,4 +1,4 @@
-// A page of the viewer that is small enough: one self-contained HTML file, which reads nothing else.
+// A page of the viewer below a size limit: one self-contained HTML file, which reads nothing else.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// The viewer's script and style, which the build made of runners/presentation/view/page and put into the
+// The viewer's script and style, which the build made from runners/presentation/view/page and embedded in the
 // program.
 #pragma once
 

@@ -34,7 +34,8 @@ void BagChunk::refuse(const std::string& problem) const {
   throw InputError(file_.name(), "the chunk at byte " + std::to_string(place_.record_at) + " " + problem);
 }
 
-// Memory grows with what is decoded, not with what the chunk claims.
+// Decodes up to byte `end`. Memory grows with the bytes that are decoded, not with the size that the chunk
+// claims.
 void BagChunk::decode_until(std::uint64_t end) {
   while (decoded_.size() < end) {
     if (input_left_.empty() && input_at_ < place_.stored_size) {

@@ -1,4 +1,4 @@
-// One chunk of a bag: records, one after the other, compressed together.
+// One chunk of a bag: a series of records that are compressed together.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ class BagChunk {
  public:
   static constexpr std::uint64_t kMaxBytes = 256u << 20;  // limit for the decoded size of a compressed chunk
 
-  // `file` must outlive it. Throws InputError about the file when it does not have the bytes, or the
+  // `file` must outlive the chunk. Throws InputError about the file if it does not have the bytes, or the
   // compression is not known.
   BagChunk(const ByteFile& file, const ChunkPlace& place);
 
   std::uint64_t record_at() const { return place_.record_at; }
   std::uint64_t size() const { return place_.size; }  // bytes of its records
-  // Returns size bytes of the records, from byte `at` on, valid until the next call. Decodes no more than is
-  // needed and keeps it. Throws InputError if the bytes are beyond the end or damaged.
+  // Returns `size` bytes of the records, from byte `at` on, valid until the next call. Decodes only as far as
+  // needed and keeps the decoded bytes. Throws InputError if the bytes are beyond the end or damaged.
   std::string_view view(std::uint64_t at, std::uint64_t size);
-  // Decodes the rest. Throws InputError unless all records have the CRC that the file states, if any.
+  // Decodes the rest. Throws InputError if the file states a CRC and the records have another.
   void check();
 
  private:
@@ -44,7 +44,7 @@ class BagChunk {
   const ChunkPlace place_;
   std::uint32_t crc_so_far_ = 0;
   std::unique_ptr<Decompressor> decompressor_;  // null: the records are stored as they are
-  std::string decoded_;                         // or, if nothing is compressed, what was viewed last
+  std::string decoded_;                         // bytes decoded so far; if not compressed, those viewed last
   std::string input_;                           // a piece of the compressed bytes
   std::string_view input_left_;
   std::uint64_t input_at_ = 0;  // number of compressed bytes read so far

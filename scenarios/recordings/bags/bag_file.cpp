@@ -51,8 +51,8 @@ bool is_bag_file(const fs::path& file) {
   return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
 }
 
-// The bag files of a folder: ROS 2 divides a long recording into several. Empty if the folder cannot be
-// read.
+// Returns the bag files of a folder: ROS 2 divides a long recording into several. Empty if the folder cannot
+// be read.
 std::vector<fs::path> parts_of(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code refused;

@@ -1,4 +1,5 @@
-// A file of messages of many topics: what each topic is, and any of its messages without reading the others.
+// A bag: a file with the messages of many topics. Lists the topics and reads any message without reading the
+// others.
 #pragma once
 
 #include <cstdint>
@@ -19,25 +20,25 @@ struct BagTopic {
   std::string name;
   std::string type;            // type as ROS 1 writes it, without "/msg": sensor_msgs/PointCloud2
   std::string encoding;        // cdr, ros1, or another, which is not read
-  std::uint64_t messages = 0;  // 0 also if the file does not state it, for an unwanted topic
+  std::uint64_t messages = 0;  // also 0 if the file does not state the number, for an unwanted topic
 };
 
-// ROS 2 has a folder more in the names of its types: sensor_msgs/msg/Image.
+// Removes the folder that ROS 2 adds to the names of its types: sensor_msgs/msg/Image.
 std::string ros1_type(const std::string& type);
 
 struct MessagePlace {
-  std::int64_t logged_ns = 0;      // when the recorder got the message
+  std::int64_t logged_ns = 0;      // time at which the recorder received the message
   std::uint64_t part = 0, at = 0;  // position of the message, as the kind of file defines it
 };
 
-// May be read by several threads at once.
+// Several threads may read a bag at once.
 class BagFile {
  public:
   virtual ~BagFile() = default;
 
   const std::vector<BagTopic>& topics() const { return topics_; }
-  // Messages of a wanted topic, in the order of logged_ns; those of the same time are in the order of the
-  // file.
+  // Messages of a wanted topic, in the order of logged_ns. Messages with the same time are in the order of
+  // the file.
   const std::vector<MessagePlace>& places(std::size_t topic) const { return places_[topic]; }
   // Empty, or what is wrong with the file and what was done about it: "was cut short: ...".
   const std::string& remark() const { return remark_; }
@@ -54,7 +55,7 @@ class BagFile {
   // Throws InputError beyond kMaxTopics or for a name that is longer than 1024 bytes.
   std::size_t add_topic(const std::string& file, BagTopic topic);
   void add_place(const std::string& file, std::size_t topic, const MessagePlace& place);
-  void sort_places();  // and counts them
+  void sort_places();  // also sets BagTopic::messages of wanted topics
 
   std::vector<BagTopic> topics_;
   std::vector<std::vector<MessagePlace>> places_;
@@ -64,14 +65,14 @@ class BagFile {
 // True for topics that will be read: only the messages of these topics are listed.
 using WantedTopic = std::function<bool(const BagTopic&)>;
 
-// .mcap, .db3 or .bag by the file's ending; also a folder of ROS 2: metadata.yaml and one or more files,
-// which are read as one. Throws InputError when it is none of them, is damaged, or the program was built
-// without the library for it. A file of .mcap that was cut short is read up to there, see remark().
+// Opens a .mcap, .db3 or .bag file, by its ending, or a folder of ROS 2: metadata.yaml and one or more files,
+// which are read as one bag. Throws InputError if the path is none of them or is damaged. A .mcap or .bag
+// file that was cut short is read as far as its records are whole, see remark().
 std::unique_ptr<BagFile> open_bag(const std::filesystem::path& path, const WantedTopic& wanted);
 
-// True if open_bag() reads such a path, by its ending or by the content of the folder.
+// Returns true if open_bag() reads such a path, by its ending or by the content of the folder.
 bool is_bag(const std::filesystem::path& path);
-// The files that open_bag() reads, and metadata.yaml. Pre: is_bag(path).
+// Returns the files that open_bag() reads, and metadata.yaml of a folder. Pre: is_bag(path).
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// A file of which any part is read, without a position that threads would share.
+// A file that is read at given positions, so that threads share no current position.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ class ByteFile {
 
   const std::string& name() const { return name_; }
   std::uint64_t size() const { return size_; }
-  // Throws InputError when the file ends before, so that nothing is allocated for a size that it cannot have.
+  // Returns `size` bytes from `at` on. Throws InputError if the file ends before that; nothing is allocated
+  // then.
   std::string bytes(std::uint64_t at, std::uint64_t size) const;
   void read(std::uint64_t at, char* to, std::size_t size) const;
   bool has(std::uint64_t at, std::uint64_t size) const { return at <= size_ && size <= size_ - at; }

@@ -32,7 +32,7 @@ void check_place(const PointField& field, std::uint64_t size, const PointCloudMe
                                 ": expected at most point_step = " + std::to_string(message.point_step));
 }
 
-// Some programs write 0 for a single value.
+// Throws InputError if a field has several values a point. Some programs write 0 for a single value.
 void check_count(const PointField& field, const std::string& subject) {
   if (field.count <= 1) return;
   throw InputError(
@@ -102,7 +102,7 @@ void read_coordinate(const PointCloudMessage& message, const std::string& name, 
   }
 }
 
-// PCL stores the bits of the colour as a float, others as an integer.
+// PCL stores the bits of the colour as a float, other programs store them as an integer.
 void read_colour(const PointCloudMessage& message, const std::string& subject,
                  std::vector<std::uint32_t>& colour) {
   const PointField* field = field_named(message, "rgb");

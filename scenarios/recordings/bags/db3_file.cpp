@@ -29,7 +29,7 @@ std::string text_in(sqlite3_stmt* row, int column) {
               : std::string();
 }
 
-// Returns the path as a URI that tells SQLite that nobody changes the file.
+// Returns the path as a URI which states to SQLite that nobody changes the file.
 std::string immutable_uri(const std::filesystem::path& file) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string()) {
@@ -108,7 +108,8 @@ Query prepared(sqlite3* database, const char* text) {
 
 }  // namespace
 
-// A view or a virtual table could compute what it likes, and for as long.
+// Throws InputError unless both tables are plain: a view or a virtual table could run any computation for any
+// time.
 void Db3File::require_plain_tables() {
   for (const char* table : {"topics", "messages"}) {
     const Query query = prepared(
@@ -143,7 +144,7 @@ void Db3File::list_topics(const WantedTopic& wanted) {
   if (step != SQLITE_DONE) refuse();
 }
 
-// Lists the messages without reading their data, which lie in pages of their own.
+// Lists the messages without reading their data, which SQLite stores in separate pages.
 void Db3File::list_messages() {
   std::map<std::int64_t, std::size_t> topic_of;
   for (std::size_t t = 0; t < ids_.size(); ++t) topic_of.emplace(ids_[t], t);

@@ -11,8 +11,8 @@ struct sqlite3;
 
 namespace remote_touch {
 
-// The tables `topics` and `messages` as rosbag2 makes them. The database is opened read-only and as one that
-// nobody changes; nothing but plain tables is read, so that no text of the file is run as a query.
+// The tables `topics` and `messages` as rosbag2 makes them. The database is opened read-only and declared as
+// one that nobody changes. Only plain tables are read, so that no text of the file is run as a query.
 class Db3File final : public BagFile {
  public:
   Db3File(const std::filesystem::path& file, const WantedTopic& wanted);

@@ -1,4 +1,4 @@
-// Compressed bytes, decoded piece by piece as they are needed: frames of LZ4 and Zstandard, and bzip2.
+// Decodes compressed bytes piece by piece, as they are needed: frames of LZ4 and Zstandard, and bzip2.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@ namespace remote_touch {
 class Decompressor {
  public:
   virtual ~Decompressor() = default;
-  // Takes bytes from the front of `from` and writes up to `size` decoded ones; returns how many. 0 only when
-  // it needs more than `from` has, or its frame has ended. Throws InputError about the subject for damaged
-  // bytes.
+  // Removes bytes from the front of `from`, writes up to `size` decoded bytes and returns their number.
+  // Returns 0 only if it needs more bytes than `from` has, or if its frame has ended. Throws InputError about
+  // the subject for damaged bytes.
   virtual std::size_t decode(std::string_view& from, char* to, std::size_t size) = 0;
 };
 
-// kind: lz4, zstd or bz2; null for others.
+// kind: lz4, zstd or bz2. Returns null for another kind.
 std::unique_ptr<Decompressor> make_decompressor(const std::string& kind, const std::string& subject);
 
 }  // namespace remote_touch

@@ -13,7 +13,7 @@
 namespace remote_touch {
 namespace {
 
-// NaN where nothing was measured, also where z_m is NaN or infinite.
+// Returns z_m, or NaN if it is not above 0, above max_depth_m, or not finite.
 double measured_or_nan(double z_m, double max_depth_m) {
   const bool measured = z_m > 0 && z_m <= max_depth_m && z_m <= std::numeric_limits<double>::max();
   return measured ? z_m : std::numeric_limits<double>::quiet_NaN();

@@ -12,7 +12,8 @@
 namespace remote_touch {
 namespace {
 
-// A ray (x, y, 1) of the pinhole, and where the lens puts it; D = (k1, k2, p1, p2, k3).
+// Lens model: maps the ray (x, y, 1) of a pinhole to the ray that the lens makes of it. D = (k1, k2, p1, p2,
+// k3).
 struct PlumbBob {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
 
@@ -37,7 +38,7 @@ struct PlumbBob {
     return J;
   }
 
-  // Far from the centre the polynomial may fold the image over: there is no lens like that.
+  // Far from the centre the polynomial may fold the image over, which no real lens does.
   bool is_one_to_one_at(const Eigen::Vector2d& ray) const {
     const Eigen::Matrix2d J = slope(ray);
     return J.determinant() > 0 && J.trace() > 0;
@@ -57,8 +58,8 @@ struct PlumbBob {
   }
 };
 
-// True if a lens of this model is a pinhole when all its coefficients are 0 or missing. A fisheye is not.
-// RealSense writes the names with capitals.
+// Returns true if a lens of this model is a pinhole when all its coefficients are 0 or missing. A fisheye is
+// not. RealSense writes the names with capitals.
 bool bends_by_coefficients_only(const std::string& model) {
   static const std::array<std::string_view, 9> kModels = {"",
                                                           "none",
@@ -72,12 +73,12 @@ bool bends_by_coefficients_only(const std::string& model) {
   return std::find(kModels.begin(), kModels.end(), model) != kModels.end();
 }
 
-// 0 means 1.
+// A stored binning of 0 means 1.
 std::uint32_t binning(std::uint32_t stored) {
   return std::max<std::uint32_t>(1, stored);
 }
 
-// Along one axis: the pixels of the sensor that the image shows. A region without a size is the whole sensor,
+// The pixels of the sensor that the image shows, along one axis. A region without a size is the whole sensor,
 // if it has no offset.
 struct Extent {
   std::uint32_t offset = 0, size = 0;
@@ -107,7 +108,8 @@ Axis binned(const Axis& sensor, std::uint32_t offset, std::uint32_t pixels) {
   return {sensor.f / b, (sensor.c - offset - 0.5 * (b - 1)) / b};
 }
 
-// The matrix is (fx 0 cx; 0 fy cy; 0 0 1), for P with a fourth column of 0. Some drivers leave out the 1.
+// Throws InputError unless the matrix is (fx 0 cx; 0 fy cy; 0 0 1), for P with a fourth column of 0. Some
+// drivers write 0 for the 1, which is accepted.
 void require_pinhole(const double* matrix, std::size_t columns, const char* name,
                      const std::string& subject) {
   for (std::size_t i = 0; i < 3 * columns; ++i) {
@@ -189,7 +191,7 @@ void ImageRays::make_table(const CameraInfoMessage& info) {
     const Eigen::Vector2d seen = pixel(lens.bent(ray)).array().round();
     if (!(seen.x() >= 0 && seen.y() >= 0 && seen.x() < camera_.width && seen.y() < camera_.height)) continue;
     const Eigen::Vector2d to((seen.x() - camera_.cx) / camera_.fx, (seen.y() - camera_.cy) / camera_.fy);
-    constexpr double kMaxSlack_px = 2;  // farther, the lens shrinks the image too much for one point a pixel
+    constexpr double kMaxSlack_px = 2;  // beyond it the lens shrinks the image too much for one point a pixel
     if (!lens.unbend(to, ray) || !((pixel(ray) - at).cwiseAbs().maxCoeff() < kMaxSlack_px)) continue;
     slack_ = std::max(slack_, (pixel(ray) - at).cwiseAbs().maxCoeff() + 1e-6);
     source_[i] = static_cast<int>(seen.y()) * camera_.width + static_cast<int>(seen.x());

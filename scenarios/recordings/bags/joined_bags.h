@@ -1,4 +1,4 @@
-// The files into which one long recording was divided, as one.
+// Reads the files into which one long recording was divided as one bag.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@ namespace remote_touch {
 
 class JoinedBags final : public BagFile {
  public:
-  // name: of the whole, for an InputError.
+  // name: path of the whole bag, for an InputError.
   JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts, const WantedTopic& wanted);
   std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
 
  private:
-  // part of a place: a place in this list.
+  // MessagePlace::part of this bag is an index into all_.
   struct PlaceInFile {
     const BagFile* file;
     MessagePlace place;

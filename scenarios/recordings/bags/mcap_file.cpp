@@ -7,7 +7,8 @@
 namespace remote_touch {
 namespace {
 
-// A message's place has the chunk's; a record of the file itself has 0, where the magic number is.
+// MessagePlace::part is the position of the message's chunk, or kNoChunk for a message outside of chunks. No
+// chunk is at position 0, because the magic number is there.
 constexpr std::uint64_t kNoChunk = 0;
 
 [[noreturn]] void refuse_length(const std::string& file, std::uint64_t length) {
@@ -39,7 +40,7 @@ void McapFile::add_schema(std::string_view body) {
   schemas_[id] = ros1_type(cursor.text());
 }
 
-// Several publishers of a topic may have a channel each.
+// Adds a channel to its topic. Several publishers of a topic may have a channel each.
 void McapFile::add_channel(std::string_view body) {
   MessageCursor cursor(body, WireFormat::ros1, file_.name());
   const std::uint16_t id = cursor.u16(), schema = cursor.u16();
@@ -56,7 +57,7 @@ void McapFile::add_channel(std::string_view body) {
   channels_[id] = index;
 }
 
-// The start of a message's record body: the header that MCAP puts before the message.
+// start: the first bytes of a message's record body, with the header that MCAP puts before the message.
 void McapFile::add_message(std::string_view start, std::uint64_t part, std::uint64_t at) {
   const McapMessageHeader header = mcap_message_header(start, file_.name());
   const auto channel = channels_.find(header.channel);
@@ -87,7 +88,7 @@ std::string McapFile::start(const MessagePlace& place, std::uint64_t max_bytes) 
 std::string McapFile::message_in_chunk(const MessagePlace& place, std::uint64_t max_bytes) const {
   const std::lock_guard lock(mutex_);
   if (!chunk_ || chunk_->record_at() != place.part) {
-    chunk_.reset();  // before the next one takes memory
+    chunk_.reset();  // frees memory before the next one takes some
     chunk_ = std::make_unique<BagChunk>(file_, mcap_chunk_at(file_, place.part));
   }
   const McapRecord record = mcap_record(chunk_->view(place.at, McapRecord::kStart), place.at);

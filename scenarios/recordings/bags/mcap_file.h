@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-// Finds messages by the index at the file's end. If there is no complete index, it reads the whole file,
-// which takes as long as decompressing it. The CRC of a chunk is checked when a message of it is read as a
-// whole, that of the index when it is used.
+// Finds messages by the index at the file's end. If there is no complete index, the constructor reads the
+// whole file, which takes as long as decompressing it. The CRC of a chunk is checked when a message of it is
+// read as a whole. The CRC of the index is checked when the index is used.
 class McapFile final : public BagFile {
  public:
   McapFile(const std::filesystem::path& file, const WantedTopic& wanted);
@@ -50,8 +50,8 @@ class McapFile final : public BagFile {
   std::map<std::uint16_t, std::size_t> channels_;  // their topics
   std::map<std::size_t, bool> is_wanted_;          // key: topic
   mutable std::mutex mutex_;                       // guards the members below
-  mutable std::unique_ptr<BagChunk> chunk_;        // the one that was read last
-  mutable std::set<std::uint64_t> checked_;        // chunks, by their places
+  mutable std::unique_ptr<BagChunk> chunk_;        // chunk that was read last
+  mutable std::set<std::uint64_t> checked_;        // positions of the chunks whose CRC was checked
 };
 
 }  // namespace remote_touch

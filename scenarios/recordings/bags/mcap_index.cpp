@@ -9,7 +9,7 @@
 namespace remote_touch {
 namespace {
 
-constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two places and a CRC
+constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two positions and a CRC
 constexpr std::uint64_t kNames = 4096;                                  // bytes read of a schema or channel
 constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // limit for one record of an index
 
@@ -33,8 +33,8 @@ std::string McapFile::whole_body(const McapRecord& record) const {
   return file_.bytes(record.body_at, record.body_size);
 }
 
-// Position of the summary, as the footer states it. Returns none if the file has no footer or no summary, or
-// if the summary has another CRC than stated; remark_ then says so.
+// Returns the position of the summary, as the footer states it. Returns none if the file has no footer or no
+// summary. Returns none also if the summary has another CRC than stated; remark_ then says so.
 std::optional<McapFile::Summary> McapFile::find_summary() {
   const std::uint64_t ends = kFooterBytes + kMcapMagic.size();
   if (!file_.has(0, kMcapMagic.size() + ends)) return std::nullopt;
@@ -75,13 +75,13 @@ bool McapFile::index_by_summary() {
       if (record.opcode == McapRecord::statistics) statistics = whole_body(record);
       return true;
     });
-    // A second time: channels may come after the chunks.
+    // The chunks need a second pass, because channels may be listed after them.
     const bool all_indexed = for_records([&](const McapRecord& record) {
       any_chunk |= record.opcode == McapRecord::chunk_index;
       return record.opcode != McapRecord::chunk_index || index_chunk(record);
     });
     return all_indexed && (statistics.empty() ? any_chunk : take_statistics(statistics));
-  } catch (const InputError&) {  // the cause does not matter if a scan succeeds
+  } catch (const InputError&) {  // the cause does not matter, because the file is scanned next
     remark_ = kDamagedIndex;
     return false;
   }

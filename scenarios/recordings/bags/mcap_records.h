@@ -33,12 +33,12 @@ struct McapRecord {
 
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 
-// Opcode and length from the kStart bytes of a record that begins there.
+// Decodes opcode and length of the record that begins at `at`. start: the first kStart bytes of the record.
 McapRecord mcap_record(std::string_view start, std::uint64_t at);
-// The same of a file. Throws InputError when the file ends before the record does.
+// Reads the same from a file. Throws InputError if the file ends before the record does.
 McapRecord mcap_record_at(const ByteFile& file, std::uint64_t at);
 
-// Reads the chunk record that begins there. Throws InputError if there is none.
+// Reads the chunk record that begins at `at`. Throws InputError if there is none.
 ChunkPlace mcap_chunk_at(const ByteFile& file, std::uint64_t at);
 
 struct McapMessageHeader {

@@ -1,4 +1,4 @@
-// The bytes of one message of ROS, read value after value. No length in them is trusted.
+// Reads the bytes of one message of ROS, value after value. No length in them is trusted.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@ enum class WireFormat { cdr, ros1 };
 
 class MessageCursor {
  public:
-  // bytes must outlive the cursor and all views that it gives. subject: what an InputError is about. Throws
-  // InputError when the header of CDR is missing or of another encoding.
+  // bytes must outlive the cursor and all views that it returns. subject: what an InputError is about. Throws
+  // InputError if the header of CDR is missing or of another encoding.
   MessageCursor(std::string_view bytes, WireFormat format, const std::string& subject);
 
   WireFormat format() const { return format_; }
   const std::string& subject() const { return subject_; }
 
-  // Each throws InputError when the message ends before.
+  // Each reads one value. Throws InputError if the message ends before the value does.
   std::uint8_t u8() { return static_cast<std::uint8_t>(take(1)); }
   std::uint16_t u16() { return static_cast<std::uint16_t>(take(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
@@ -30,7 +30,8 @@ class MessageCursor {
   float f32();
   double f64();
   std::string text();
-  // The length of a sequence whose elements have at least min_bytes each: never more than could follow.
+  // Reads the length of a sequence whose elements have at least min_bytes each. Throws InputError if the
+  // bytes left cannot hold as many elements.
   std::uint32_t count(std::size_t min_bytes);
   std::string_view bytes();                 // a sequence of bytes: its length in 32 bits first
   std::string_view view(std::size_t size);  // size bytes as they are

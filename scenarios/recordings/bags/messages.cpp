@@ -72,7 +72,7 @@ CameraInfoMessage read_camera_info(MessageCursor from) {
   camera.distortion.resize(from.count(sizeof(double)));
   for (double& d : camera.distortion) d = from.f64();
   for (double& k : camera.K) k = from.f64();
-  for (int i = 0; i < 9; ++i) from.f64();  // R: the rectified image is taken as it is
+  for (int i = 0; i < 9; ++i) from.f64();  // R is skipped: a rectified image is used as it is
   for (double& p : camera.P) p = from.f64();
   camera.binning_x = from.u32(), camera.binning_y = from.u32();
   for (std::uint32_t* part :

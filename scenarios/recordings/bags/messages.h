@@ -1,4 +1,5 @@
-// Messages of ROS that come from a depth camera, as they are stored. Only lengths and rotations are checked.
+// Messages of ROS that come from a depth camera, as they are stored. Only their lengths and the transforms
+// are checked.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace remote_touch {
 
-// The most pixels that an image may have: 8192 x 8192, 0.5 GB as depths.
+// Maximum number of pixels of an image: 8192 x 8192, 0.5 GB as depths.
 inline constexpr std::uint64_t kMaxImagePixels = 1u << 26;
 
 struct MessageHeader {
@@ -53,8 +54,8 @@ struct CompressedImageMessage {
   std::string_view data;
 };
 
-// sensor_msgs/RegionOfInterest: the part of the sensor that the image shows, in pixels without binning. All
-// 0: the whole sensor.
+// sensor_msgs/RegionOfInterest: the part of the sensor that the image shows, in pixels without binning. All 0
+// means the whole sensor.
 struct RegionMessage {
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
   bool do_rectify = false;  // the rectified image shows another region, which is not stated
@@ -79,8 +80,9 @@ struct StampedTransform {
   RigidTransform X = RigidTransform::Identity();
 };
 
-// Each throws InputError, about the cursor's subject, when the bytes end too early or a transform is no
-// rotation. Views point into the bytes. Bytes behind the last value are ignored.
+// Each throws InputError, about the cursor's subject, if the bytes end too early. read_transforms() also
+// throws it if a transform is not finite or is no rotation. Views point into the bytes. Bytes behind the last
+// value are ignored.
 MessageHeader read_header(MessageCursor& from);
 std::int64_t read_stamp_ns(MessageCursor& from);  // stamp of a header; kStampBytes of the message are enough
 inline constexpr std::size_t kStampBytes = 12;

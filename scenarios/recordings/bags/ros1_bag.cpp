@@ -19,7 +19,7 @@ std::uint32_t number_in(std::string_view bytes) {
   return number;
 }
 
-// name=value, each with its length in front.
+// Decodes the fields name=value, each with its length in front.
 std::map<std::string, std::string> named_values(std::string_view bytes, const std::string& subject) {
   std::map<std::string, std::string> values;
   MessageCursor cursor(bytes, WireFormat::ros1, subject);
@@ -38,7 +38,7 @@ void check_values(std::uint64_t size, const std::string& subject) {
                                   " bytes of values: expected up to " + std::to_string(kMaxValues));
 }
 
-// bytes(from, size): of a file or of an unpacked chunk.
+// bytes(from, size) returns bytes of a file or of a decoded chunk.
 template <class Bytes>
 Ros1Record record_of(Bytes&& bytes, std::uint64_t at, const std::string& subject) {
   Ros1Record record;
@@ -50,7 +50,7 @@ Ros1Record record_of(Bytes&& bytes, std::uint64_t at, const std::string& subject
   return record;
 }
 
-// Two numbers of 32 bits: seconds and nanoseconds.
+// Reads a time: two numbers of 32 bits, seconds and nanoseconds.
 std::int64_t time_ns(MessageCursor& cursor) {
   const std::int64_t seconds = cursor.u32();
   return seconds * 1'000'000'000 + cursor.u32();
@@ -136,7 +136,7 @@ bool Ros1Bag::walk() {
 
 void Ros1Bag::add_connection(const Ros1Record& record, std::string_view data) {
   const std::uint32_t id = record.number("conn", file_.name());
-  if (topic_of_.count(id) > 0) return;  // a second time, behind the chunks
+  if (topic_of_.count(id) > 0) return;  // listed again behind the chunks
   const auto values = named_values(data, file_.name());
   const auto name = record.values.find("topic");
   const auto type = values.find("type");
@@ -215,7 +215,7 @@ void Ros1Bag::scan_chunk(std::uint64_t chunk_at) {
 std::string Ros1Bag::start(const MessagePlace& place, std::uint64_t max_bytes) const {
   const std::lock_guard lock(mutex_);
   if (!chunk_ || chunk_->record_at() != place.part) {
-    chunk_.reset();  // before the next one takes memory
+    chunk_.reset();  // frees memory before the next one takes some
     chunk_ = open_chunk(place.part);
   }
   const Ros1Record record = record_in(*chunk_, place.at);

@@ -20,12 +20,13 @@ struct Ros1Record {
   std::map<std::string, std::string> values;
   std::uint64_t data_at = 0, data_size = 0;  // position and size in the file, or in the records of a chunk
   std::uint64_t end() const { return data_at + data_size; }
-  // Throw InputError about the subject when there is no such value.
+  // Both throw InputError about the subject if there is no such value.
   std::uint32_t number(const std::string& name, const std::string& subject) const;
   int opcode(const std::string& subject) const;
 };
 
-// Finds messages by the lists behind the chunks; where the bag was not closed, by all records.
+// Finds messages by the lists behind the chunks. If the bag was not closed or was cut short, it reads all
+// whole chunks instead.
 class Ros1Bag final : public BagFile {
  public:
   Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted);

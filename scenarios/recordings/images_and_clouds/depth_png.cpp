@@ -46,7 +46,8 @@ class PngFile {
   int colour_type() const { return png_get_color_type(png_, info_); }
   std::string pixel_format() const;
 
-  // The rows one after the other: as stored, or as 8-bit red, green, blue, alpha (255 where there is none).
+  // Returns the rows one after the other: as stored, or as 8-bit red, green, blue, alpha (255 if the file has
+  // none).
   const std::vector<png_byte>& decode_as_stored() { return decode(&PngFile::prepare_as_stored); }
   const std::vector<png_byte>& decode_as_rgba() { return decode(&PngFile::prepare_as_rgba); }
 
@@ -54,7 +55,7 @@ class PngFile {
   using Step = void (PngFile::*)();
 
   [[noreturn]] static void on_error(png_structp png, png_const_charp message);
-  static void on_warning(png_structp, png_const_charp) {}  // the pixels are usable: nothing to say
+  static void on_warning(png_structp, png_const_charp) {}  // the pixels are usable
 
   void start();
   void guarded(Step step);
@@ -116,7 +117,7 @@ void PngFile::check_chunks() {
   for (std::uintmax_t at = kSignature; at + kAroundData <= file_bytes_;) {
     if (std::fseek(file_.get(), static_cast<long>(at), SEEK_SET) != 0 ||
         std::fread(start.data(), 1, start.size(), file_.get()) != start.size())
-      break;  // libpng says why
+      break;  // libpng reports the cause
     const std::uintmax_t length = png_get_uint_32(start.data());
     const std::string type(reinterpret_cast<const char*>(start.data()) + 4, 4);
     if (length > file_bytes_ - at - kAroundData)
@@ -142,7 +143,7 @@ void PngFile::guarded(Step step) {
 }
 
 void PngFile::read_header() {
-  png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // texts and profiles: no memory
+  png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // no memory for texts and profiles
   png_init_io(png_, file_.get());
   png_read_info(png_, info_);
 }
@@ -160,9 +161,9 @@ void PngFile::prepare_as_rgba() {
 }
 
 void PngFile::read_pixels() {
-  // Interlaced images too: libpng makes all passes over the rows.
+  // Reads interlaced images too, because libpng makes all passes over the rows.
   png_read_image(png_, rows_.data());
-  png_read_end(png_, nullptr);  // finds a file that was cut short behind the pixels
+  png_read_end(png_, nullptr);  // detects a file that was cut short behind the pixels
 }
 
 // A header may claim an image that would not fit in memory. Deflate expands at most 1032 times.

@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// A 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
+// Reads a 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
 // measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
 // finite. Throws InputError if the file is missing, cut short, damaged or of another pixel format.
 DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m);
@@ -22,7 +22,7 @@ struct GreyImage {
   std::vector<std::uint16_t> values;
 };
 
-// The values of a 16-bit PNG of one channel that is in memory. name: what an InputError is about.
+// Decodes a 16-bit PNG of one channel that is in memory. name: what an InputError is about.
 GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
 
 // Returns pixel (u, v) as element v * width + u, 0xRRGGBB, and sets width and height. A fully transparent

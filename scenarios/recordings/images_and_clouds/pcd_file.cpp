@@ -31,7 +31,7 @@ constexpr std::uint32_t kRgb = 0xFFFFFF;  // mask for the colour in a word 0xAAR
 // Maximum number of raw bytes for one byte of an LZF block: the longest back reference makes 264 out of 3.
 constexpr std::size_t kLzfMaxExpansion = 88;
 
-// The whole file: header and data are views into it.
+// Returns the whole file. Header and data are views into it.
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);  // fails also for a folder
@@ -72,8 +72,9 @@ double real_number(const std::string& where, std::string_view word) {
   return value;
 }
 
-// The colour word as an integer, or as TYPE F the float that has its bits. Some write an integer as TYPE F,
-// too: with all its digits it is a colour.
+// Returns the colour in a word of text. The word is an integer or, for TYPE F, the float that has the bits of
+// the colour. Some programs write the integer itself as TYPE F: an integer without point and exponent is read
+// as a colour if its float bits hold none.
 std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std::string_view word) {
   const double value = real_number(where, word);
   if (std::isnan(value)) return kNoColour;
@@ -86,8 +87,8 @@ std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std:
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) & kRgb;
 }
 
-// Point i from the words of its line, in the order of FIELDS. A coordinate is rounded to its SIZE, so that a
-// cloud has the same bits in every encoding.
+// Reads point i from the words of its line, in the order of FIELDS. A coordinate is rounded to its SIZE, so
+// that a cloud has the same bits in every encoding.
 void read_ascii_point(const std::string& where, const PcdHeader& header,
                       const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
   if (words.size() != header.point_values) {
@@ -102,7 +103,8 @@ void read_ascii_point(const std::string& where, const PcdHeader& header,
   if (header.colour) cloud.colour[i] = ascii_colour(where, *header.colour, words[header.colour->first_value]);
 }
 
-// One point a line; empty lines are skipped, and nothing else may follow the last point.
+// Reads one point from each line. Empty lines are skipped. Throws InputError if another line follows the last
+// point.
 void read_ascii(const std::string& file, const PcdHeader& header, PcdText rest, PointCloud& cloud) {
   const auto where = [&] { return file + ":" + std::to_string(rest.line); };
   for (std::size_t i = 0; i < header.points;) {
@@ -143,10 +145,10 @@ void read_binary(const PcdHeader& header, const char* bytes, bool field_after_fi
   }
 }
 
-// The block expanded to exactly raw_size bytes.
+// Returns the block expanded to raw_size bytes. Throws InputError if it has another size when expanded.
 std::vector<char> expand(const std::string& file, std::string_view block, std::uint32_t raw_size) {
   std::vector<char> raw(raw_size);
-  // liblzf checks every access but that to the first byte.
+  // liblzf checks every access except the one to the first byte.
   const unsigned expanded =
       block.empty() ? 0
                     : lzf_decompress(block.data(), static_cast<unsigned>(block.size()), raw.data(), raw_size);
@@ -220,9 +222,9 @@ bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   return false;
 }
 
-// True if the camera is at the origin and looks along the z axis of the file or against it, with its rows
-// along x. Programs disagree about these signs, so that such a rotation says nothing about an image that is
-// seen from the origin along z.
+// Returns true if the camera is at the origin and looks along the z axis of the file or against it, with its
+// rows along x. Programs disagree about these signs. Such a rotation therefore says nothing about an image
+// that is seen from the origin along z.
 bool keeps_axes(const RigidTransform& X_FV) {
   constexpr double kRounding = 1e-4;  // tolerance for quaternions that are written with few digits
   return X_FV.translation().isZero(0) && X_FV.linear().cwiseAbs().isIdentity(kRounding);

@@ -14,28 +14,30 @@ struct PcdCloud {
   PointCloud cloud;
   int width = 0;
   int height = 0;  // 1: not organised
-  // The camera in the coordinates of the file: the identity but where VIEWPOINT is used, see below.
+  // Pose of the camera in the coordinates of the file. It is the identity unless VIEWPOINT is used, see
+  // below.
   RigidTransform X_FC = RigidTransform::Identity();
   bool has_unused_viewpoint = false;  // seen from the file's VIEWPOINT, the points form no image
 };
 
-// Reads the fields x, y, z (floats of 4 or 8 bytes, metres) and rgb or rgba (4 bytes, 0xAARRGGBB; the alpha
-// is dropped, but see colour_of_float() for TYPE F); other fields are skipped, whatever their SIZE, TYPE and
-// COUNT. A colour that is NaN is kNoColour. The camera's frame is the world frame. A point with a coordinate
-// that is not finite, or at exactly (0, 0, 0), is a missing measurement: NaN in all three coordinates, in its
-// place.
+// Reads the fields x, y, z (floats of 4 or 8 bytes, metres) and rgb or rgba (4 bytes, 0xAARRGGBB). The alpha
+// is dropped, but see colour_of_float() for TYPE F. Other fields are skipped, with any SIZE, TYPE and COUNT.
+// A colour that is NaN is kNoColour. The camera's frame is the world frame. A point with a coordinate that is
+// not finite, or at exactly (0, 0, 0), is a missing measurement: it keeps its index, and its three
+// coordinates are NaN.
 //
-// An organised cloud gets cloud.image if a pinhole camera explains it: u = fx x/z + cx and v = fy y/z + cy,
-// fitted by least squares, leave every point less than 0.5 px off its pixel. pixel_slack is then the largest
-// residual plus 1e-6 px. The camera is at the origin, or at VIEWPOINT if an image can be seen from there:
-// then the cloud is in its frame, and X_FC leads back. A VIEWPOINT at the origin may turn the camera.
-// Programs disagree whether a VIEWPOINT looks along its z or against it, and which row and column come first:
-// the image may be turned round, its last row or column first. Without an image at VIEWPOINT,
-// has_unused_viewpoint is set.
+// An organised cloud gets cloud.image if a pinhole camera explains it: u = fx x/z + cx and v = fy y/z + cy
+// are fitted by least squares, and every point must be less than 0.5 px off its pixel. pixel_slack is then
+// the largest residual plus 1e-6 px. The camera is at the origin, or at VIEWPOINT if the points form an image
+// when seen from there. In the latter case the cloud is in the camera's frame, and X_FC transforms it back to
+// the file's. A VIEWPOINT at the origin may still rotate the camera. Programs disagree about the direction of
+// view (along z of VIEWPOINT or against it) and about which row and column come first. Therefore both
+// directions are tried, each with the rows, the columns, both or neither reversed. If the cloud forms no
+// image at VIEWPOINT, or is in no order, has_unused_viewpoint is set.
 //
 // Throws InputError if the header or the data cannot be used. Memory is allocated only in proportion to the
-// bytes in the file, whatever the header claims. Bytes behind the last point of binary data (padding) are
-// ignored.
+// bytes in the file, regardless of the sizes in the header. Bytes behind the last point of binary data
+// (padding) are ignored.
 PcdCloud read_pcd(const std::filesystem::path& file);
 
 }  // namespace remote_touch

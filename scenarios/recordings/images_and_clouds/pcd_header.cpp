@@ -21,8 +21,7 @@ constexpr std::array<std::string_view, 11> kKeywords = {"VERSION",   "FIELDS", "
                                                         "VIEWPOINT", "POINTS", "DATA"};
 constexpr std::array<std::string_view, 6> kVersions = {"0.7", ".7", "0.6", ".6", "0.5", ".5"};
 
-// Lengths of one dimension are held to an int: the image layout counts in int, and width * height fits 64
-// bits.
+// Limit of width and of height: the image layout counts in int, and width * height fits in 64 bits.
 constexpr std::size_t kMaxPixels = std::numeric_limits<int>::max();
 
 // No length in a header may be 0; signs, fractions and trailing letters are refused.
@@ -36,8 +35,8 @@ std::size_t integer_value(const std::string& file, const std::string& keyword, s
   return value;
 }
 
-// The lines up to DATA by keyword; of a keyword that appears twice the last line counts. Any other keyword is
-// refused: a file that is not PCD is found at its first line.
+// Returns the lines up to DATA by keyword. If a keyword appears twice, the last line is used. Throws
+// InputError for any other keyword, so that a file that is not PCD is detected at its first line.
 Entries read_entries(const std::string& file, PcdText& rest) {
   Entries entries;
   while (!rest.text.empty() && !entries.contains("DATA")) {
@@ -68,7 +67,7 @@ const Words& entry(const std::string& file, const Entries& entries, const std::s
       file, keyword + " has " + std::to_string(words.size()) + " values: expected " + std::to_string(count));
 }
 
-// FIELDS, SIZE, TYPE and COUNT, one value each per field; a missing COUNT means 1 everywhere.
+// Reads FIELDS, SIZE, TYPE and COUNT, one value each per field. A missing COUNT means 1 everywhere.
 void read_fields(const std::string& file, const Entries& entries, PcdHeader& header) {
   const Words& names = entry(file, entries, "FIELDS");
   const std::size_t n = names.size();
@@ -103,7 +102,8 @@ PcdField coordinate(const std::string& file, const PcdHeader& header, const std:
   return *found;
 }
 
-// The first of rgb and rgba. Its TYPE may be anything: the library itself writes the colour word as a float.
+// Returns the first field named rgb or rgba. Its TYPE may be anything: the library itself writes the colour
+// word as a float.
 std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& header) {
   for (const PcdField& field : header.fields) {
     if (field.name != "rgb" && field.name != "rgba") continue;
@@ -114,7 +114,7 @@ std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& h
   return std::nullopt;
 }
 
-// WIDTH, HEIGHT and POINTS, which must agree.
+// Reads WIDTH, HEIGHT and POINTS, which must agree.
 void read_lengths(const std::string& file, const Entries& entries, PcdHeader& header) {
   const std::string_view points = entry(file, entries, "POINTS", 1)[0];
   const bool in_no_order = !entries.contains("WIDTH") && !entries.contains("HEIGHT");
@@ -129,7 +129,8 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
                    "POINTS = " + shown(points) + ": expected WIDTH * HEIGHT = " + std::to_string(product));
 }
 
-// tx ty tz qw qx qy qz. Some programs write zeros for "unknown": at the origin that is no rotation.
+// Reads tx ty tz qw qx qy qz. Some programs write zeros for "unknown", which means no rotation if the
+// position is the origin.
 std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entries& entries) {
   if (!entries.contains("VIEWPOINT")) return std::nullopt;
   std::array<double, 7> value{};

@@ -1,5 +1,5 @@
-// The header of a PCD file (Point Cloud Library, versions 0.5 to 0.7): text lines "KEYWORD value...", #
-// comments, up to and including the line DATA; behind it lie the points.
+// The header of a PCD file (Point Cloud Library, versions 0.5 to 0.7): text lines "KEYWORD value..." and #
+// comments, up to and including the line DATA. The points follow it.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@
 
 namespace remote_touch {
 
-// The part of a PCD file that is still to be read, and the number of the line read last.
+// The part of a PCD file that is not yet read, and the number of the line that was read last.
 struct PcdText {
   std::string_view text;
   std::size_t line = 0;
 
-  // The words of the next line; the line is removed from text.
+  // Returns the words of the next line and removes the line from text.
   std::vector<std::string_view> take_line();
 };
 
@@ -28,7 +28,7 @@ struct PcdField {
   std::size_t size = 0, count = 0;
   std::size_t first_byte = 0, first_value = 0;  // start of this field within a point
 
-  // The layout as the header spells it, for messages.
+  // Returns TYPE, SIZE and COUNT as the header spells them, for messages.
   std::string text() const;
 };
 
@@ -41,8 +41,8 @@ struct PcdHeader {
   std::string_view encoding;       // ascii, binary or binary_compressed
   PcdField x, y, z;                // TYPE F, SIZE 4 or 8, COUNT 1
   std::optional<PcdField> colour;  // rgb or rgba: SIZE 4, COUNT 1
-  // VIEWPOINT: where the sensor was in the coordinates of the points, and how it was turned. None if it was
-  // at the origin and not turned, which is what files without a VIEWPOINT mean.
+  // VIEWPOINT: position and rotation of the sensor in the coordinates of the points. Empty if the sensor was
+  // at the origin and not rotated, which is also the meaning of a file without a VIEWPOINT.
   std::optional<RigidTransform> X_FV;
 };
 
@@ -52,7 +52,7 @@ struct PcdHeader {
 // is missing or not allowed.
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest);
 
-// A word of the file for a message: quoted, short and printable, even where the file is not text at all.
+// Returns a word of the file for a message: quoted, short and printable, even if the file is not text at all.
 std::string shown(std::string_view word);
 
 }  // namespace remote_touch

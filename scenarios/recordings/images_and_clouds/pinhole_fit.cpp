@@ -14,8 +14,8 @@ struct AxisFit {
   double residual = 0;  // residual of the worst point, pixels
 };
 
-// Fits pixel as a line over ratio, by least squares over the valid points: in this direction the fit
-// minimises pixels. The sums are taken about the means, so that they keep their digits.
+// Fits pixel as a linear function of ratio, by least squares over the valid points. In this direction the fit
+// minimises residuals in pixels. The sums are taken about the means, so that they keep their digits.
 std::optional<AxisFit> fit_axis(const std::vector<double>& ratios, std::size_t columns, bool across) {
   const auto for_valid = [&](auto visit) {
     for (std::size_t first = 0, v = 0; first < ratios.size(); first += columns, ++v) {
@@ -53,7 +53,8 @@ std::vector<double> ratios(const std::vector<double>& across, const std::vector<
 }  // namespace
 
 std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height) {
-  // A pinhole sees nothing behind it; the fit alone could not tell.
+  // A pinhole camera sees no point behind it. The fit cannot detect such a point, because x/z is the same at
+  // (-x, -z).
   const auto behind_camera = [](double z_m) { return z_m <= 0; };
   if (std::any_of(cloud.z.begin(), cloud.z.end(), behind_camera)) return std::nullopt;
   const std::size_t columns = static_cast<std::size_t>(width);

@@ -7,15 +7,15 @@
 
 namespace remote_touch {
 
-inline constexpr double kMaxFitResidual_px = 0.5;  // beyond it a point would belong to a neighbour pixel
-// Margin for a reader that evaluates the projection in another order.
+inline constexpr double kMaxFitResidual_px = 0.5;  // beyond it a point would belong to another pixel
+// Margin for a reader that evaluates the projection in another order of operations.
 inline constexpr double kPixelRounding_px = 1e-6;
 
-// The pinhole camera that explains a cloud in its camera's frame, point v * width + u being that of pixel (u,
-// v): u = fx x/z + cx and v = fy y/z + cy, each fitted by least squares over the valid points. pixel_slack is
-// the largest residual plus 1e-6 px. Missing points are NaN. Returns none if a point is behind the camera or
-// 0.5 px or more off its pixel, the image is mirrored, or the valid points do not cover two columns and two
-// rows. Pre: width * height points.
+// Returns the pinhole camera that explains a cloud in its camera's frame, in which point v * width + u
+// belongs to pixel (u, v): u = fx x/z + cx and v = fy y/z + cy, each fitted by least squares over the valid
+// points. pixel_slack is the largest residual plus 1e-6 px. Missing points are NaN. Returns none if a point
+// is behind the camera or 0.5 px or more off its pixel, if the image is mirrored, or if the valid points do
+// not cover two columns and two rows. Pre: width * height points.
 std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height);
 
 }  // namespace remote_touch

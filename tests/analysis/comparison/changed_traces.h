@@ -49,7 +49,8 @@ inline std::size_t length() {
   return lift().front().length();
 }
 
-// The first tick from a given one on: a new frame came in or not, the state is another than before or not.
+// Returns the first tick, not before `from`, in which the frame is new if new_frame (else the same as before)
+// and the state is new if new_state (else the same).
 inline std::size_t tick_where(bool new_frame, bool new_state, std::size_t from = 100) {
   Columns columns = lift();
   const auto &frame = integers(columns, "frame_index"), &state = integers(columns, "state");
@@ -72,7 +73,7 @@ inline TraceComparison after(const Change& change, const Tolerances& tolerances 
   change(candidate);
   return compare(lift(), candidate, tolerances, configuration);
 }
-// The divergence, or one that no test expects where there is none.
+// Returns the divergence. If there is none, the test fails and a default divergence is returned.
 inline Divergence divergence(const TraceComparison& comparison) {
   EXPECT_FALSE(comparison.is_same());
   EXPECT_TRUE(comparison.divergence);

@@ -1,4 +1,4 @@
-// Columns against columns: what counts as the same, and what never does.
+// Comparison of two columns: what counts as the same, and what never does.
 #include "analysis/comparison/column_comparison.h"
 
 #include <gtest/gtest.h>
@@ -73,24 +73,24 @@ TEST(CompareColumns, AVectorsDeviationIsALength) {
   EXPECT_EQ(c.rows, 2u);
   EXPECT_EQ(c.outside, 1u);
   EXPECT_DOUBLE_EQ(c.max, 5);
-  // Relative to the length of the baseline's row, here 5.
+  // The tolerance is relative to the length of the baseline's row, here 5.
   EXPECT_TRUE(compare_columns(numbers({3, 0, 4}, 3), numbers({3, 0, 4.4}, 3), {0, 0.1}).is_same());
   EXPECT_FALSE(compare_columns(numbers({3, 0, 4}, 3), numbers({3, 0, 4.6}, 3), {0, 0.1}).is_same());
 }
 
-// Their squares are 0.
+// The squares of such small numbers are 0.
 TEST(CompareColumns, DistinguishesTheSmallestVectors) {
   const auto c = compare_columns(numbers({0, 1e-170, 0}, 3), numbers({0, 2e-170, 0}, 3), {});
   EXPECT_EQ(c.outside, 1u);
   EXPECT_DOUBLE_EQ(c.max, 1e-170);
   EXPECT_EQ(compare_columns(numbers({0, 5e-324, 0}, 3), numbers({0, 0, 0}, 3), {}).outside, 1u);
-  // Whatever the next row is.
+  // The next row does not matter.
   const auto two =
       compare_columns(numbers({0, 1e-170, 0, 7, 0, 0}, 3), numbers({0, 2e-170, 0, 8, 0, 0}, 3), {});
   EXPECT_EQ(two.outside, 2u);
 }
 
-// Nor do the largest let anything pass.
+// An infinite or a very large baseline does not make the relative tolerance accept any number.
 TEST(CompareColumns, ARelativeToleranceNeedsAFiniteLength) {
   EXPECT_FALSE(
       compare_columns(numbers({kInfinity, 0, 0}, 3), numbers({kInfinity, 5, 0}, 3), {0, 1e-12}).is_same());
@@ -127,7 +127,7 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({1, 2, 3}, 1, "mm")), "units m against mm");
   EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "another kind of values");
   EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
-  // The rows that both have are compared all the same.
+  // The rows that both have are compared nevertheless.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
 }
 

@@ -1,4 +1,4 @@
-// The figure of how far two traces are apart over time.
+// The figure of the deviation between two traces over time.
 #include "analysis/comparison/deviation_figure.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Figure figure_of(const std::vector<Column>& a, const std::vector<Column>& b,
   return deviation_figure(baseline, candidate, compare_by_name(baseline, candidate, tolerances));
 }
 
-// 2001 rows are more than the 2000 pieces that are drawn: two in each, and one in the last.
+// 2001 rows are more than the maximum of 2000 pieces, so each piece has two rows, and the last has one.
 TEST(DeviationFigure, EachPieceShowsItsLargestDeviation) {
   const std::vector<Column> a = zeros(2001, {"x"});
   std::vector<Column> b = a;

@@ -1,4 +1,4 @@
-// The situation in which two traces part, and the explanation of it.
+// The situation in which two traces begin to differ, and its explanation.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace changed_traces;
 
-// --- in what situation the runs part ---
+// --- the situation in which the runs begin to differ ---
 
 TEST(Causes, Drift) {
   const std::size_t tick = quiet_tick();
@@ -30,7 +30,7 @@ TEST(Causes, FrameUpdate) {
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(found.cause, Cause::frame_update);
   EXPECT_EQ(found.explanation, frame + " arrived in this tick, the same in both");
-  // A tick before and a tick after it are none.
+  // The ticks before and after it are not frame updates.
   for (const std::size_t other : {tick - 1, tick + 1})
     EXPECT_NE(divergence(after([&](Columns& c) { proxy_x(c, other) += 1e-9; })).cause, Cause::frame_update);
 }
@@ -49,11 +49,11 @@ TEST(Causes, TheVeryFirstFrameIsAnUpdate) {
 }
 
 TEST(Causes, StateTransition) {
-  // Both change it: something else differs in the tick of the change.
+  // Both runs change the state, and something else differs in that tick.
   const std::size_t tick = tick_where(false, true);
   const Divergence both = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(both.cause, Cause::state_transition);
-  // One changes it.
+  // One run changes the state.
   const std::size_t quiet = quiet_tick();
   Columns steady = lift(), leaves = lift();
   integers(steady, "state")[quiet - 1] = integers(steady, "state")[quiet] = 1;
@@ -63,7 +63,7 @@ TEST(Causes, StateTransition) {
   EXPECT_EQ(divergence(compare(steady, leaves)).explanation, "baseline " + stays + ", candidate " + goes);
   EXPECT_EQ(divergence(compare(leaves, steady)).explanation, "baseline " + goes + ", candidate " + stays);
   EXPECT_EQ(divergence(compare(leaves, steady)).cause, Cause::state_transition);
-  // There is none before the first tick.
+  // There is no state before the first tick.
   integers(steady, "frame_index")[0] = integers(leaves, "frame_index")[0] = -1;
   integers(leaves, "state")[0] = 2 - integers(steady, "state")[0];
   EXPECT_EQ(divergence(compare(steady, leaves)).cause, Cause::state_transition);
@@ -89,7 +89,7 @@ TEST(Causes, EveryInput) {
     for (const auto& [name, change] : inputs) change(c);
   }));
   EXPECT_HAS(all.explanation, "time, hip_position, frame_hash differs");
-  // A device that turns.
+  // The orientation of the device is an input too.
   Columns turning = lift(), turned;
   turning.push_back({"hip_orientation", "1", "", std::vector<double>(4 * length(), 0.5), 4, {}});
   turned = turning;
@@ -110,8 +110,8 @@ TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
   }
 }
 
-// The same position has another distance to the true surface: the truth differs. At another position the
-// distance differs as a consequence.
+// If the same position has another distance to the true surface, the truth differs. If the position differs
+// too, the distance differs as a consequence.
 TEST(Causes, TheTruthAloneIsAnInput) {
   const std::size_t tick = quiet_tick();
   const Change truth = [&](Columns& c) { numbers(c, "signed_distance")[tick] += 1e-3; };
@@ -135,8 +135,8 @@ TEST(Causes, TheConfigurationIsTheCauseAndTheSituationIsAdded) {
   EXPECT_HAS(found.observation, "arrived in this tick");
 }
 
-// Configuration before input before frame update before state transition before drift: at a tick that is
-// all of these, taken away one by one.
+// The order is configuration, input, frame update, state transition, drift. The test begins with a tick that
+// has all of these causes and removes them one by one.
 TEST(Causes, HaveAnOrder) {
   const std::size_t tick = tick_where(true, false);
   Columns baseline = lift(), candidate;
@@ -159,7 +159,7 @@ TEST(Causes, HaveAnOrder) {
   EXPECT_EQ(cause(), Cause::drift);
 }
 
-// Differences after the tick at which the runs part are consequences, or at least cannot be the cause.
+// Differences after the first different tick are consequences, or at least cannot be the cause.
 TEST(Causes, AreThoseOfTheTickAtWhichTheRunsPart) {
   const std::size_t tick = quiet_tick();
   const Divergence found = divergence(after([&](Columns& c) {
@@ -171,7 +171,7 @@ TEST(Causes, AreThoseOfTheTickAtWhichTheRunsPart) {
   EXPECT_EQ(found.cause, Cause::drift);
 }
 
-// Columns that a trace does not have are no obstacle.
+// Missing columns do not prevent an explanation.
 TEST(Causes, DriftIsTheCauseIfFramesAndStatesAreMissing) {
   Columns bare, changed;
   for (const char* name : {"time", "proxy_position"}) bare.push_back(find(lift(), name));
@@ -191,7 +191,7 @@ TEST(Causes, HaveNames) {
   EXPECT_EQ(names.size(), 5u);
 }
 
-// --- what is shown of it ---
+// --- the rows and the frame that are shown ---
 
 TEST(Rows, ShowTheTickBeforeAndTheTickItself) {
   const std::size_t tick = 640;
@@ -214,7 +214,8 @@ TEST(Rows, ShowTheTickBeforeAndTheTickItself) {
   EXPECT_EQ(std::get<std::vector<double>>(find(found.candidate, "proxy_position").values)[3], 7);
 }
 
-// Columns that one of them has not, not that far or as something else are left out, and tell nothing.
+// A column is left out, and does not affect the cause, if one trace lacks it, has too few rows of it or has
+// another type.
 TEST(Rows, AreOfColumnsThatBothHave) {
   const std::size_t tick = quiet_tick();
   for (const char* odd : {"state", "frame_index", "frame_hash", "status"}) {

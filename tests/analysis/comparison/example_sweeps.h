@@ -24,7 +24,7 @@ inline Column names(const std::string& name, const Texts& texts) {
   return {name, "1", "renderer." + name, places, 1, texts};
 }
 
-// Measures "event" and "depth", all runs done, all zero.
+// A sweep with the measures "event" and "depth": all runs are done and all values are 0.
 inline SweepResult sweep(std::vector<Column> axes, int replicates) {
   SweepResult result;
   result.axes = std::move(axes);

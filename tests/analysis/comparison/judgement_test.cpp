@@ -1,4 +1,4 @@
-// Better, worse or only another: of one number, and of the measures of sweeps.
+// Judgements (better, worse, changed) of one number, and of the measures of sweeps.
 #include "analysis/comparison/judgement.h"
 
 #include <gtest/gtest.h>
@@ -49,8 +49,8 @@ TEST(JudgedRunByRun, DirectionOfAllChangedRunsDecides) {
   EXPECT_EQ(judgement_of(compare(b, a, {}, {}, kSmaller), 1, false), Judgement::undecided);
 }
 
-// 16 runs popped through and 1 does now: the other measures of 15 runs say nothing, and that of one is worse
-// or better. It decides nothing in either direction.
+// All 16 runs popped through before, and one does now. The other measure cannot be judged in 15 runs, and is
+// worse or better in one. This one run decides nothing in either direction.
 TEST(JudgedRunByRun, OneRunBesideManyWithAnotherOutcomeDecidesNothing) {
   SweepResult a = row(16), b = a;
   for (SweepResult* one : {&a, &b}) one->measures[0].name = "popped_through", one->measures[1].name = "noise";
@@ -126,7 +126,7 @@ TEST(JudgedInPairs, RunsWithAnotherOutcomeAreJudgedByThatAlone) {
     EXPECT_EQ(judgement_of(c, 0, paired), Judgement::better);
     EXPECT_EQ(judgement_of(c, 1, paired), Judgement::changed);
   }
-  for (std::size_t i = 0; i < 60; ++i) depth(b)[i * 83 + 1] = 1;  // these did not
+  for (std::size_t i = 0; i < 60; ++i) depth(b)[i * 83 + 1] = 1;  // the outcome is the same
   for (const bool paired : {false, true})
     EXPECT_EQ(judgement_of(compare(a, b, {}, {}, directions), 1, paired), Judgement::worse);
 }

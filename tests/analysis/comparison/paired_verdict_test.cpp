@@ -1,4 +1,4 @@
-// The rule by which pairs of runs make a verdict: what passes, what does not, and how often it errs.
+// The rule by which pairs of runs lead to a verdict: what passes, what does not, and how often it is wrong.
 #include "analysis/comparison/sweep_comparison.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(PairedVerdictOf, FewRunsDecideNothing) {
   SweepResult a = sweep({numbers("x", 1, 1)}, 4), b = a;
   flip(a, b, 2, true);
   EXPECT_EQ(compare(a, b).paired, PairedVerdict::undecided);
-  // Nor when the event is equal and something else differs, however little.
+  // They decide nothing either if the event is equal and another measure differs, however little.
   b = a, depth(b)[0] = 1e-12;
   const SweepComparison c = compare(a, b);
   EXPECT_EQ(whole(c, 0), Judgement::equal);
@@ -75,7 +75,7 @@ TEST(PairedVerdictOf, FlipsOneWayAreAChange) {
   }
 }
 
-// 3 % of a part's runs get worse, while 318 flips elsewhere hide that in the whole.
+// 3 % of a part's runs get worse, while more than 300 flips elsewhere hide that in the whole.
 TEST(PairedVerdictOf, FindsAChangeOfOnePart) {
   SweepResult a = map(), b = a;
   const std::vector<Region> regions = compare(a, a).regions;
@@ -110,7 +110,7 @@ TEST(PairedVerdictOf, FindsLargeDifferencesAmongSmallOnes) {
   EXPECT_EQ(whole(c, 1), Judgement::changed);
 }
 
-// All smaller than the margin could tell, but all one way.
+// All differences are far below the margin, but all have the same sign.
 TEST(PairedVerdictOf, ASystematicChangeIsAChangeHoweverSmall) {
   SweepResult a = row(40), b = a;
   for (double& value : depth(b)) value = 1e-15;
@@ -118,7 +118,8 @@ TEST(PairedVerdictOf, ASystematicChangeIsAChangeHoweverSmall) {
   EXPECT_EQ(compare(a, b, {{"*", {1e-12, 0}}}).paired, PairedVerdict::equal);
 }
 
-// Maps in which one run of 20 flips by chance: alpha holds, and at this size all the others pass.
+// One run of 20 flips by chance in these maps. False alarms are as rare as alpha requires, and all other maps
+// pass.
 TEST(PairedVerdictOf, IsRarelyAFalseAlarm) {
   constexpr int kMaps = 200;
   std::mt19937_64 random(11);

@@ -107,8 +107,8 @@ TEST(CompareSweeps, AnEventThatIsNeitherIsNoPass) {
   EXPECT_EQ(c.paired, PairedVerdict::changed);
 }
 
-// The changes are up as often as down, but far larger than the differences between runs: not shown to be
-// within the margin.
+// The changes go up as often as down, but are far larger than the differences between runs. They are not
+// shown to be within the margin.
 TEST(CompareSweeps, LargeChangesBothWaysAreNoPass) {
   SweepResult a = map(), b = a;
   for (std::size_t run = 0; run < depth(b).size(); ++run) depth(b)[run] += run % 2 == 0 ? 1e6 : -1e6;
@@ -118,7 +118,8 @@ TEST(CompareSweeps, LargeChangesBothWaysAreNoPass) {
   EXPECT_EQ(compare(a, few).paired, PairedVerdict::undecided);
 }
 
-// The runs that a refinement adds depend on the results: only the first round has to be there.
+// The runs that a refinement adds depend on the results, so only the runs of the first round must be done in
+// both.
 TEST(CompareSweeps, RefinedSweepsAreJudgedByTheirFirstRound) {
   SweepResult a = map(), b = a;
   a.round.assign(a.run_count(), 0), a.round[3] = a.round[4] = 1;
@@ -242,7 +243,8 @@ TEST(Regions, AreThirdsOfNumbersAndSingleValuesOfShortAxes) {
   EXPECT_EQ(map[2], "sigma 0 to 0.0048, acceleration 2.3 to 4.6");
 }
 
-// 3 x 3 x 3, and 3 more would be too many; 4 x 4 and 2 are 32, and the 3 before them too many.
+// Three axes with three parts each make 27 parts, and a fourth axis would make too many. Axes a, b and d make
+// 4 x 4 x 2 = 32 parts; axis c would make too many.
 TEST(Regions, AreAtMost36) {
   const auto axis = [](const char* name, std::size_t count) { return numbers(name, count, 1); };
   EXPECT_EQ(labels({axis("a", 6), axis("b", 6), axis("c", 6), axis("d", 6)}).size(), 28u);
@@ -285,7 +287,7 @@ TEST(RegionComparison, MeasuresOtherNumbers) {
   EXPECT_EQ(r.up, 2);
   EXPECT_EQ(r.down, 0);
   EXPECT_EQ(r.mean.pairs, 4);
-  EXPECT_EQ(r.mean.mean, 0.75);  // also what is within the tolerance
+  EXPECT_EQ(r.mean.mean, 0.75);  // includes pairs within the tolerance
   EXPECT_EQ(r.mean.low, mean_difference({1, 2, -0.5, 0.5}).low);
   EXPECT_NEAR(r.baseline_spread, std::sqrt(5.0) / 2, 1e-15);  // values 1 to 4: sqrt((9 + 1 + 1 + 9) / 4 / 4)
   EXPECT_EQ(r.sign_p, 0.5);

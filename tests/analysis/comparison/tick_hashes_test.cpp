@@ -1,4 +1,4 @@
-// The running hash without its trace: where two runs part, found from 8 bytes a tick or less.
+// The running hash without its trace: 8 bytes per tick, or less, show where two runs begin to differ.
 #include "analysis/comparison/tick_hashes.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<Column> walk(int ticks = kTicks) {
   return rehashed(columns);
 }
 
-// One number of a random column at tick is another; the ticks after it are as they were.
+// Changes one number of a random column at the tick. The values of the ticks after it stay the same.
 std::vector<Column> changed_at(std::vector<Column> columns, std::size_t tick, std::mt19937_64& random) {
   Column& column = columns[random() % (columns.size() - 1)];
   const auto width = static_cast<std::size_t>(column.width);
@@ -106,7 +106,8 @@ TEST(TickHashes, ReadsBackWhatWasWritten) {
     write_hashes(folder / "again.h5", again.hashes, kProvenance);
     EXPECT_EQ(bytes_of(folder / "again.h5"), bytes_of(folder / "h.h5"));
   }
-  // Random numbers do not compress: 8 bytes for each hash, little for the ticks, and what every file needs.
+  // Hashes do not compress: a file has 8 bytes for each hash, little for the ticks, and what every file
+  // needs.
   const TickHashes all = hashes_of_trace(StoredTrace(stored(folder, "x.h5", walk())), 1);
   write_hashes(folder / "h.h5", all, {});
   EXPECT_LT(fs::file_size(folder / "h.h5"), static_cast<std::size_t>(kTicks) * 8 + 20000);
@@ -137,7 +138,7 @@ fs::path with_columns(const TestFolder& folder, const std::vector<Column>& colum
   return folder / "h.h5";
 }
 
-// Sealed, and yet no list of ticks and hashes.
+// The file has a valid seal, but its columns are not a list of ticks and hashes.
 TEST(TickHashes, ColumnsThatAreNotHashesAreRefused) {
   const TestFolder folder("tick_hashes_test");
   using Ticks = std::vector<std::int32_t>;
@@ -243,7 +244,8 @@ TEST(CompareHashes, HashesWithoutACommonTickAreNotTheSame) {
   }
 }
 
-// Rows that a comparison of all columns calls the same have the same hashes: 0 is -0, and a NaN is a NaN.
+// Rows that are the same in a comparison of all columns have the same hashes: 0 equals -0, and NaN equals
+// NaN.
 TEST(CompareHashes, EqualRowsHaveEqualHashes) {
   std::vector<Column> columns = walk(10);
   auto& numbers = std::get<std::vector<double>>(columns[2].values);
@@ -271,7 +273,7 @@ TEST(Bisection, TakesALogarithmOfLooksAndFindsTheSameTick) {
     const auto is_same = [&](std::size_t at) {
       return baseline.rows("tick_hash", at, 1).values == candidate.rows("tick_hash", at, 1).values;
     };
-    std::size_t from = 0, to = kTicks - 1;  // the first that differs is from .. to
+    std::size_t from = 0, to = kTicks - 1;  // the first different tick is from .. to
     int looks = 0;
     for (; from < to; ++looks) {
       const std::size_t middle = (from + to) / 2;

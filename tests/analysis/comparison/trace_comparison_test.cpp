@@ -1,4 +1,4 @@
-// Two traces side by side: what differs, and from when on.
+// Comparison of two traces: what differs, and from which tick on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace changed_traces;
 
-// --- what differs, and from when on ---
+// --- what differs, and from which tick on ---
 
 TEST(CompareTraces, TheSameRunIsTheSame) {
   const TraceComparison same = compare(lift(), lift());
@@ -26,11 +26,11 @@ TEST(CompareTraces, TheSameRunIsTheSame) {
     EXPECT_EQ(same.columns[i].name, lift()[i].name);
     EXPECT_EQ(same.columns[i].rows, length());
   }
-  // Other experiments with the same numbers are the same.
+  // Traces with the same numbers are the same, even if their experiments differ.
   EXPECT_TRUE(compare(lift(), lift(), {}, {"renderer.r1_m 1 against 2"}).is_same());
 }
 
-// Every column in turn, at random ticks, whatever its kind; all that follows differs too.
+// Each column in turn is changed from a random tick to the end.
 TEST(CompareTraces, FindsTheFirstDivergentTickOfEveryColumn) {
   std::mt19937 random(1);
   for (const Column& column : lift()) {
@@ -53,7 +53,7 @@ TEST(CompareTraces, FindsTheFirstDivergentTickOfEveryColumn) {
   }
 }
 
-// Whatever the order in which they were changed, and whatever is larger.
+// Neither the order nor the size of the changes matters.
 TEST(CompareTraces, AmongColumnsTheTraceOrderDecidesAndTimeBeforeIt) {
   const Divergence together = divergence(after([](Columns& c) {
     numbers(c, "force")[3 * 700 + 1] += 5;
@@ -103,8 +103,8 @@ TEST(CompareTraces, TheRunningHashIsNotJudged) {
 
 // --- tolerances ---
 
-// The runs part within the tolerance, and leave it later. Both ticks are reported, and the situation is that
-// at the first difference.
+// The runs begin to differ within the tolerance, and exceed it later. Both ticks are reported, and the
+// situation is that at the first difference.
 TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
   const std::size_t quiet = quiet_tick(), later = tick_where(true, false, quiet + 100);
   const Change change = [&](Columns& c) {
@@ -125,11 +125,11 @@ TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
     EXPECT_EQ(column.is_same(), !proxy) << column.name;
     EXPECT_EQ(column.first_difference.has_value(), force || proxy) << column.name;
   }
-  // The same two runs part at the first difference if there is no tolerance.
+  // The same two runs diverge at the first difference if there is no tolerance.
   const Divergence exact = divergence(after(change));
   EXPECT_EQ(exact.tick, quiet);
   EXPECT_EQ(exact.quantity, "force");
-  // A tolerance that is wide enough keeps them together; the difference is reported all the same.
+  // They are the same within a tolerance that is wide enough, but the difference is reported.
   const TraceComparison wide = after(change, {{"*", {0.1, 0}}});
   EXPECT_TRUE(wide.is_same());
   EXPECT_FALSE(wide.divergence);
@@ -173,7 +173,7 @@ TEST(CompareTraces, AMissingColumnIsAProblemAndAnAddedOneIsNot) {
   const TraceComparison added = compare(less, lift());
   EXPECT_TRUE(added.is_same());
   EXPECT_EQ(added.added, Texts{"time"});
-  // A divergence is found in the others.
+  // A divergence is found in the other columns.
   Columns changed = less;
   proxy_x(changed, 300) += 1;
   EXPECT_EQ(divergence(compare(lift(), changed)).tick, 300u);

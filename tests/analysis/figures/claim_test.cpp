@@ -1,4 +1,5 @@
-// Verdicts of claims: what differs from the dissertation is no failure, until it is not as it was known.
+// Verdicts of claims. A known difference from the dissertation is not a failure, unless the measured value
+// leaves its known range.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -63,7 +63,8 @@ TEST(FigureFile, TablesSurvive) {
   }
 }
 
-// read_hdf5 does not read panels, h5dump does. Here it is enough that every word of a panel is in the file.
+// read_hdf5 does not read panels (h5dump does), so the test only checks that every word of a panel is in the
+// file.
 TEST(FigureFile, PanelsAreStored) {
   const TestFolder folder("figure_file_test");
   write_figure(folder / "fig.h5", small_figure(), {});

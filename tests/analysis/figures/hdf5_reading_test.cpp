@@ -1,4 +1,4 @@
-// Files that cannot be read as results are refused in one line.
+// Files that cannot be read as results are refused with a message of one line.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-// Trace files hold every bit of a trace, and their digest tells traces apart.
+// Trace files hold every bit of a trace, and their digest distinguishes traces.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -50,11 +50,12 @@ void expect_round_trip(int ticks) {
     EXPECT_EQ(found->value_names, column.value_names);
     stored.push_back(*found);
   }
-  EXPECT_EQ(digest(stored), sum);  // anybody can check the digest with what is in the file
+  EXPECT_EQ(digest(stored), sum);  // the content of the file is enough to check the digest
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"trace.h5"});
 }
 
-// Up to 4096 rows lie in one piece, more in compressed chunks.
+// Columns of up to 256 rows are not compressed, those of up to 4096 rows are one compressed chunk, and longer
+// ones are several chunks.
 TEST(TraceFile, TraceSurvivesBitForBit) {
   for (const int ticks : {1, 33, 4096, 4097, 10000}) expect_round_trip(ticks);
 }

@@ -23,7 +23,7 @@ struct Tick {
   ContactState state = ContactState::contact;
 };
 
-// A tick a hundredth of a second.
+// One tick every 10 ms.
 Trace trace_of(const std::vector<Tick>& ticks) {
   Trace trace;
   for (const Tick& tick : ticks) {
@@ -48,7 +48,7 @@ TEST(ContactMeasures, HeightIsThatOfTheRenderedSurfaceOverTheTrueOne) {
   free.state = ContactState::free;
   const Trace trace = trace_of({above, free, above, dark, below, alone, above});
   EXPECT_NEAR(mean_height_m(trace), (3 * 0.0008 - 0.0006) / 4, 1e-15);
-  // Three of four at 0.8 mm and one at -0.6 mm: 1.4 mm sqrt(3/4 1/4).
+  // Three of four heights are 0.8 mm and one is -0.6 mm: 1.4 mm sqrt(3/4 1/4).
   EXPECT_NEAR(height_sd_m(trace), 0.0014 * std::sqrt(3.0) / 4, 1e-15);
   EXPECT_TRUE(std::isnan(mean_height_m(trace_of({free, dark, alone}))));
   EXPECT_TRUE(std::isnan(height_sd_m(trace_of({free, dark, alone}))));
@@ -62,13 +62,13 @@ TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
   far.state = ContactState::free;
   const Trace trace = trace_of({near, silent, far, dark, near});
   EXPECT_NEAR(mean_distance_m(trace), 0.016 / 3, 1e-15);
-  // Two of three 4 mm below the third: 4 mm sqrt(2/3 1/3).
+  // Two of three distances are 4 mm below the third: 4 mm sqrt(2/3 1/3).
   EXPECT_NEAR(distance_sd_m(trace), 0.004 * std::sqrt(2.0) / 3, 1e-15);
   EXPECT_TRUE(std::isnan(mean_distance_m(trace_of({silent, dark}))));
   EXPECT_TRUE(std::isnan(distance_sd_m(trace_of({silent, dark}))));
 }
 
-// The mean of three times 0.1 is not 0.1 to the last bit: nothing but that may be left.
+// The mean of three times 0.1 differs from 0.1 in the last bit. No other scatter may remain.
 TEST(ContactMeasures, EqualTicksHaveNoScatter) {
   Tick same{0.1, 0};
   same.force_N = {0, 1, 0};

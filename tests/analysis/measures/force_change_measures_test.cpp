@@ -30,7 +30,8 @@ Tick pushed(double force_y_N, int frame) {
   return {{0, force_y_N, 0}, frame};
 }
 
-// The force changes at updates from 0 to 5, 6 to 9, 8 to 4, none to none, 0 to 7; between them by 1, 1, 2, 2.
+// The force changes at frame updates from 0 to 5, 6 to 9, 8 to 4, 0 to 0 and 0 to 7 N, and between them by 1,
+// 1, 2 and 2 N.
 const std::vector<Tick> kTicks = {pushed(0, 0), pushed(5, 1), pushed(6, 1), pushed(9, 2), pushed(8, 2),
                                   pushed(4, 3), pushed(2, 3), pushed(0, 3), pushed(0, 4), pushed(7, 5)};
 

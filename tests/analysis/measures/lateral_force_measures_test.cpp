@@ -94,7 +94,7 @@ TEST(LateralForce, AForceIntoTheSurfaceHasAnAngleButNoRatio) {
   EXPECT_NEAR(mean_force_angle_rad(trace), (M_PI - std::atan(0.5) + M_PI + M_PI / 2) / 3, 1e-15);
 }
 
-// Guidance pulls in any direction: its part is no force of contact.
+// Guidance may pull in any direction, so its part of the force is not a contact force.
 TEST(LateralForce, IsThatOfContactWithoutGuidance) {
   const Trace trace = trace_of({{{5, 2, 0}, Vec3::UnitY(), ContactState::contact, Vec3(4, 0, 0)},
                                 {{3, 0, 0}, Vec3::UnitY(), ContactState::contact, Vec3(3, 0, 0)}});

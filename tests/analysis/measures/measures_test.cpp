@@ -64,7 +64,7 @@ TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
   EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{unknown}}))));
 }
 
-// Results are compared bit by bit, and the NaN of 0 / 0 has another sign.
+// Results are compared bit by bit, and the NaN of 0 / 0 has another sign on some machines.
 TEST(Measures, NoValueHasTheSameBitsEverywhere) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   for (const Trace& trace : {Trace(), trace_of({{unknown}, {unknown}})})

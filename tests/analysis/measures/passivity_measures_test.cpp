@@ -38,7 +38,7 @@ TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
   // Sampling injects energy: each force is held while the hand moves on, k / 2 (sum of steps^2) in all.
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * (before + after), 1e-14);
   for (int i = kStiffer; i <= 1000; ++i) ticks[static_cast<std::size_t>(i)].force_N *= 1.5;
-  const double more = 150 * std::pow(ticks[kStiffer].hip_position_m, 2);  // half the stiffness that came
+  const double more = 150 * std::pow(ticks[kStiffer].hip_position_m, 2);  // half of the added 300 N/m
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), more + 300 * before + 450 * after, 1e-14);
 }
 
@@ -89,7 +89,7 @@ TEST(PassivityMeasures, TheLargestIsThatOfAnyTime) {
 }
 
 TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
-  // Updates at 1, 3, 5 and 7; the pieces between them do 3, -2 and, without force, 0.
+  // Frame updates are at the ticks 1, 3, 5 and 7. The work between them is 3, -2 and, without force, 0 J.
   const Trace trace = trace_of({{9, 0, 0},
                                 {1, 0, 1},
                                 {1, 1, 1},
@@ -105,7 +105,8 @@ TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
   EXPECT_TRUE(std::isnan(max_energy_per_update_J(trace_of({}))));
 }
 
-// Updates at 1, 3 and 5; the renderer always commands a force, and the device exerts one in the second piece.
+// Frame updates are at the ticks 1, 3 and 5. The renderer always commands a force, but the device exerts one
+// only between the second update and the third.
 TEST(PassivityMeasures, APieceWithACommandThatNoMotorExertsDoesNotCount) {
   Trace trace;
   for (int i = 0; i < 7; ++i) {
@@ -119,8 +120,8 @@ TEST(PassivityMeasures, APieceWithACommandThatNoMotorExertsDoesNotCount) {
   EXPECT_NEAR(mean_energy_per_update_J(trace), 2 * 2 * 0.01, 1e-17);
 }
 
-// Updates at 1, 3 and 5; the hand turns by 0.1 rad a tick, and the tool exerts a torque of 0.5 N m between
-// the first two of them alone, and never a force.
+// Frame updates are at the ticks 1, 3 and 5. The hand turns by 0.1 rad in each tick. The tool exerts a torque
+// of 0.5 N m only between the first two updates, and never a force.
 TEST(PassivityMeasures, APieceWithATorqueAloneHasItsEnergy) {
   Trace trace;
   for (int i = 0; i < 7; ++i) {

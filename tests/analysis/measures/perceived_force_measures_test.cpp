@@ -11,7 +11,7 @@
 namespace remote_touch::perceived_force_measures_test {
 namespace {
 
-// A tick a millisecond, and a frame every so many.
+// One tick every millisecond, and a new frame every frame_ticks ticks.
 Trace trace_of(const std::vector<Vec3>& force_N, int frame_ticks) {
   Trace trace;
   for (const Vec3& one : force_N) {
@@ -31,8 +31,8 @@ Trace trace_along(int ticks, Force&& newtons) {
 }
 
 TEST(PerceivedForce, JumpsAreThoseAboveTheFractionOfTheForceBefore) {
-  // Updates at every tick: 4 to 4.2 is 5 %, to 4.5 7.1 %, to 4.0 -11 %, to 0 and back; none to none is no
-  // pair.
+  // Every tick has a frame update. The force changes by 5 % (4 to 4.2), 7.1 % (to 4.5) and -11 % (to 4),
+  // ends, and begins again. The pair without any force (0 to 0) does not count.
   const Trace trace =
       trace_of({{0, 4, 0}, {0, 4.2, 0}, {0, 4.5, 0}, {0, 4, 0}, {0, 0, 0}, {0, 0, 0}, {0, 1, 0}}, 1);
   EXPECT_EQ(felt_jump_fraction(trace, 0.04), 1);
@@ -49,7 +49,7 @@ TEST(PerceivedForce, HasNoJumpBetweenUpdatesOrWithoutForce) {
   EXPECT_TRUE(std::isnan(felt_jump_fraction(Trace(), 0.2)));
 }
 
-// A force that turns by an angle changes by twice the sine of its half.
+// A force that turns by an angle a changes by 2 sin(a / 2) times its magnitude.
 TEST(PerceivedForce, AForceThatTurnsChanges) {
   const double angle = 0.15;
   const Trace trace = trace_of({{2, 0, 0}, {2 * std::cos(angle), 2 * std::sin(angle), 0}}, 1);
@@ -57,7 +57,8 @@ TEST(PerceivedForce, AForceThatTurnsChanges) {
   EXPECT_EQ(felt_jump_fraction(trace, 2 * std::sin(angle / 2) + 1e-9), 0);
 }
 
-// exp(a t): a packet whenever the force has grown by 1 + d, so every ceil(ln(1 + d) / a) ticks.
+// The force is exp(a t). A packet is sent when the force has grown by the factor 1 + d, so every ceil(ln(1 +
+// d) / a) ticks.
 TEST(PerceivedForce, ExponentialForceSendsPacketsAtEqualTimes) {
   const double per_tick = 0.003;
   const Trace trace = trace_along(1000, [&](int i) { return std::exp(per_tick * i); });
@@ -67,7 +68,8 @@ TEST(PerceivedForce, ExponentialForceSendsPacketsAtEqualTimes) {
   }
 }
 
-// Two forces in turn: each is a packet where they differ by more than the fraction.
+// If two forces alternate, every tick is a packet if they differ by more than the fraction, else only the
+// first.
 TEST(PerceivedForce, AForceThatEndsIsSentOnceAndNoMore) {
   const Trace trace = trace_along(100, [](int i) { return i < 50 ? 1.0 : 0.0; });
   EXPECT_NEAR(deadband_packets_per_s(trace, 0.1), 2 / 0.1, 1e-9);

@@ -10,7 +10,7 @@
 namespace remote_touch::segmentation_test {
 namespace {
 
-// Every combination once, and some twice.
+// Every combination, except a selected pixel of another class without depth.
 const std::vector<char> kPicked{1, 1, 1, 0, 1, 0, 0, 0};
 const std::vector<char> kOfClass{1, 1, 0, 1, 1, 1, 0, 0};
 const std::vector<char> kDepth{1, 1, 1, 1, 0, 0, 1, 0};

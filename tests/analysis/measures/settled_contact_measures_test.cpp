@@ -19,7 +19,7 @@ struct Tick {
   bool has_force = true;
 };
 
-// A tick every 20 ms: five intervals are the settling.
+// One tick every 20 ms, so the settling lasts five intervals.
 Trace trace_of(const std::vector<Tick>& ticks) {
   Trace trace;
   for (const Tick& tick : ticks) {
@@ -31,7 +31,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
   return trace;
 }
 
-// A trace of these ticks after five ticks below the surface, in which anything may happen.
+// A trace of these ticks after five ticks of settling, which no measure may use.
 Trace settled(const std::vector<Tick>& ticks) {
   std::vector<Tick> all(5, Tick{-1, -0.01, false});
   all.insert(all.end(), ticks.begin(), ticks.end());

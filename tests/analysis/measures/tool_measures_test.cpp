@@ -29,7 +29,7 @@ struct Tick {
   Vec3 lag_rad = Vec3::Zero();
 };
 
-// The tool is anywhere, and turned; the device is ahead of it by the lag.
+// The tool has arbitrary poses; the device is ahead of it by the lag.
 Trace trace_of(const std::vector<Tick>& ticks) {
   Trace trace;
   for (const Tick& tick : ticks) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A scene with two levels and one with its own noise; a judged measure and one that is not.
+// Numbers of a scene with two noise levels and of a scene with its own noise, for one judged measure.
 CardNumbers numbers() {
   CardNumbers n;
   n.counts = {{{"flat", "proxy", 0}, {1, 1, 1, 0.2, 1}},

@@ -10,7 +10,8 @@
 namespace remote_touch::made_cards {
 
 // 20 runs without noise, which are all one run, and 20 with noise, of which with_noise succeed. The measure
-// "steps" is 1 plus `steps`, plus a scatter that all methods have in common.
+// "steps" is 1 without noise. Replicate i with noise has 1 + steps (1 + 0.1 (i mod 3)) + i, where the scatter
+// i is the same for all methods.
 inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
   SweepResult result;
   result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}, 1, {}}};

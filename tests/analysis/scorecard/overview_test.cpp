@@ -25,7 +25,7 @@ TEST(Overview, NoiseFreeRunsAreAColumnOfTheirOwn) {
   EXPECT_EQ(summary[0].noise_free.mean, 0.5);
   EXPECT_EQ(summary[1].noise_free.mean, 1);
   EXPECT_EQ(summary[0].held, 1);
-  EXPECT_EQ(summary[0].old_success.mean, 1);  // the previous rule, which every run keeps
+  EXPECT_EQ(summary[0].old_success.mean, 1);  // every run satisfies the previous rule
   EXPECT_EQ(card.scenes[0].old_success[2].noisy.events, 20);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Two levels of 20 pairs around a middle; the first half of the spread is common to all methods.
+// Two levels of 20 values around a middle. Ten elevenths of the spread are common to all methods.
 PairedValues values_around(double middle, std::uint32_t method) {
   PairedValues values(2);
   for (std::uint32_t i = 0; i < 2; ++i)
@@ -25,7 +25,7 @@ PairedValues values_around(double middle, std::uint32_t method) {
   return values;
 }
 
-// The values once more: as many pairs as a verdict needs.
+// Returns the values twice, so that there are as many pairs as a verdict needs.
 std::vector<double> twice(std::vector<double> values) {
   const std::vector<double> again = values;
   values.insert(values.end(), again.begin(), again.end());
@@ -33,7 +33,7 @@ std::vector<double> twice(std::vector<double> values) {
 }
 
 TEST(Standings, TheEndsAreMarkedWhereThePairsTellThemApart) {
-  // 0.2 apart where the spread is 1: only the pairs show it.
+  // The methods are 0.2 apart and the spread is 1, so only the comparison of pairs shows the difference.
   const std::vector<PairedValues> three = {values_around(0.2, 0), values_around(0, 1), values_around(0.4, 2)};
   const Ranking smaller = ranking(three, Better::smaller, false);
   EXPECT_EQ(smaller.order, (std::vector<std::size_t>{1, 0, 2}));
@@ -67,7 +67,8 @@ TEST(Standings, FewFlippedEventsAreNoDifference) {
 }
 
 TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
-  // The first has numbers only where it is easy, so its own mean is the best, and every pair says otherwise.
+  // The first method has values only at the easy level, so its own mean is the best, but it is worse in every
+  // pair.
   const PairedValues early = {twice({1, 1.1, 0.9, 1, 1.1, 0.9}), std::vector<double>(12, kNan)};
   const PairedValues all = {twice({0.5, 0.6, 0.4, 0.5, 0.6, 0.4}), twice({3, 3.1, 2.9, 3, 3.1, 2.9})};
   const Ranking result = ranking({early, all}, Better::smaller, false);
@@ -77,7 +78,8 @@ TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
 }
 
 TEST(Standings, TheBestIsApartFromAllOthers) {
-  // The third is behind the second, but was seen in half of the runs, and mostly as good as the first.
+  // The third has a worse mean than the second, but has values for only half of the runs and is mostly as
+  // good as the first.
   PairedValues first(1, std::vector<double>(24, 1)), second(1, std::vector<double>(24, 2)),
       third(1, twice({1, 0.9, 9, 1, 0.9, 1}));
   third[0].resize(24, kNan);
@@ -106,7 +108,7 @@ TEST(Standings, TooFewCommonPairsAreNoVerdict) {
   EXPECT_EQ(ranking({one, lucky, other}, Better::smaller, false).ranked, 2u);
   const PairedValues won(1, std::vector<double>(11, 1)), lost(1, std::vector<double>(11, 0));
   EXPECT_FALSE(ranking({won, lost}, Better::larger, true).has_best);  // events need as many pairs
-  // A pair alone in its level is not certain because it is alone.
+  // A value that is alone in its level is not thereby certain.
   PairedValues nought(14, {0}), scattered(14, {0});
   for (std::size_t i = 0; i < 14; ++i) scattered[i][0] = i % 2 == 0 ? 1.0 + 0.5 * static_cast<double>(i) : -3;
   const Ranking alone = ranking({nought, scattered}, Better::smaller, false);
@@ -114,7 +116,8 @@ TEST(Standings, TooFewCommonPairsAreNoVerdict) {
   EXPECT_LT(alone.mean[1].low, alone.mean[1].high);
 }
 
-// Ten of 200 comparisons of equal methods would be found; corrected together, hardly ever one.
+// About ten of 200 comparisons of equal methods show a difference if they are not corrected. Corrected
+// together, hardly ever one does.
 TEST(Standings, AreCorrectedForAllThatIsLookedAt) {
   std::vector<Ranking> rankings;
   int found = 0;
@@ -147,7 +150,7 @@ TEST(Standings, AreCorrectedForAllThatIsLookedAt) {
 }
 
 TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
-  // Level 0 is one run 20 times; of the rest, nothing shows a difference.
+  // Level 0 repeats one run 20 times. The other level shows no difference.
   PairedValues up(2, std::vector<double>(20, 1)), down = up;
   down[0].assign(20, 0);
   const std::vector<Repeats> both(2, {true, false}), one = {{true, false}, {false, false}};

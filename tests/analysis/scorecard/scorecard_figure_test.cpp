@@ -1,4 +1,4 @@
-// The tables of a scorecard's figure: what stands in them, and with which units.
+// The tables of a scorecard's figure: their content and units.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -23,7 +23,8 @@ const Table& table_of(const Figure& figure, const std::string& name) {
   throw std::out_of_range(name);
 }
 
-// Scene 0: told apart by success. Scene 1: all succeed, and each takes more steps than the one before.
+// Scene 0: the methods differ in success. Scene 1: all succeed, and each needs more steps than the one
+// before.
 Scorecard two_orders() {
   return card_of({{sweep_of(true, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
                   {sweep_of(true, 20, 1), sweep_of(true, 20, 2), sweep_of(true, 20, 3)}},
@@ -66,7 +67,7 @@ TEST(ScorecardFigure, PanelsShowTheShareOfSuccessesOverNoise) {
   EXPECT_EQ(panel.columns.size(), 1u + 3 * 3);
 }
 
-// Counts, shares and names have no unit, and every column says what it is.
+// Counts, fractions and names have the unit "1", and every column has a description.
 TEST(ScorecardFigure, ColumnsOfTheOverviewAreExplained) {
   const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
   for (const Table& table : {overview_table(card), behind_table(card)})

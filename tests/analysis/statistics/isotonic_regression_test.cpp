@@ -18,7 +18,7 @@ TEST(FallingCurve, PoolsByWeight) {
   EXPECT_EQ(isotonic_falling({1, 0, 0.5}, {1, 3, 1}), (std::vector<double>{1, 0.125, 0.125}));
 }
 
-// No falling curve near it is nearer.
+// No decreasing curve in its neighbourhood is nearer to the values.
 TEST(FallingCurve, IsTheNearest) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(0, 1);

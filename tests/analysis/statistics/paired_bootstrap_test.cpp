@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The mean of every possible draw of one group: n^n of them, all as likely.
+// Returns the sorted means of all n^n possible draws of one group, which are equally likely.
 std::vector<double> all_means(const std::vector<double>& group) {
   const std::size_t n = group.size();
   std::size_t draws = 1;
@@ -30,7 +30,7 @@ TEST(PairedBootstrap, QuantilesAreThoseOfAllDraws) {
   const std::vector<double> group = {-3, -1, 0.5, 2, 4, 11};
   const std::vector<double> exact = all_means(group);
   const MeanDifference drawn = bootstrap_mean({group}, 7, 40000);
-  // 40000 draws know a share of 0.025 to about 0.0008.
+  // 40000 draws estimate a fraction of 0.025 with a standard deviation of about 0.0008.
   const auto at = [&](double fraction) { return exact[static_cast<std::size_t>(fraction * exact.size())]; };
   EXPECT_GE(drawn.low, at(0.025 - 0.004));
   EXPECT_LE(drawn.low, at(0.025 + 0.004));
@@ -41,7 +41,7 @@ TEST(PairedBootstrap, QuantilesAreThoseOfAllDraws) {
 }
 
 TEST(PairedBootstrap, GroupsAreDrawnEachByItself) {
-  // Equal numbers within groups that lie far apart: nothing is left to chance.
+  // All numbers of a group are equal and the groups lie far apart, so every draw has the same mean.
   const MeanDifference mean = bootstrap_mean({{1, 1, 1}, {100, 100}}, 1);
   EXPECT_EQ(mean.low, mean.mean);
   EXPECT_EQ(mean.high, mean.mean);

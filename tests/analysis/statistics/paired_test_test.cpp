@@ -22,7 +22,7 @@ TEST(RootMeanSquare, NeitherOverflowsNorVanishes) {
   EXPECT_EQ(root_mean_square({1, kInfinity}), kInfinity);
 }
 
-// One way only: 2 / 2^n.
+// If all n pairs differ the same way, p is 2 / 2^n.
 TEST(SignTest, IsThatOfAFairCoin) {
   EXPECT_EQ(sign_test(0, 0), 1);
   EXPECT_EQ(sign_test(0, 5), 0.0625);
@@ -55,7 +55,7 @@ TEST(SignTest, IsMcNemarsExactTest) {
   EXPECT_NEAR(sign_test(86, 150), 3.716e-5, 5e-9);
 }
 
-// Against sums of integers of any length.
+// The expected values are sums of integers of arbitrary length.
 TEST(SignTest, IsPreciseFarOut) {
   EXPECT_NEAR(sign_test(86, 150) / 3.715936139571442342e-5, 1, 1e-12);
   EXPECT_NEAR(sign_test(400, 600) / 2.728464156066018426e-10, 1, 1e-12);
@@ -65,7 +65,7 @@ TEST(SignTest, IsPreciseFarOut) {
   EXPECT_NEAR(sign_test(3, 1000) / 3.923720417925806834e-294, 1, 1e-12);
 }
 
-// The normal distribution with a continuity correction.
+// The expected values are those of the normal distribution with a continuity correction.
 TEST(SignTest, IsNormalForLargeCounts) {
   for (const std::int64_t n : {10000, 1000000, 20000000})
     for (const double z : {0.1, 1.0, 2.0, 3.0, 4.0}) {
@@ -90,7 +90,8 @@ TEST(SignTest, EndsAtZeroWithoutFaults) {
   }
 }
 
-// Never below the share of all choices of signs that give as large a sum.
+// The bound is never below the exact p: the fraction of all choices of signs that give at least as large a
+// sum.
 TEST(SymmetryTest, BoundsThePOfAllSigns) {
   std::mt19937_64 random(7);
   for (int trial = 0; trial < 60; ++trial) {
@@ -146,8 +147,9 @@ TEST(PairedDifferenceInterval, IsSymmetricAndBounded) {
       }
 }
 
-// Pairs drawn with known probabilities, by integers alone. By enumeration it covers 93.7 % for
-// 20 pairs of which most differ and 94.6 % or more in the other cases, up to all of them where few differ.
+// The pairs are drawn with known probabilities, with integers only. Enumeration gives a coverage of 93.7 %
+// for 20 pairs of which most differ. In the other cases it is 94.6 % or more, up to 100 % if few pairs
+// differ.
 TEST(PairedDifferenceInterval, CoversAsOftenAsItSays) {
   constexpr int kExperiments = 10000;
   const struct {
@@ -175,7 +177,7 @@ TEST(PairedDifferenceInterval, CoversAsOftenAsItSays) {
     }
 }
 
-// 1, 2, 3, 6: mean 3, variance 14/3, of the mean 14/12.
+// The numbers 1, 2, 3 and 6 have the mean 3 and the variance 14/3; the variance of the mean is 14/12.
 TEST(MeanDifference, IsMeanAndStandardErrorByHand) {
   const MeanDifference m = mean_difference({1, kNaN, 2, 3, 6, kNaN});
   EXPECT_EQ(m.pairs, 4);
@@ -194,7 +196,8 @@ TEST(MeanDifference, SaysWhatTooFewPairsCannotTell) {
   EXPECT_TRUE(equal.mean == 0 && equal.low == 0 && equal.high == 0);
 }
 
-// 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1 raised to the one before.
+// The adjusted values are 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, which is raised to the value before
+// it.
 TEST(HolmAdjusted, IsTheExampleByHand) {
   const std::vector<double> adjusted = holm_adjusted({0.01, 0.04, 0.03, 0.005});
   const double expected[] = {0.03, 0.06, 0.06, 0.02};

@@ -1,4 +1,4 @@
-// The confidence in counted proportions.
+// Confidence intervals of counted proportions.
 #include "analysis/statistics/proportion.h"
 
 #include <gtest/gtest.h>
@@ -64,8 +64,8 @@ TEST(WilsonInterval, MoreRunsTellMore) {
   EXPECT_LT(before, 0.002);
 }
 
-// Over all probabilities the interval holds the true one in 95 % of the experiments, whatever the number of
-// runs.
+// The interval contains the true probability in 95 % of the experiments, averaged over all probabilities,
+// whatever the number of runs.
 TEST(WilsonInterval, CoversAsOftenAsItSays) {
   constexpr int kSteps = 2000;
   for (const int runs : {4, 10, 20, 100}) {

@@ -74,8 +74,8 @@ TEST(MeanTest, NoPairsShowMoreThanAllOfTheirSignsCould) {
 
 enum class Shape { normal, uneven_levels, equal_skewed_methods, exponential };
 
-// One number with mean 0. uneven_levels: five levels of noise with scatters of 1 to 100.
-// equal_skewed_methods: the difference of two lognormal numbers.
+// Returns one random number of a distribution with mean 0. uneven_levels: five levels of noise with scatters
+// of 1 to 100. equal_skewed_methods: the difference of two lognormal numbers.
 double drawn(Shape shape, std::uint32_t draw, std::uint32_t i) {
   const NoiseStream stream{{2024, 11}, {static_cast<std::uint32_t>(shape), draw, 0}};
   const auto u = uniforms(stream, i);
@@ -115,7 +115,7 @@ bool is_apart_from_0(const MeanDifference& mean) {
   return mean.low > 0 || mean.high < 0;
 }
 
-// 4000 draws know a rate of 0.05 to 0.0034 (one standard deviation).
+// 4000 draws estimate a rate of 0.05 with a standard deviation of 0.0034.
 constexpr int kDraws = 4000;
 
 TEST(MeanTest, FindsADifferenceWhereThereIsNoneInOneOfTwentyCases) {
@@ -123,11 +123,12 @@ TEST(MeanTest, FindsADifferenceWhereThereIsNoneInOneOfTwentyCases) {
     for (const Shape shape : {Shape::normal, Shape::uneven_levels, Shape::equal_skewed_methods})
       EXPECT_LE(false_rate(shape, pairs, kDraws, tested), 0.05 + 0.009)
           << "shape " << static_cast<int>(shape) << ", " << pairs << " pairs";
-    EXPECT_GE(false_rate(Shape::normal, pairs, kDraws, tested), 0.025) << pairs;  // it is not merely blind
+    EXPECT_GE(false_rate(Shape::normal, pairs, kDraws, tested), 0.025) << pairs;  // not too cautious
   }
 }
 
-// Their own skewness costs little from 12 pairs on; t alone finds twice as many.
+// The skewness of the differences raises the rate only a little from 12 pairs on. With t alone it is clearly
+// higher.
 TEST(MeanTest, BearsSkewedDifferences) {
   for (const int pairs : {6, 8, 12, 16, 20}) {
     const double rate = false_rate(Shape::exponential, pairs, kDraws, tested);
@@ -138,7 +139,8 @@ TEST(MeanTest, BearsSkewedDifferences) {
   }
 }
 
-// Why the percentile bootstrap does not decide.
+// The percentile bootstrap is not used to decide, because it finds a false difference at least twice as often
+// as intended.
 TEST(MeanTest, TheBootstrapOfAFewPairsFindsTwiceAsMany) {
   const auto drawn_again = [](const auto& d) { return is_apart_from_0(bootstrap_mean({d}, 1, 200)); };
   EXPECT_GE(false_rate(Shape::normal, 6, 1000, drawn_again), 0.1);

@@ -47,7 +47,7 @@ TEST(WriteTrace, PlacesThatCannotBeWritten) {
   if (fs::exists("/dev/full")) expect_unwritable("/dev/full");
 }
 
-// While it lives, permissions of files hold for this thread also when root runs it.
+// File permissions apply to this thread even if root runs it, as long as this object exists.
 class PermissionsOfAnyUser {
  public:
   PermissionsOfAnyUser() {
@@ -72,7 +72,7 @@ TEST(WriteTrace, FolderWithoutPermission) {
   EXPECT_TRUE(files_in(folder / "locked").empty());
 }
 
-// A limit on the length of files stands for a full disk: the write begins and then fails.
+// A limit on the size of files acts like a full disk: the write begins and then fails.
 TEST(WriteTrace, FailureInTheMiddleLeavesTheOldFile) {
   const TestFolder folder("atomic_file_test");
   folder.write("x.h5", "as it was");
@@ -174,8 +174,8 @@ TEST(MoveIntoPlace, RemovesAFileThatCannotBeMoved) {
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"taken"});
 }
 
-// The system gives such answers seldom: an interrupted call is repeated, and a call that writes no byte means
-// a full disk.
+// Rare results of a system call: an interrupted call is repeated, and a call that writes no byte means a full
+// disk.
 TEST(WriteWholeFile, CallsThatWriteNothing) {
   const TestFolder folder("atomic_file_test");
   {
@@ -208,7 +208,7 @@ TEST(WriteWholeFile, DevicesAreWrittenThrough) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-// A pipe that nobody reads would wait for ever, and so may other devices.
+// Writing to a pipe that nobody reads would block for ever, and so may writing to other devices.
 TEST(WriteWholeFile, PipesAndOtherDevicesAreRefusedAtOnce) {
   const TestFolder folder("atomic_file_test");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

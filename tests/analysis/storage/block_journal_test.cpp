@@ -1,4 +1,5 @@
-// Blocks are read up to the first one that is not whole, whatever became of the file; nothing overwrites it.
+// Blocks are read up to the first one that is not whole, whatever happened to the file. A journal is never
+// overwritten.
 #include "analysis/storage/block_journal.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Contents with the bytes of a header, of the opening, zeros, and none.
+// Contents of blocks, among them the bytes of a header, of the opening, zeros, and no byte at all.
 const std::vector<std::string> kContents{
     "first", std::string("RTb1\0\1\2\3", 8), "", std::string(300, '\0'), std::string(kJournalOpening),
     "last"};
 
-// The journal of FOLDER/x with these blocks; the sizes of the file after each of them.
+// Writes the journal of FOLDER/x with kContents. Returns the size of the file after each block.
 std::vector<std::uintmax_t> write(const TestFolder& folder) {
   std::vector<std::uintmax_t> sizes;
   JournalWriter writer(folder / "x", {0, kContents[0]});
@@ -31,7 +32,7 @@ std::vector<std::uintmax_t> write(const TestFolder& folder) {
   return sizes;
 }
 
-// The number of blocks that are read; each must be the one that was written.
+// Returns the number of blocks that are read, and checks that each is the one that was written.
 std::size_t whole_blocks(const fs::path& file) {
   JournalReader reader(file);
   std::size_t count = 0;
@@ -59,7 +60,7 @@ TEST(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
   EXPECT_EQ(reader.left(), before);
 }
 
-// A kill or a power cut leaves the blocks that lie before the cut, whatever the byte.
+// A kill or a power cut may end the file at any byte. The blocks before the cut are read.
 TEST(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
   const TestFolder folder("block_journal");
   const auto sizes = write(folder);
@@ -132,7 +133,7 @@ TEST(BlockJournal, RefusesToOverwriteAnExistingFile) {
   EXPECT_HAS(refusal([&] { require_no_journal_beside(folder / "x"); }), "x.unfinished: is there already");
   EXPECT_EQ(bytes_of(folder / "x.unfinished"), bytes);
   EXPECT_EQ(files_in(folder.path()).size(), 1u);
-  // Also a file that is no journal.
+  // A file that is no journal is not overwritten either.
   folder.write("y.unfinished", "mine");
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "y", {0, "first"}); }), "y.unfinished: is there already");
   EXPECT_EQ(bytes_of(folder / "y.unfinished"), "mine");
@@ -153,7 +154,7 @@ TEST(BlockJournal, RefusesWhatCannotBeWritten) {
   EXPECT_HAS(refusal([&] { JournalWriter("/dev/null", {0, "first"}); }), "/dev/null: is a device");
 }
 
-// While it lives, a file of this process may not grow beyond so many bytes, as on a full disk.
+// No file of this process can grow beyond this size as long as this object exists, as on a full disk.
 class NoRoom {
  public:
   explicit NoRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-// Work in a process of its own: its answer, its failure, and its end where it asks for too much.
+// Work in a separate process: its answer, its failure, and its end if it needs too much.
 #include "analysis/storage/child_process.h"
 
 #include <gtest/gtest.h>

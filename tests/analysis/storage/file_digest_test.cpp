@@ -29,8 +29,8 @@ TEST(FileDigest, IsTheSha256OfWhatFollows) {
   EXPECT_EQ(file_digest_of(folder / "trace.h5"), FileDigest::valid);
 }
 
-// Every byte of the seal and of the file's beginning, then a sample: none may pass, and none may reach a
-// crash.
+// Every byte of the seal and of the file's beginning is changed, and a sample of the others. Each change must
+// be found, and none may lead to a crash.
 TEST(FileDigest, NoChangedByteIsReadAsATrace) {
   const TestFolder folder("file_digest_test");
   write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
@@ -103,7 +103,7 @@ TEST(Sha256, KnownValues) {
   EXPECT_HAS(refusal([&] { sha256_of_file(folder.path()); }), "cannot be read (Is a directory)");
 }
 
-// The end of a file is no interruption, whatever call was interrupted before.
+// The end of a file is not taken for an interrupted call, even if errno is still EINTR from an earlier call.
 TEST(Sha256, AnEarlierInterruptionDoesNotCount) {
   const TestFolder folder("file_digest_test");
   const auto file = folder.write("abc", "abc");

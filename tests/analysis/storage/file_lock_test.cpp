@@ -1,4 +1,4 @@
-// One process at a time.
+// A lock has one holder at a time.
 #include "analysis/storage/file_lock.h"
 
 #include <gtest/gtest.h>

@@ -64,7 +64,7 @@ TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
   EXPECT_EQ(numbers_of<double>(in, "/a/word")[99], 0xffffffffu - 99.0);
 }
 
-// Rows that were compressed before, between rows that the library compresses.
+// Rows that are already compressed are appended between rows that the library compresses.
 TEST(Hdf5Appender, TakesDeflatedRows) {
   const TestFolder folder("hdf5_appender");
   std::vector<std::uint16_t> depth;

@@ -1,4 +1,4 @@
-// The answer of a child process about an HDF5 file comes back unchanged, or is refused.
+// The answer of a child process about an HDF5 file arrives unchanged, or is refused.
 #include "analysis/storage/hdf5_child_source.h"
 
 #include <gtest/gtest.h>

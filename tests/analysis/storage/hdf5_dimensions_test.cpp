@@ -19,7 +19,7 @@ Column counts(const char* name, std::vector<std::string> names) {
   return {name, "1", "", std::vector<std::int32_t>{0, 1, 1, 0}, 1, std::move(names)};
 }
 
-// Columns of every kind, along time and in a table.
+// Writes a file with columns of every kind, along time and in a table.
 void write_file(const std::filesystem::path& file) {
   Hdf5Writer hdf5;
   const Column time{"time", "s", "", std::vector<double>{0, 1, 2, 3}, 1, {}};
@@ -80,7 +80,7 @@ TEST(Hdf5Dimensions, TextsComeBack) {
   EXPECT_EQ(file.column("/trace/state").value_names, (std::vector<std::string>{"free", "in contact"}));
 }
 
-// Files of earlier versions have each text in one place.
+// Files of earlier versions store each text as one value of fixed length.
 TEST(Hdf5Dimensions, TextsOfFormerFilesComeBack) {
   const TestFolder folder("hdf5_dimensions");
   {

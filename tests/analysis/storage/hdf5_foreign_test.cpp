@@ -1,5 +1,5 @@
 // HDF5 files of other programs: attributes and datasets of shapes that this program does not write are read
-// as they are, or refused in one line before memory is taken for what they claim.
+// as they are, or refused with a message of one line before memory is allocated for them.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -28,7 +28,7 @@ Handle text_of(std::size_t length, H5T_str_t padding) {
   return type;
 }
 
-// texts: of length characters each, one after the other.
+// texts: each has `length` characters, one after the other.
 void write_texts(hid_t object, const char* name, const std::string& texts, std::size_t length,
                  H5T_str_t padding = H5T_STR_NULLTERM) {
   const Handle type = text_of(length, padding);
@@ -43,11 +43,11 @@ struct Shape {
   std::vector<hsize_t> chunk = {};  // empty: in one piece
 };
 
-// A dataset whose values are never written: what is read of it is the fill value.
+// Adds a dataset whose values are never written, so that a reader gets the fill value.
 Handle add_dataset(hid_t file, const char* name, hid_t type, const Shape& shape) {
   const int rank = static_cast<int>(shape.extent.size());
   const std::vector<hsize_t> max_extent(shape.extent.size(),
-                                        H5S_UNLIMITED);  // a chunk may be larger than what is in it
+                                        H5S_UNLIMITED);  // allows chunks larger than the extent
   const Handle space(rank == 0 ? H5Screate(H5S_SCALAR)
                                : H5Screate_simple(rank, shape.extent.data(),
                                                   shape.chunk.empty() ? nullptr : max_extent.data()),
@@ -157,7 +157,7 @@ TEST(ForeignDatasets, ZerosThatAreCompressedAreRead) {
   EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.values, Values(zeros));
 }
 
-// A file may say that its values lie in another one, whoever owns that.
+// A file may state that its values are in another file, which may belong to anybody.
 TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
   const TestFolder folder("hdf5_foreign_test");
   folder.write("secret", std::string(800, 's'));
@@ -181,7 +181,7 @@ TEST(ForeignDatasets, AreNamedIfTheyAreOfOtherKinds) {
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data has no dimension");
 }
 
-// 32 bits would cut them: they come as numbers, exact to 2^53.
+// 32 bits would clip them, so they are read as doubles, which are exact up to 2^53.
 TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
   const TestFolder folder("hdf5_foreign_test");
   const std::vector<std::int64_t> values{0, -1, 1'000'000'000'000, -9'007'199'254'740'991};
@@ -194,7 +194,7 @@ TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
             Values(std::vector<double>(values.begin(), values.end())));
 }
 
-// Each ended the program: by a signal, or never. Which of the library's ways it is depends on its version.
+// Each of these files made the library crash or hang. How the library fails depends on its version.
 TEST(DamagedFiles, AreRefusedIfTheLibraryWouldNotSurviveThem) {
   const fs::path seeds = fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus/hdf5_bytes";
   for (const char* name : {"library-bus-error", "library-crashes-1", "library-crashes-2", "library-crashes-3",

@@ -1,4 +1,4 @@
-// A call that the HDF5 library refused becomes an exception that says why.
+// A call that the HDF5 library refused becomes an exception with the reason.
 #include "analysis/storage/hdf5_handle.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(Hdf5Refusal, RepeatsTheWordsOfTheSystem) {
   EXPECT_EQ(told("No space left on device"), "No space left on device");
   EXPECT_EQ(told("?"), "?");
   EXPECT_EQ(told(std::string(127, 'w')), std::string(127, 'w'));
-  // There is no room for these: better none than a part.
+  // These texts do not fit into the buffer, and are left out rather than cut.
   EXPECT_EQ(told(std::string(128, 'w')), "the HDF5 library failed: out of memory, or a damaged file");
   EXPECT_EQ(told(""), "the HDF5 library failed: out of memory, or a damaged file");
 }
@@ -68,7 +68,7 @@ TEST(Hdf5Refusal, IsBadAllocIfMemoryRunsOut) {
             "No space left on device");
 }
 
-// The library prints the errors of its first call in a process, so it is a process of its own.
+// The library prints the errors of its first call in a process, so this test starts another process.
 TEST(OpenHdf5, PrintsNothingWhenTheFirstCallFails) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto fail = [] { return failure([] { open_hdf5("/nowhere/x.h5"); }); };

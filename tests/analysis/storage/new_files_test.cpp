@@ -42,7 +42,7 @@ TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
   EXPECT_EQ(bytes_of(folder / "b"), "old");
 }
 
-// The third target becomes a folder before the files are renamed.
+// The folder of the third target disappears before the files are renamed.
 TEST(NewFiles, OneThatCannotAppearTakesTheOthersBack) {
   const TestFolder folder("new_files");
   folder.write("b", "old");

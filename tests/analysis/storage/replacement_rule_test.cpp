@@ -26,7 +26,7 @@ class ReplacementRuleTest : public testing::Test {
   std::string write(const fs::path& target, const std::string& text) const {
     return refusal([&] { write_file_atomically(target, text.data(), text.size()); });
   }
-  // The only file beside the named ones.
+  // Returns the name of the only file that is not one of `others`.
   std::string kept_beside(const std::vector<std::string>& others) const {
     std::string kept;
     for (const std::string& name : files_in(folder_.path()))

@@ -1,4 +1,4 @@
-// Answers of write() and rename() in this program that a test sets.
+// Results of write() and rename() in this program, which a test can set.
 #pragma once
 
 #include <initializer_list>
@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// The first calls of write() return these answers and write nothing, until this object is destroyed. Only one
-// object at a time, and only in a test with one thread.
+// The first calls of write() return these answers and write nothing, until this object is destroyed. There
+// may be only one object at a time, and only in a test with one thread.
 class AnswersOfWrite {
  public:
   struct Answer {
@@ -22,7 +22,8 @@ class AnswersOfWrite {
   std::vector<Answer> answers_;
 };
 
-// One call of rename() fails with this errno, after calls_before calls that are made. Ends with the object.
+// One call of rename() fails with this errno, after calls_before calls that are executed. The effect ends
+// with the object.
 class FailedRename {
  public:
   FailedRename(int calls_before, int error);

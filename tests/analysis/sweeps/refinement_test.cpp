@@ -1,5 +1,5 @@
-// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. An interval of few
-// runs is certain from 0 of 4, or 4 of 4, on (see the table in proportion_test).
+// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. The interval of a
+// few runs excludes 0.5 from 0 of 4, or 4 of 4, on (see the table in proportion_test).
 #include "analysis/sweeps/refinement.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@
 namespace remote_touch::refinement_test {
 namespace {
 
-// A grid without sampled runs: its number of cells along each axis, with room for this number of replicates.
+// Returns a grid without sampled runs, with these numbers of cells along the axes and room for this number of
+// replicates.
 SweepResult empty_grid(const std::vector<int>& lengths, int replicates) {
   SweepResult result;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
@@ -29,7 +30,7 @@ void set(SweepResult& result, std::size_t run, RunState state, double value = 0)
   std::get<std::vector<double>>(result.measures[1].values)[run] = value;
 }
 
-// The cell has so many runs, and in the first of them the event.
+// Marks the first `runs` runs of the cell as done; the first `events` of them have the event.
 void sample(SweepResult& result, std::size_t cell, int events, int runs) {
   for (int i = 0; i < runs; ++i) set(result, result.run(cell, i), RunState::done, i < events ? 1 : 0);
 }
@@ -56,7 +57,7 @@ TEST(NextRound, AsksForNothingWhereAllIsCertainAndAgrees) {
   }
 }
 
-// Also at the finest spacing: there is no cell between.
+// No run is requested at the finest spacing, because there is no cell in between.
 TEST(NextRound, AsksHalfWayBetweenCellsThatDisagree) {
   SweepResult result = empty_grid({5}, 8);
   const RefinementRule r = rule({4}, 4);
@@ -68,7 +69,7 @@ TEST(NextRound, AsksHalfWayBetweenCellsThatDisagree) {
   EXPECT_EQ(next_round(result, r), Runs{});
 }
 
-// 1 of 4 is less likely than not, as 0 of 4 is, but uncertain.
+// The event is unlikely with 1 of 4, as with 0 of 4, but 1 of 4 is uncertain.
 TEST(NextRound, AsksHalfWayAndAgainWhereACellIsUncertain) {
   SweepResult result = empty_grid({5}, 6);
   sample(result, 0, 0, 4), sample(result, 4, 1, 4);
@@ -102,29 +103,30 @@ TEST(NextRound, AnUncertainCellGetsReplicatesUpToItsRoom) {
 }
 
 TEST(NextRound, SpacingsAreThoseOfTheFirstRoundAndItsHalves) {
-  // 3 is no node of spacing 4 or 2, and its neighbour at spacing 1 leaves nothing between.
+  // Cell 3 is no node of spacing 4 or 2, and there is no cell between it and its neighbour at spacing 1.
   SweepResult result = empty_grid({9}, 4);
   sample(result, 3, 0, 4), sample(result, 7, 4, 4);
   EXPECT_EQ(next_round(result, rule({4})), Runs{});
-  // 0 and 8 are not neighbours at spacing 4 (4 is between them), but at spacing 8.
+  // Cells 0 and 8 are neighbours at spacing 8, but not at spacing 4, because 4 is between them.
   result = empty_grid({9}, 4);
   sample(result, 0, 0, 4), sample(result, 8, 4, 4);
   EXPECT_EQ(next_round(result, rule({4})), Runs{});
   EXPECT_EQ(next_round(result, rule({8})), Runs{result.run(4, 0)});
-  // A cell that was not sampled tells nothing.
+  // A cell that was not sampled disagrees with no neighbour.
   result = empty_grid({9}, 4);
   sample(result, 4, 0, 4);
   EXPECT_EQ(next_round(result, rule({4})), Runs{});
 }
 
 TEST(NextRound, EveryAxisHasItsOwnSpacing) {
-  // 3 x 3: the corners are sampled, and the last one differs. Not the middle: diagonals are no neighbours.
+  // The corners of 3 x 3 cells are sampled, and the last one differs. The middle is not requested, because
+  // diagonals are no neighbours.
   SweepResult result = empty_grid({3, 3}, 4);
   for (const std::size_t cell : {0, 2, 6}) sample(result, cell, 0, 4);
   sample(result, 8, 4, 4);
   const Runs expected = {result.run(5, 0), result.run(7, 0)};
   EXPECT_EQ(next_round(result, rule({2, 2})), expected);
-  // An axis of stride 1, a list of names for example, has nothing between.
+  // An axis of stride 1, such as a list of names, has no cells in between.
   EXPECT_EQ(next_round(result, rule({2, 1})), Runs{result.run(5, 0)});
   EXPECT_EQ(next_round(result, rule({1, 1})), Runs{});
 }
@@ -143,7 +145,8 @@ TEST(NextRound, KeepsTheBudgetAndServesTheFewestRunsFirst) {
   EXPECT_EQ(with(100).size(), 6u);
 }
 
-// A run that failed is not asked for again by another round, costs its share and tells nothing.
+// A failed run is not requested again by another round. It counts for the budget, but not for the
+// probability.
 TEST(NextRound, FailedRunsTakeRoomAndBudget) {
   SweepResult result = empty_grid({3}, 4);
   set(result, result.run(0, 0), RunState::failed, 1);
@@ -169,7 +172,7 @@ TEST(NextRound, TheEventIsTheMeasureAboveItsThreshold) {
   r.threshold = 0.02;
   EXPECT_EQ(next_round(result, r), Runs{});
   r.threshold = 0.01, r.measure = "other";
-  EXPECT_EQ(next_round(result, r), Runs{});  // all NaN, which is above nothing
+  EXPECT_EQ(next_round(result, r), Runs{});  // all NaN, which is never above
 }
 
 // A world whose truth is known: the event happens above a slanted line.
@@ -199,7 +202,7 @@ TEST(Refinement, FindsABoundaryWithoutLookingEverywhere) {
     EXPECT_TRUE(std::is_sorted(runs.begin(), runs.end()));
     EXPECT_EQ(std::adjacent_find(runs.begin(), runs.end()), runs.end());
   }
-  // Along the edges, where there are always neighbours, the two cells beside the boundary are both known.
+  // The two cells beside the boundary are both known along the edges, where there are always neighbours.
   const auto known = [&](int x, int y) {
     return tally(result, result.measure("popped_through"), static_cast<std::size_t>(x * kSide + y)).runs == 4;
   };
@@ -226,7 +229,8 @@ TEST(Refinement, IsTheSameWhenTheWorldIsMirroredOrTurned) {
   }
 }
 
-// Whoever goes on with a result asks for the same runs, however often and whatever it has beside the event.
+// Every continuation of a result requests the same runs, however often it is continued and whatever else the
+// result holds.
 TEST(Refinement, IsAFunctionOfWhatIsDone) {
   SweepResult result = empty_grid({kSide, kSide}, 6);
   const RefinementRule r = rule({16, 16}, 3, 150);

@@ -1,4 +1,4 @@
-// The files of sweeps: what is written comes back, finished or not, and damage is noticed.
+// The files of sweeps: what is written is read back, finished or not, and damage is noticed.
 #include "analysis/sweeps/sweep_file.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// 2 x 3 cells of 2 replicates, with every state and numbers that a careless writer would change.
+// 2 x 3 cells of 2 replicates, with runs that are done, failed and pending, and numbers that a careless
+// writer would change.
 SweepResult awkward(int replicates = 2, bool refined = true) {
   SweepResult result;
   result.axes = {{"rule", "1", "renderer.rule", std::vector<std::int32_t>{0, 1}, 1, {"fixed", "variable"}},
@@ -46,7 +47,7 @@ SweepResult awkward(int replicates = 2, bool refined = true) {
   return result;
 }
 
-// Earlier versions stored it so.
+// Returns the result as earlier versions stored it.
 SweepResult without_notes(SweepResult result) {
   result.note_kinds.clear(), result.notes.clear();
   return result;
@@ -85,7 +86,7 @@ TEST(SweepFile, ReadsBackWhatWasWritten) {
       EXPECT_EQ(stored.attributes, kAttributes);
       EXPECT_FALSE(stored.in_progress);
       EXPECT_EQ(attribute(read_hdf5(folder / "x.h5"), "digest"), sum);
-      // Read and written again it has the same bytes.
+      // The file has the same bytes if it is read and written again.
       write_sweep(folder / "again.h5", stored.result, stored.attributes);
       EXPECT_EQ(bytes_of(folder / "again.h5"), bytes_of(folder / "x.h5"));
     }
@@ -165,10 +166,10 @@ TEST(SweepInProgress, IsReadAsFarAsItIs) {
   StoredSweep stored = read_sweep(folder / "x.h5");
   EXPECT_TRUE(stored.in_progress);
   EXPECT_EQ(stored.attributes, kAttributes);
-  result.error.assign(result.run_count(), "");  // told again when the run is made again
+  result.error.assign(result.run_count(), "");  // reported when the run is repeated
   expect_same(stored.result, result);
 
-  // One run more, while the file is held.
+  // One more run is recorded while the file is open.
   SweepInProgress storage(folder / "x.h5", result, kAttributes, true);
   result.state[3] = RunState::done;
   for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[3] = -0.25;
@@ -178,7 +179,7 @@ TEST(SweepInProgress, IsReadAsFarAsItIs) {
   expect_same(read_sweep(folder / "x.h5").result, result);
 }
 
-// Every byte of a run's own values: it is pending again then, and no other run changes.
+// Each byte of one run's values is changed in turn. The run is then pending, and no other run changes.
 TEST(SweepInProgress, ARunWrittenInPartIsPending) {
   const TestFolder folder("sweep_file_test");
   SweepResult result = awkward();
@@ -196,7 +197,7 @@ TEST(SweepInProgress, ARunWrittenInPartIsPending) {
         static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name)) +
         8 * size;
     for (std::size_t byte = 0; byte < size; ++byte) {
-      if (std::string(name) == "state" && byte > 0) continue;  // no state at all: the file is refused below
+      if (std::string(name) == "state" && byte > 0) continue;  // no valid state: the file is refused below
       std::string torn = whole;
       torn[begin + byte] ^= 1;
       expect_same(read_sweep(folder.write("torn.h5", torn)).result, expected);
@@ -220,7 +221,7 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
   EXPECT_EQ(read_sweep(folder.write("swapped.h5", swapped)).result.state[2], RunState::pending);
 }
 
-// A run that no round asked for stays so, whatever its bytes became.
+// A run that no round requested stays not sampled, whatever its bytes are.
 TEST(SweepInProgress, DamageAsksForNoRuns) {
   const TestFolder folder("sweep_file_test");
   SweepResult result = awkward();
@@ -242,8 +243,8 @@ TEST(SweepInProgress, NoticesThatItsFileWasMoved) {
   EXPECT_HAS(refusal([&] { second.flush(); }), "was replaced or removed");
 }
 
-// The reader asks a child process about a file in progress, one question after the other. A sweep that ends,
-// or begins another round, puts a new file in its place between two of them.
+// The reader sends one query after the other about a file in progress to a child process. A sweep that ends,
+// or begins another round, may replace the file between two queries.
 constexpr int kQuestions =
     10;  // attributes, two axes, replicates, two measures, state, notes, round, checksum
 
@@ -298,7 +299,7 @@ TEST(SweepFile, DamageIsRefused) {
     EXPECT_HAS(message, "damaged.h5: ");
     return message;
   };
-  // A value of a finished file; an axis and a round of one in progress.
+  // The test damages a value of a finished file, and an axis and a round of a file in progress.
   write_sweep(folder / "x.h5", awkward(), kAttributes);
   const std::string third = raw(1.0 / 3), changed = raw(std::nextafter(1.0 / 3, 1));
   std::string whole = bytes_of(folder / "x.h5");
@@ -336,7 +337,7 @@ TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest is another)");
 }
 
-// 2^64 runs are none for a computer that counts with 64 bits.
+// 2^64 runs are 0 in 64-bit arithmetic.
 TEST(SweepFile, AxesNamedMoreOftenThanTheyAreThereAreRefused) {
   const TestFolder folder("sweep_file_test");
   const auto why = [&](int times, const std::vector<double>& values) {

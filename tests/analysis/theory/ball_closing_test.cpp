@@ -74,7 +74,8 @@ TEST(BallClosing, PeakIsFeltAsItIs) {
 TEST(BallClosing, BallLeavesAFilletAtTheFootOfAWall) {
   const double wall = 0.02;
   const std::vector<double> got = closed(sampled([&](double x) { return x < 0 ? 0 : wall; }));
-  // The nearest centre touches the wall, or is one sample short of it: touching may count as held up.
+  // The nearest centre touches the wall, or is one sample short of it, because a ball that touches may count
+  // as lifted.
   for (std::size_t i = 100; i <= 500; ++i) {
     const double x = place(i);
     if (x >= 0) {
@@ -102,7 +103,7 @@ TEST(BallClosing, BallSagsIntoAGap) {
     EXPECT_NEAR(got[kHalf], -(kRadius - std::sqrt(kRadius * kRadius - w * w)), 10 * kRounding) << half_gap;
     EXPECT_NEAR(got[kHalf + static_cast<std::size_t>(half_gap)], 0, kRounding);
   }
-  // A wider one it falls into.
+  // The ball falls into a wider gap.
   const std::vector<double> wide = closed(sampled([](double x) { return std::abs(x) < 0.006 ? -0.03 : 0; }));
   EXPECT_NEAR(wide[kHalf], -0.03, kRounding);
 }
@@ -140,7 +141,7 @@ TEST(BallClosing, MirroredAndShiftedWithTheProfile) {
   const std::vector<double> got = closed(heights), got_mirrored = closed(mirrored),
                             got_shifted = closed(shifted);
   for (std::size_t i = 0; i < got.size(); ++i) ASSERT_EQ(got_mirrored[got.size() - 1 - i], got[i]);
-  // Two radii from the new end nothing has changed.
+  // The heights two radii away from the new end are unchanged.
   for (std::size_t i = 110; i < got_shifted.size(); ++i) ASSERT_EQ(got_shifted[i], got[i + 5]);
 }
 

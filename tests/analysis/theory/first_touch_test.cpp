@@ -1,4 +1,4 @@
-// The closed form against the method's rules, followed frame by frame in one dimension.
+// Comparison of the closed form with the method's rules, followed frame by frame in one dimension.
 #include "analysis/theory/first_touch.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Proxy {
   }
   double nearest_m(double plane_m) const { return std::hypot(height_m - plane_m, beside_m); }
 
-  // One frame with the hand at height 0. Returns false where the plane has passed the centre.
+  // Processes one frame with the hand at height 0. Returns false if the plane has passed the centre.
   bool sees(double plane_m) {
     height_m += velocity_m_per_s / frame_rate_hz;  // (4.3)
     if (height_m < plane_m) return false;

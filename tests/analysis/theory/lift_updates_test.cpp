@@ -39,7 +39,7 @@ TEST(LiftUpdates, QuantitiesOfALiftWithoutNoise) {
   }
 }
 
-// The margin is the height of the carried proxy over the new plane, by definition of its parts.
+// The margin is the height of the corrected proxy over the new plane, by the definition of its terms.
 TEST(LiftUpdates, MarginIsTheHeightOverTheNewPlane) {
   const Trace trace = simulate(Experiment::load("fig4.12", {"scenario.acceleration_m_per_s2=4"}));
   std::size_t next = 0;

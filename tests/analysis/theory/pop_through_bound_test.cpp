@@ -50,8 +50,8 @@ TEST(ScatterBound, EqualsTheCriticalAccelerationAtZeroNoise) {
 
 constexpr NoiseEffect kNoise{0.006, 0.002, 0.05, 0.02, 0.09, 0.07, 0.0035, 0.6};
 
-// The formula against what it is derived from: draws at ten updates, of a margin whose scatter at rest is
-// given.
+// Comparison of the formula with what it is derived from: random draws at ten updates, with a given scatter
+// of the margin at rest.
 TEST(ScatterBound, ProbabilityIsThatOfDraws) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -67,7 +67,7 @@ TEST(ScatterBound, ProbabilityIsThatOfDraws) {
             std::sqrt(estimate * estimate - 0.1 * 0.1) * kNoise.normal_error_sd * normal(random);
         const double margin = kLift.r1_m + kNoise.thickness_m + kNoise.margin_sd_m * normal(random) +
                               (estimate * (1 - kNoise.normal_error) + more_normal_error - velocity) / 30;
-        above = margin > kNoise.thickness_sd_m * normal(random);  // the frame that comes
+        above = margin > kNoise.thickness_sd_m * normal(random);  // scatter of the new frame
         estimate += kNoise.gain * (velocity - estimate);
       }
       survived += above ? 1 : 0;

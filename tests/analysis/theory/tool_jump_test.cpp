@@ -1,4 +1,4 @@
-// The closed forms against heights that are computed place by place, and against noise that is drawn.
+// Comparison of the closed forms with heights that are computed position by position, and with random noise.
 #include "analysis/theory/tool_jump.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHalf_m = 0.02, kDegree = 0.017453292519943295;
 
-// Lowest and highest place over the square, by trying 401 x 401.
+// Lowest and highest position over the square, found by trying 401 x 401.
 UnderPlate tried(const std::function<double(double x, double z)>& height_m) {
   UnderPlate under{-1, -1};
   for (int i = -200; i <= 200; ++i)
@@ -58,7 +58,7 @@ TEST(ToolJump, ABallFallsUpToTheCornersOfThePlateOrToItsMiddle) {
   EXPECT_EQ(under_ball(0.01, 0.02).drop_m, 0.01);
 }
 
-// The share of jumps after which no point is left, of drawn frames.
+// Returns the fraction of randomly drawn jumps after which no point is left in the plate.
 double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points,
                      double sigma_m) {
   constexpr int kJumps = 2000;
@@ -80,8 +80,8 @@ double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyP
   return static_cast<double>(lost) / kJumps;
 }
 
-// 2000 jumps know a share within 0.04 (3.5 standard errors of one half). The median place stands for one that
-// scatters, which changes the share by less than 0.05 here.
+// 2000 jumps determine a fraction within 0.04 (3.5 standard errors at one half). The closed form uses the
+// median position of the plate, which scatters; this changes the fraction by less than 0.05 here.
 TEST(ToolJump, HalfOfAllToolsAreLostAtTheJumpOfNoisyPoints) {
   std::vector<NoisyPoint> plane(400), slope, fading;
   for (int i = 0; i < 400; ++i) {

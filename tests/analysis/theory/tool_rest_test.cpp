@@ -1,4 +1,4 @@
-// The closed forms against the least energy found by trying poses.
+// Comparison of the closed forms with the least energy that is found by trying poses.
 #include "analysis/theory/tool_rest.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(ToolRest, ABlockOnALineHasTheLeastEnergy) {
     }
 }
 
-// A force at a corner has no other torque than its own.
+// The torque is only that of the force at the corner.
 TEST(ToolRest, TheTorqueIsThatOfTheForceAtTheCorner) {
   constexpr double a = 0.02, b = 0.005, angle = 0.3;
   const RestingWrench wrench = block_on_line(a, b, kSpring, 0.007, angle);

@@ -1,4 +1,4 @@
-// Fingerprints: what counts, what does not, and that a difference stays.
+// Hashes of clouds and runs: what changes them, what does not, and that a difference persists to the end.
 #include "analysis/trace/hash64.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Fingerprint, CloudHashDependsOnEveryBitButNotOnTheOrder) {
   EXPECT_NE(points_hash(cloud), reference);
 }
 
-// The chain as the header tells it, by hand.
+// The chain that the header describes, computed by hand.
 TEST(Fingerprint, RunningHashIsWhatTheHeaderSays) {
   const std::vector<Column> columns = {{"a", "1", "", std::vector<double>{0.5, 2}, 1, {}},
                                        {"b", "1", "", std::vector<std::int32_t>{-1, 7, 8, 9}, 2, {}}};
@@ -66,7 +66,8 @@ TEST(Fingerprint, RunningHashDiffersFromTheFirstDifferenceOn) {
   }
 }
 
-// Two seeds have other points in every frame; the flat cloud's one frame has none of that.
+// Two seeds have other points in every frame, so their hashes differ in every tick. The hash of one run
+// changes at each frame update and only there.
 TEST(Fingerprint, TraceHasFrameHashesOnlyOnRequest) {
   SimulationOptions options;
   EXPECT_EQ(simulate(Experiment::load("fig4.12"), options).frame_hash.back(), 0u);

@@ -49,7 +49,7 @@ TEST(SequenceLog, HasTheTimesAtWhichAStepBeganAndEnded) {
   EXPECT_EQ(log[0].angle_rad, 30 * 0.003);
 }
 
-// The first step reaches its deadline, the second is done at once and the third begins, all in one tick.
+// One tick in which the first step reaches its deadline, the second begins and ends, and the third begins.
 TEST(SequenceLog, OnlyTheRunningOneOfSeveralStepsInATickIsMissed) {
   const auto log = sequence_log(trace_of({{0, true, 0}, {2, true, 1}, {2, true, 1}}));
   ASSERT_EQ(log.size(), 3u);

@@ -1,4 +1,4 @@
-// The columns of a trace follow from its table: each is filled, stored and described.
+// The columns of a trace follow from the table trace_columns.h: each is filled, stored and described.
 #include "analysis/trace/trace.h"
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ std::optional<Trace> again(const std::vector<Column>& columns) {
   });
 }
 
-// The last column is the hash of all others.
+// The last column is the hash of all others, so equal hashes show that all values were restored.
 TEST(TraceColumns, MakeTheTraceAgain) {
   for (const bool tool : {false, true})
     for (const bool guidance : {false, true})
@@ -135,7 +135,7 @@ TEST(TraceColumns, MakeNoTraceWhereOneIsMissingOrAnother) {
   }
 }
 
-// A tool has no proxy of radius r_c: what is said of it must not be said of one.
+// A tool has no proxy of radius r_c, so no description of a run with a tool may mention a proxy.
 TEST(TraceColumns, DoNotMentionAProxyForATool) {
   const std::vector<Column> proxy = one_tick(false, false, false).columns();
   const std::vector<Column> tool = one_tick(true, false, false).columns();

@@ -34,7 +34,7 @@ bool same_bits(const PointCloud& a, const PointCloud& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z) && a.colour == b.colour;
 }
 
-// Places on and around the organ.
+// Positions on and around the organ.
 std::vector<Vec3> places() {
   const PointCloud at = scenes::random_cloud(300, 1, 3);
   std::vector<Vec3> places;
@@ -73,8 +73,8 @@ TEST(BeatingHeart, EveryBeatIsTheSame) {
   }
 }
 
-// Speeds over steps of h: they exist, are as large as the pulse says, and change no faster than by the
-// largest acceleration, 10 / sqrt(3) amplitude / duration^2 of a fifth-order step.
+// The speed is computed by differences over h. Its largest values are those of a fifth-order step. It changes
+// no faster than by the largest acceleration of such a step, 10 / sqrt(3) amplitude / duration^2.
 TEST(BeatingHeart, TheTopMovesSmoothly) {
   const BeatingHeart heart = made();
   const double h = 1e-4, contraction_s = 0.3 * kBeat_s, relaxation_s = 0.4 * kBeat_s;
@@ -104,7 +104,8 @@ TEST(BeatingHeart, TheAtriumLeads) {
 TEST(BeatingHeart, TruthIsContinuousInTimeAndSpace) {
   const BeatingHeart heart = made();
   const double h = 1e-5;
-  // Half an axis of 40 mm shrinks by 6.5 / 32, at most 15 / 8 of that in the time of a contraction.
+  // A semi-axis of 40 mm shrinks by 6.5 / 32 of its length in a contraction. Its largest speed is 15 / 8 of
+  // the mean.
   const double max_speed = 15.0 / 8 * 0.040 * 0.0065 / 0.032 / (0.3 * kBeat_s);
   for (const Vec3& p : places())
     for (double t = 0; t < kBeat_s; t += 0.0307) {
@@ -161,7 +162,7 @@ TEST(BeatingHeart, IdealPointsLieOnTheSurfaceOfTheirTime) {
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const bool hole = std::isnan(cloud.x[i]), organ = cloud.colour[i] != 0x3A6E78;
       on_organ += organ, holes += hole;
-      if (hole || (!organ && i % 7 != 0)) continue;  // the table's many points are a sample
+      if (hole || (!organ && i % 7 != 0)) continue;  // a sample is enough for the table
       const Vec3 p = cloud.point(i);
       ASSERT_LT(std::abs(heart.signed_distance(p, time)), 1e-9) << p.transpose();
       ASSERT_EQ(organ, p.y() > 1e-9) << "colour and place agree";

@@ -77,7 +77,7 @@ TEST(DepthCamera, APlaneIsSeenAtItsDepth) {
   for (const double z : from_above.depth.z_m) EXPECT_NEAR(z, 0.5, 1e-15);
   EXPECT_TRUE(from_above.colour.empty());
 
-  s.camera_position_m = {0.4, 0.3, 0}, s.hole_px = 0;  // looks down by 3 in 5 parts
+  s.camera_position_m = {0.4, 0.3, 0}, s.hole_px = 0;  // looks down at an angle whose sine is 3 / 5
   const DepthCamera slanting = made(s);
   const IdealView view = slanting.view(table, false);
   const PointCloud cloud = slanting.measured(view, 0);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A rotation about no axis in particular; its columns are exact to rounding.
+// A rotation about a general axis. Its columns are orthonormal to rounding.
 Eigen::Matrix3d turned() {
   Eigen::Matrix3d about_x, about_y;
   about_x << 1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8;
@@ -54,7 +54,7 @@ class EllipsoidTest : public testing::TestWithParam<Shape> {
   Vec3 from_axes(const Vec3& q) const { return kCentre + GetParam().axes * q; }
   double level(const Vec3& q) const { return q.cwiseQuotient(semi_axes()).squaredNorm(); }
 
-  // Direction and place at random; what is near the surface, deep inside and far away takes turns.
+  // Returns positions in random directions, in turn near the surface, deep inside and far away.
   std::vector<Vec3> places() const {
     std::vector<Vec3> places;
     const PointCloud at = scenes::random_cloud(4000, 1, 5);
@@ -69,7 +69,8 @@ class EllipsoidTest : public testing::TestWithParam<Shape> {
   const Ellipsoid solid_{kCentre, GetParam().semi_axes, GetParam().axes};
 };
 
-// A point is the closest if it is on the surface, along the normal, and not beyond a focal surface.
+// A point is the closest if it is on the surface, the offset is along its normal, and no focal surface is
+// passed.
 TEST_P(EllipsoidTest, TheClosestPointObeysTheConditions) {
   const double shortest = semi_axes().minCoeff();
   for (const Vec3& p : places()) {
@@ -123,7 +124,8 @@ TEST_P(EllipsoidTest, DistanceOnTheAxesIsKnown) {
       };
       for (const double beyond : {1e-12, 1e-3, 1.0, 1e3})
         EXPECT_NEAR(at(e + beyond), beyond, 1e-15 * (1 + beyond) * 4) << axis;
-      // Inside, up to the centre of curvature that is farthest out, the axis' own end is the closest.
+      // Inside, the axis' own end is the closest point up to the centre of the smallest radius of curvature
+      // there.
       double smallest_radius = e;
       for (int i = 0; i < 3; ++i)
         if (i != axis) smallest_radius = std::min(smallest_radius, semi_axes()[i] * semi_axes()[i] / e);
@@ -133,7 +135,7 @@ TEST_P(EllipsoidTest, DistanceOnTheAxesIsKnown) {
     }
 }
 
-// Everything about these places is degenerate: some coordinates are zero, tiny, or the roots' poles meet.
+// These positions are degenerate: some coordinates are zero or tiny, or the poles of the equation coincide.
 TEST_P(EllipsoidTest, NoPlaceIsTooDegenerate) {
   const double values[] = {0, -0.0, 5e-324, -1e-200, 1e-30, 1e-18, -1e-12, 1e-6, 0.01, 0.03, 1, 1e6};
   const double shortest = semi_axes().minCoeff();
@@ -146,7 +148,7 @@ TEST_P(EllipsoidTest, NoPlaceIsTooDegenerate) {
         ASSERT_NEAR(level(foot), 1, 1e-11) << q.transpose();
         const double d = straight.signed_distance(q);
         ASSERT_GE(d, -shortest * (1 + 1e-12)) << q.transpose();
-        // Moved a little, the distance changes no more than that.
+        // A small displacement changes the distance by no more than its own length.
         const double moved = straight.signed_distance(q + Vec3(1e-9, -1e-9, 1e-9));
         ASSERT_NEAR(moved, d, 1.8e-9 + 1e-9 * std::abs(d)) << q.transpose();
       }
@@ -171,7 +173,7 @@ TEST_P(EllipsoidTest, CastMeetsTheSurfaceFirstWhereTheEquationSays) {
         EXPECT_GT(solid_.level(origin + t * k / 50 * direction), 1 - 1e-10) << "entered before";
       ++hits;
     } else {
-      // Nowhere on the way is it inside: not even where the level is least.
+      // The ray is nowhere inside, not even where the level is least.
       const Vec3 o = to_axes(origin).cwiseQuotient(semi_axes());
       const Vec3 d = (GetParam().axes.transpose() * direction).cwiseQuotient(semi_axes());
       const double min = std::max(0.0, -o.dot(d) / d.squaredNorm());
@@ -195,7 +197,7 @@ TEST_P(EllipsoidTest, HeightIsTheUpperOutline) {
     }
     const Vec3 top(p.x(), height, p.z());
     EXPECT_NEAR(solid_.level(top), 1, 1e-10);
-    // The level rises with the height there: it is the upper of the two crossings.
+    // The level rises with the height there, so this is the upper of the two crossings.
     const Vec3 up = GetParam().axes.transpose() * Vec3::UnitY();
     EXPECT_GE(to_axes(top).cwiseQuotient(semi_axes()).dot(up.cwiseQuotient(semi_axes())), 0);
     ++over;

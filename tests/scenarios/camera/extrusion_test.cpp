@@ -20,7 +20,7 @@ const Profile kBox{{0.14, 0}, {0.26, 0}, {0.26, 0.08}, {0.14, 0.08}};
 const Profile kRamp{{-0.05, 0}, {0.1, 0}, {0.1, 0.06}};
 const Profile kOdd{{0.01, -0.02}, {0.06, 0.0}, {0.07, 0.05}, {0.03, 0.07}, {-0.02, 0.04}};
 
-// Crossings of a level ray with the edges are odd in number: works for any polygon.
+// Returns true if a level ray crosses the edges an odd number of times, which is valid for any polygon.
 bool within(const Profile& profile, double z, double y) {
   bool odd = false;
   for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -33,7 +33,7 @@ bool within(const Profile& profile, const Vec3& p) {
   return p.x() > kLow && p.x() < kHigh && within(profile, p.z(), p.y());
 }
 
-// Points on the whole surface, no part of which is farther than spacing from one.
+// Returns points on the whole surface. No part of the surface is farther than spacing from one of them.
 std::vector<Vec3> surface(const Profile& profile, double spacing) {
   std::vector<Vec3> points;
   const auto parts = [&](double length) { return static_cast<int>(std::ceil(length / spacing)); };
@@ -88,7 +88,8 @@ TEST_P(ExtrusionTest, SignedDistanceIsToTheNearestSampleOfTheSurface) {
   EXPECT_LT(inside, 250);
 }
 
-// The first crossing into the solid, by walking along the ray and halving; infinite when there is none.
+// Returns the first t at which the ray enters the solid, by small steps and bisection; infinite if there is
+// none.
 double walked_cast(const Extrusion& solid, const Vec3& origin, const Vec3& direction, double end) {
   const auto inside = [&](double t) { return solid.signed_distance(origin + t * direction) <= 0; };
   constexpr int kSteps = 2000;
@@ -107,7 +108,8 @@ TEST_P(ExtrusionTest, CastMeetsTheSurfaceWhereAWalkDoes) {
   int hits = 0, misses = 0, inside = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Vec3 origin = middle(profile()) + (i % 5 == 0 ? 0.1 : 1.0) * from.point(i);
-    // Some towards the solid, some anywhere; lengths differ, for t counts in directions.
+    // Some directions point to the solid, others are random. Their lengths differ, because t is in units of
+    // the direction.
     const Vec3 towards = middle(profile()) + 0.05 * displacement.point(i) - origin;
     const Vec3 direction = (i % 2 == 0 ? towards : displacement.point(i)) * (1 + static_cast<double>(i % 7));
     const double end = 1 / direction.norm();  // 1 m, beyond everything here
@@ -146,7 +148,7 @@ TEST_P(ExtrusionTest, HeightIsTheUpperOutline) {
       const auto &a = profile()[i], &b = profile()[(i + 1) % profile().size()];
       if ((z - a[0]) * (z - b[0]) < 0) top = std::max(top, a[1] + (z - a[0]) / (b[0] - a[0]) * (b[1] - a[1]));
     }
-    // The height is taken from 1 km up, so it carries the rounding of that.
+    // height() casts a ray from 1 km above, so its result has the rounding error of that distance.
     if (top > -kInfinity)
       EXPECT_NEAR(solid_.height(0.01, z), top, 1e-12) << z;
     else

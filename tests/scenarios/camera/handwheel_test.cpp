@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kCentre(0.02, -0.03, 0.06);
 constexpr double kRing_m = 0.045;
 
-// A part as a tube about a curve, or a cylinder: told here by its own inequality, and sampled.
+// Oracle for the parts, tubes about a curve and cylinders: each has an inequality of its own, and samples.
 struct Cylinder {
   double radius, low, high;
   bool holds(const Vec3& q) const { return std::hypot(q.x(), q.y()) < radius && q.z() > low && q.z() < high; }
@@ -44,7 +44,8 @@ bool inside(const Vec3& p) {
   return any;
 }
 
-// Samples of all parts' surfaces, in rings about 0.7 mm apart; those inside another part are no surface.
+// Samples of the surfaces of all parts, in rings about 0.7 mm apart. Samples inside another part are left
+// out.
 class Surface {
  public:
   Surface() {
@@ -74,7 +75,7 @@ class Surface {
   }
 
  private:
-  // The normal is away from the middle, where none is given.
+  // The normal points away from the middle of the circle, unless it is given.
   void add_circle(const Vec3& middle, const Vec3& one, const Vec3& other, double radius, int count,
                   const Vec3& normal = Vec3::Zero()) {
     for (int j = 0; j < count; ++j) {
@@ -145,7 +146,7 @@ TEST(Handwheel, RaysMeetItWhereAMarchMeetsIt) {
         found = high;
       }
     if (std::isinf(found) && !std::isinf(t)) {
-      // The march steps over slivers; what is met is the surface all the same.
+      // The march can step over slivers. The hit of cast() must still be on the surface.
       EXPECT_LE(std::abs(wheel.signed_distance(origins[i] + t * ray)), 1e-9);
       continue;
     }
@@ -154,13 +155,13 @@ TEST(Handwheel, RaysMeetItWhereAMarchMeetsIt) {
     ++hits;
     EXPECT_LE(std::abs(wheel.signed_distance(origins[i] + t * ray)), 1e-9) << i;
     EXPECT_LE(t * ray.norm(), found * ray.norm() + 1e-9) << i;
-    // An earlier hit than the march's is a sliver of less than a step.
+    // If cast() hits earlier, the march has stepped over a sliver within the last 10 mm.
     EXPECT_GE(t * ray.norm(), found * ray.norm() - 0.01) << i;
   }
   EXPECT_GT(hits, 80);
 }
 
-// Cast and distance agree: nothing nearer than the distance is met in any direction.
+// cast() and signed_distance() agree: no ray hits the surface before it has travelled the distance.
 TEST(Handwheel, NoRayMeetsItBeforeTheDistance) {
   const Handwheel wheel(kCentre, kRing_m);
   const std::vector<Vec3> directions = places(20, 1, 4);

@@ -44,7 +44,8 @@ TEST(RayNoise, UncorrelatedPointsAndFramesHaveTheirOwn) {
   between_frames.expect(0, "between frames");
 }
 
-// Weights of the four nodes around both places, in closed form.
+// Returns the correlation of the noise at x and x + dx (in pitches), from the weights of the nodes around
+// both.
 double expected_correlation(double x, double dx) {
   const auto weight = [](double at, int node) { return std::max(0.0, 1 - std::abs(at - node)); };
   double product = 0, a = 0, b = 0;

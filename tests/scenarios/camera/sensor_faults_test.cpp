@@ -79,7 +79,7 @@ TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
   EXPECT_EQ(a.force_N, b.force_N);
 }
 
-// --- places ---
+// --- positions ---
 
 TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
   SensorFaults s;
@@ -118,7 +118,8 @@ TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
     }
   }
   expect_fraction(flown, all, 0.2);
-  // Evenly spread: no mean, and a standard deviation of the half width by sqrt(3).
+  // The displacement is uniform: its mean is 0, and its standard deviation is the half width divided by
+  // sqrt(3).
   const double sd = 0.03 / std::sqrt(3.0);
   EXPECT_NEAR(sum / flown, 0, 5 * sd / std::sqrt(flown));
   EXPECT_NEAR(std::sqrt(squares / flown), sd, 5 * sd / std::sqrt(flown));
@@ -184,7 +185,7 @@ TEST(SensorFaults, PointsBehindTheCameraAreLost) {
     if (after.is_measured(i)) {
       ASSERT_GT((X_CW * after.point(i)).z(), 0);
     }
-  // About half: 5 m either way, of something 0.6 m away.
+  // About half of the points are lost: they move by up to 5 m in either direction, from about 0.6 m away.
   EXPECT_NEAR(static_cast<double>(measured(after)) / static_cast<double>(measured(before)), 0.56, 0.05);
 }
 
@@ -209,11 +210,11 @@ TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
     }
   }
   expect_fraction(lost, all, 0.3);
-  expect_fraction(twice, lost, 0.3);  // one tells nothing about the next
+  expect_fraction(twice, lost, 0.3);  // independent of the previous point
 }
 
-// Checks that the missing points are those within the radius of a middle around which all are missing, and no
-// others.
+// Checks that a point is missing if and only if it lies within the radius of some middle around which all
+// points are missing.
 void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view_direction,
                         double radius_m) {
   const auto apart = [&](std::size_t i, std::size_t j) {
@@ -262,7 +263,7 @@ TEST(SensorFaults, HolesInAnImageAreRoundInTheImage) {
   EXPECT_GE(lost, 0.05 * all);
   // The largest hole is that of the nearest point, about 0.45 m away.
   EXPECT_LE(lost, 0.05 * all + 3.2 * std::pow(0.02 / 0.45 * eye.fx, 2));
-  // Row by row what is lost has both kinds of neighbours: few borders for so many points.
+  // Lost points are contiguous along the rows: there are few borders for so many points.
   double borders = 0;
   for (std::size_t i = 1; i < after.size(); ++i)
     borders +=

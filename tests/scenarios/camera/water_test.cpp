@@ -39,7 +39,8 @@ TEST(Water, FarAwayThereIsOnlyTheVeil) {
   EXPECT_NEAR(Water(0.5).lost(0.02, kInfinity), 1, 1e-12);
 }
 
-// A white card at 2 m in water of 0.5 per metre: the exponents are the channels' shares of 1.
+// A white card at 2 m in water of 0.5 per metre: beta d is 1, so the exponents are the factors of the
+// channels.
 TEST(Water, RedIsLostFirst) {
   const auto seen = Water(0.5).seen(0xFFFFFF, 2);
   for (std::size_t i = 0; i < 3; ++i) {

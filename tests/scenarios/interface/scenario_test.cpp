@@ -25,7 +25,7 @@ Made made(const typename Made::Settings& settings = {}) {
   return Made(settings, kKey, scenes::kernels());
 }
 
-// Bits, not values: a hole equals itself.
+// Compares bits and not values, so that a hole (NaN) equals itself.
 bool same_bits(const PointCloud& a, const PointCloud& b) {
   const auto same = [](const std::vector<double>& c, const std::vector<double>& d) {
     return c.size() == d.size() && std::memcmp(c.data(), d.data(), c.size() * sizeof(double)) == 0;
@@ -33,7 +33,7 @@ bool same_bits(const PointCloud& a, const PointCloud& b) {
   return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
 }
 
-using Found = std::tuple<std::uint32_t, double, double, double>;  // number and place of a gathered point
+using Found = std::tuple<std::uint32_t, double, double, double>;  // number and position of a point
 
 std::vector<Found> gathered(const NeighbourSearch& search, const Ball& ball) {
   GatheredPoints out;
@@ -58,7 +58,7 @@ std::vector<Found> expected(const PointCloud& cloud, const Ball& ball) {
   return found;
 }
 
-// Asked again, in another order and of another object, a frame has the same bits.
+// A frame has the same bits if another object computes it, in another order.
 template <class Made>
 void expect_pure_frames(const typename Made::Settings& settings, const std::vector<int>& frames) {
   const Made one = made<Made>(settings), other = made<Made>(settings);
@@ -156,7 +156,7 @@ TEST(MovingLift, HeightsFollowTheSpeeds) {
   for (int j = 0; j < lift.frame_count(); ++j) {
     if (j > 15) v += 3.0 / 30;
     if (j > 0) y += v / 30;
-    // The time of a frame is rounded, and the plane moves a little in that.
+    // The time of a frame is rounded, and the plane moves a little within the rounding error.
     EXPECT_NEAR(lift.surface_height(0, 0, lift.captured_s(j)), y, 1e-15) << j;
     EXPECT_NEAR(lift.cloud(j).y[17], y, 1e-15) << j;
     const double between = lift.surface_height(0, 0, lift.captured_s(j) + 0.25 / 30);
@@ -205,7 +205,7 @@ TEST(TriangleWave, SignedDistanceIsToTheStraightFlanks) {
   EXPECT_GT(wave.signed_distance({end + 0.01, 0.05, 0.08}, 0), 0);
 }
 
-// Below the plane but beside the cloud nothing was passed through, and single points have no sides.
+// A position below the plane but beside the cloud has passed through no surface. Single points have no sides.
 TEST(Scenario, HasNoBackBesideItsPoints) {
   const FlatGrid flat = made<FlatGrid>();  // 100 x 100 points, 1.5 mm apart
   const double border = 49.5 * 0.0015;
@@ -296,7 +296,8 @@ TEST(CameraScene, NoiseGrowsWithTheSquareOfTheDepth) {
   }
 }
 
-// An edge runs between two pixels. Within hole_px = 2 of it nothing is seen, and more than 3 away everything.
+// An edge runs between two pixels. Pixels within hole_px = 2 of it have no depth; all pixels farther away
+// have one.
 TEST(CameraScene, HolesAlongDepthEdgesOnly) {
   const CameraScene scene = made<CameraScene>();
   const std::vector<double>& truth = scene.true_depth().z_m;

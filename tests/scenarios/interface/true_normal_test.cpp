@@ -62,7 +62,7 @@ TEST(TrueNormal, NormalOfATiltedPlaneIsTilted) {
   }
 }
 
-// Flanks of slope 2 h / (period / 2) at full height h; over a crest the way from the crest.
+// The normal over a flank is perpendicular to the flank. Over a crest it points from the crest to p.
 TEST(TrueNormal, ATriangleWaveHasThatOfItsFlanksAndCrests) {
   TriangleWave::Settings settings;
   settings.period_m = 0.04, settings.max_height_m = 0.01;
@@ -87,7 +87,7 @@ TEST(TrueNormal, PointsAwayFromTheCentreOfABall) {
     expect_normal(ball, p_W, 0, (p_W - centre_W).normalized(), 1e-5);
 }
 
-// The distance of the ripple is found by a search.
+// The distance of the ripple is found by a search, so the tolerance is larger.
 TEST(TrueNormal, ARippleHasThatOfTheNearestPointOfTheWave) {
   const MovingShape ripple = shape(Shape::Kind::ripple);
   const Shape::Settings wave;
@@ -99,7 +99,7 @@ TEST(TrueNormal, ARippleHasThatOfTheNearestPointOfTheWave) {
   }
 }
 
-// Over the bottom of a valley two flanks are equally near: the normal is either of them.
+// Over the bottom of a valley two flanks are equally near, and the normal could be that of either.
 TEST(TrueNormal, IsNotKnownOverACrease) {
   const MovingShape valley = shape(Shape::Kind::valley);
   const auto [sine, cosine] = sin_cos(Shape::Settings{}.slope_deg * kRadiansPerDegree);

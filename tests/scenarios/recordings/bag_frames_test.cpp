@@ -200,7 +200,7 @@ TEST_F(Frames, CloudsRefuseAChosenCamera) {
              "/points holds clouds: expected scenario.camera_info = \"\"");
 }
 
-// The first one is used; a zoom that is turned later is reported.
+// The first CameraInfo is used. A later one that differs, as after a change of zoom, is reported.
 TEST_F(Frames, DepthFramesReportACameraThatChanges) {
   const BagMessage first = camera("/x/camera_info");
   BagMessage later = first, other = first;
@@ -245,7 +245,7 @@ TEST_F(Frames, DamagedOnesAreNamed) {
   EXPECT_HAS(error({cloud(0, 0), cut}), "/points: ends after 7 bytes");
 }
 
-// Messages of two sizes, and an empty one, which is an image without a measurement.
+// The messages have two sizes. One is empty, which is an image without a measurement.
 TEST_F(Frames, AnotherSizeIsRefusedByTheMessage) {
   BagMessage smaller = cloud(1, 1), empty = cloud(2, 2);
   smaller.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 3, 2, 1);
@@ -260,7 +260,7 @@ TEST_F(Frames, AnotherSizeIsRefusedByTheMessage) {
   EXPECT_TRUE(std::isnan(scene.cloud(2).z[11]));
 }
 
-// The whole way: a bag of ROS 1 as a scenario, from a RealSense with units of half a millimetre.
+// The whole chain: a bag of ROS 1 as a scenario, from a RealSense with units of half a millimetre.
 TEST_F(Frames, AreAScenario) {
   const std::string sensor = "/device_0/sensor_0/";
   const auto ros1 = [&](std::uint16_t value, std::int64_t stamp_ns) {

@@ -16,7 +16,7 @@ class FolderFiles : public testing::Test {
   void write(const Names& names) const {
     for (const std::string& name : names) folder_.write(name, "");
   }
-  // The names of the colour images, in the order of the depth images.
+  // Returns the names of the colour images, in the order of the depth images.
   Names colours() const {
     Names names;
     for (const fs::path& file : colour_images(files_in_order(folder_ / "depth", ".png"), folder_ / "rgb"))

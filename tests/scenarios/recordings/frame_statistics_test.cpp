@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // The image of a wall of 1 m x 1 m, points 1 cm apart, whose left border is at x.
 PointCloud wall(double x, double z) {
   PointCloud cloud;
-  cloud.image = ImageLayout{};  // it is a camera's, whichever
+  cloud.image = ImageLayout{};  // image of some camera
   for (int row = 0; row < 100; ++row)
     for (int column = 0; column < 100; ++column) cloud.append({x + 0.01 * column, 0.01 * row, z});
   return cloud;
@@ -41,20 +41,20 @@ TEST(FrameStatistics, NotesPointsWithoutColour) {
   statistics.add(0, cloud, 3);
   EXPECT_TRUE(statistics.notes(3).empty());
   for (std::size_t i = 0; i < 500; ++i) cloud.colour[i] = kNoColour;
-  cloud.x[0] = cloud.y[0] = cloud.z[0] = kNan;  // it was not measured: its colour is not missed
+  cloud.x[0] = cloud.y[0] = cloud.z[0] = kNan;  // not measured: its colour does not count
   statistics.add(1, cloud, 3);
   ASSERT_EQ(statistics.notes(3).size(), 1u);
   EXPECT_HAS(statistics.notes(3)[0].text, "2.5 % of the measured points have no colour (NaN)");
 }
 
-// A camera's image fails to come for one frame.
+// Two frames have no colour image.
 TEST(FrameStatistics, NotesFramesWithoutColours) {
   FrameStatistics statistics(4);
   PointCloud coloured = wall(0, 1), nothing = wall(0, 1);
   coloured.colour.assign(coloured.size(), 0xFF0000);
   nothing.x.assign(nothing.size(), kNan);
   statistics.add(0, coloured, 3);
-  statistics.add(1, nothing, 3);  // no point of it misses a colour
+  statistics.add(1, nothing, 3);  // no colour is missing, because it has no measured point
   EXPECT_TRUE(statistics.notes(3).empty());
   statistics.add(3, wall(0, 1), 3);
   statistics.add(2, wall(0, 1), 3);
@@ -102,7 +102,7 @@ TEST(FrameStatistics, NotesPointsBeyondTheLimitAboveATenth) {
   }
 }
 
-// Half of the wall remains in view when the camera moves by half of it, then a tenth.
+// Half of the wall remains in view if the camera moves by 0.5 m, and a tenth if it moves by 0.9 m.
 TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
   for (const double step : {0.5, 0.9}) {
     FrameStatistics statistics(3);
@@ -116,8 +116,8 @@ TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
   }
 }
 
-// A wall that moves to and fro by d, from 1.2 mm to a cell, where the borders of the cells are (multiples of
-// 50 mm) or between them: it is the same wall. When it moves by more than two cells it is another place.
+// A wall that moves back and forth, by 1.2 mm to nearly a cell of 50 mm, counts as the same place, both at a
+// border of the cells and between borders. A wall that moves by more than two cells counts as another place.
 TEST(FrameStatistics, TakesASurfaceThatMovesALittleForTheSamePlace) {
   const auto notes = [](double at_m, double move_m) {
     FrameStatistics statistics(4);

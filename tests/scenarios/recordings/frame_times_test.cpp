@@ -79,7 +79,7 @@ TEST(FrameTimes, ASingleFrameIsAtTimeZero) {
   }
 }
 
-// A pause is where a frame is missing: the time is nearer to two periods than to one.
+// A pause is a time between frames that is nearer to two periods than to one, because a frame is missing.
 TEST(FrameTimes, TellTheRateThatIsPlayed) {
   const auto text = [](const RecordingIndex& index, double chosen_hz = 0) {
     return FrameTimes(index, {"x", 0, -1}, Playback::hold, chosen_hz).text();

@@ -1,4 +1,4 @@
-// Masks: which points an image marks, and what the rule refuses.
+// Tests which points a mask selects, and which masks and frames the rule refuses.
 #include "scenarios/recordings/image_mask.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST_F(ImageMasks, MayHaveColours) {
             (Shares{0, 1, 1, 1}));
 }
 
-// A fully transparent pixel selects nothing. A partly transparent one counts by its colour, like an opaque
+// A fully transparent pixel selects nothing. A partly transparent one selects by its colour, like an opaque
 // one.
 TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
   const std::uint8_t rgba[12] = {0, 0, 0, 255, 9, 0, 0, 0, 9, 0, 0, 1};
@@ -60,7 +60,7 @@ TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
             (Shares{0, 0, 1}));
 }
 
-// The colour of the palette counts, not the index.
+// The colour in the palette determines the selection, not the index.
 TEST_F(ImageMasks, MayHaveAPalette) {
   const std::uint8_t index[4] = {0, 1, 2, 1}, palette[9] = {0, 0, 7, 0, 0, 0, 255, 255, 255};
   const fs::path file = folder_.write_png("palette.png", 2, 2, PNG_FORMAT_RGB_COLORMAP, index, palette, 3);

@@ -1,4 +1,4 @@
-// The true surface that a recording defines, wherever its camera stands.
+// Tests the scene of a recording: its true surface, the layout of its frames, the depth limit and the rates.
 #include "scenarios/recordings/recorded_scene.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSide = 16;
 
-// A wall 0.5 m away, and from column 9 on one 0.7 m away.
+// Two walls: 0.5 m away in columns 0 to 8, and 0.7 m away from column 9 on.
 RecordedScene::Settings two_walls(const TestFolder& folder) {
   std::vector<std::uint16_t> samples;
   for (int i = 0; i < kSide * kSide; ++i) samples.push_back(i % kSide < 9 ? 500 : 700);
@@ -44,7 +44,8 @@ TEST(RecordedSceneTest, KnowsTheSurfaceButForDepthEdges) {
   EXPECT_TRUE(std::isnan(scene.signed_distance(seen(9, 8, 0.5), 0)));
 }
 
-// Depth edges are those of the camera, not of the base frame's z, which may be negative or lie in the wall.
+// Depth edges are found in the camera's depth and not in the base frame's z, which may be negative or lie in
+// the wall.
 TEST(RecordedSceneTest, KnowsTheSameWhereverItsCameraStands) {
   const TestFolder folder("recorded_scene_test");
   RecordedScene::Settings settings = two_walls(folder);
@@ -66,8 +67,8 @@ TEST(RecordedSceneTest, KnowsTheSameWhereverItsCameraStands) {
     }
 }
 
-// A sloping wall in 4 x 3 pixels, seen from (0, 0, 2) against the z axis: the coordinates stay those of the
-// file.
+// A sloping wall in 4 x 3 pixels, seen from (0, 0, 2) against the z axis. The points keep the coordinates of
+// the file.
 TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
   const TestFolder folder("recorded_scene_test");
   std::string pcd = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
@@ -115,7 +116,8 @@ TEST(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
                                "form no image");
 }
 
-// NaN, infinity and what is farther than any room: nothing to touch, which is said at once.
+// Points at NaN, at infinity or farther away than any room cannot be touched, so such a first frame is
+// refused.
 TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
   const TestFolder folder("recorded_scene_test");
   RecordedScene::Settings settings;
@@ -165,8 +167,8 @@ TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
 
 // --- from frame to frame ---
 
-// A plane 0.5 m away in columns x rows pixels of a camera with a focal length of 100 px; one row: in no
-// order.
+// Writes a plane 0.5 m away in columns x rows pixels of a camera with a focal length of 100 px. With one row
+// the points are in no order.
 void write_plane(const TestFolder& folder, const std::string& name, int columns, int rows) {
   const std::string count = std::to_string(columns * rows);
   std::string pcd = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", std::to_string(columns),
@@ -221,7 +223,8 @@ TEST(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
 
 // --- the limit of the depth ---
 
-// Lidar axes, x forward and z up: nothing may be lost above 3 m, and a limit that was set cannot apply.
+// The axes are those of a lidar, x forward and z up. No point above 3 m may be lost, and a limit that the
+// user has set is refused, because it cannot apply.
 TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
   const TestFolder folder("recorded_scene_test");
   folder.write("1.pcd", xyz_header("3", "ascii") + "2 0 -1\n2 0 3.5\n2 0 -0.5\n");
@@ -239,7 +242,7 @@ TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
 
 // --- rates ---
 
-// The same image at each of these times.
+// Writes the same image for each of these times.
 void write_stamped(const TestFolder& folder, const std::vector<std::string>& stamps) {
   folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
                              "depth_scale_m": 0.001, "frame_rate_hz": 30})");
@@ -276,7 +279,7 @@ TEST(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
   EXPECT_HAS(scene().input(), " at 30.303 Hz with pauses of up to 99.934 s (0.03 Hz on average)");
 }
 
-// camera.json says its rate in hertz; nothing is taken for stamps.
+// camera.json states its rate in hertz, so no number is read as a stamp.
 TEST(RecordedSceneTest, ARateThatIsGivenIsNotDoubted) {
   const TestFolder folder("recorded_scene_test");
   for (const char* rate : {"0.5", "1200", "1e-9"}) {

@@ -51,7 +51,7 @@ TEST_F(FindRecording, BagsAreReadAsAWhole) {
   EXPECT_EQ(files_of({"one.bag", 0, -1})[0].name, "one.bag");
 }
 
-// The environment variable is an input of the program, which the command line passes on.
+// The environment variable is an input of the program: the Python package passes it to set_data_folder().
 TEST_F(FindRecording, DoesNotReadTheEnvironment) {
   folder_.write("data/a.png", "");
   ::setenv("REMOTE_TOUCH_DATA", (folder_ / "data").c_str(), 1);

@@ -29,14 +29,14 @@ class Recording : public ::testing::Test {
     folder_.write(name, pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows);
   }
 
-  // A recording folder of two frames.
+  // Writes a recording folder of two frames.
   void write_recording() {
     folder_.write("camera.json", kCamera);
     folder_.write_depth("depth/0000.png", 1000), folder_.write_depth("depth/0001.png", 2000);
     folder_.write_colour("rgb/0000.png", 0x11), folder_.write_colour("rgb/0001.png", 0x22);
   }
 
-  // The refusal is about this file below the folder (with ":line" where one is expected).
+  // Expects a refusal about this file below the folder (with ":line" where one is expected).
   void expect_error(const std::string& subject, const std::string& part) {
     const std::string text = refusal([&] {
       const RecordingIndex index = index_recording(folder_.path());
@@ -269,7 +269,7 @@ TEST_F(Recording, RefusesBadTumLists) {
   expect_error("rgb.txt:2", "timestamp 1.5: expected above");
 }
 
-// 4e10 pairs of lines: each depth image is compared with the colour images near it only.
+// There are 4e10 pairs of lines, so each depth image is compared only with the colour images near it.
 TEST(TumLists, ManyLinesAreAssociatedQuickly) {
   std::vector<StampedFile> depth, colour;
   for (int i = 0; i < 200'000; ++i) {

@@ -47,7 +47,7 @@ TEST(LiftMotion, IsTheClosedFormAtAnyTime) {
   }
 }
 
-// The frames of a scene of that rate; the surface between them too.
+// Checks the frames of a scene at each rate, and the surface between the frames.
 template <class Made>
 void expect_the_same_motion(typename Made::Settings settings, const LiftMotion::Settings& expected) {
   settings.noise_sigma_m = 0, settings.truth = Made::Truth::moving;
@@ -92,7 +92,7 @@ TEST(LiftMotion, EventsOfAShapeAreAtTimes) {
 
 // --- the heights that 4.3.2 gives ---
 
-// The sums of 4.3.2, bit for bit, at frames that come with the updates.
+// The heights at frames that coincide with the updates are the sums of 4.3.2, bit for bit.
 TEST(LiftMotion, HasThePrintedHeights) {
   for (const double rate_hz : {30.0, 90.0, 130.0}) {
     for (const int rise : {0, 13, 15, 45}) {

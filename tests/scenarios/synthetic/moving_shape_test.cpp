@@ -41,7 +41,7 @@ Vec3 turned(const Vec3& p, double angle_deg) {
   return Eigen::AngleAxisd(angle_deg * kPi / 180, Vec3::UnitZ()) * p;
 }
 
-// A shape of a kind that does everything at once.
+// Settings of a shape of this kind, with all motions at once.
 MovingShape::Settings busy(Kind kind) {
   MovingShape::Settings s;
   s.grid = {41, 31, 0.0015, 0.25, -0.5};
@@ -112,9 +112,10 @@ TEST(MovingShape, MayWaitBeforeItRises) {
     EXPECT_EQ(later.cloud(frame).y[7], at_once.cloud(std::max(0, frame - 5)).y[7]) << frame;
 }
 
-// --- what comes on top of it ---
+// --- motions in addition to the lift, and the true surface ---
 
-// Upright on the true surface, in whatever pose: a step along the normal is as long as the distance it makes.
+// A step along a point's normal changes the distance to the true surface by the length of the step, in any
+// pose.
 TEST(MovingShape, NormalsAreThoseOfTheTrueSurface) {
   for (const Kind kind : kKinds) {
     MovingShape::Settings s = busy(kind);
@@ -188,7 +189,8 @@ TEST(MovingShape, NoiseFreePointsLieOnTheTrueSurfaceAtEveryFrame) {
   }
 }
 
-// Asked between frames, the truth is where the shape has been carried to: the frame's own distance, moved.
+// The moving truth between frames is the surface where the motion has carried it. The truth of the newest
+// frame does not change.
 TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
   MovingShape::Settings s = busy(Kind::ridge);
   const MovingShape moving = made(s);
@@ -219,7 +221,7 @@ TEST(MovingShape, SheetsFollowEachOtherBelow) {
     const Vec3 expected = first.point(i % first.size()) - below * turned(Vec3::UnitY(), rotation_deg);
     ASSERT_LT((all.point(i) - expected).norm(), 1e-15);
   }
-  for (const double y : {-0.05, 0.0, 0.05})  // the truth is about the first
+  for (const double y : {-0.05, 0.0, 0.05})  // the true surface is the first sheet
     EXPECT_EQ(shape.signed_distance({0, y, 0}, 0.2), made(s).signed_distance({0, y, 0}, 0.2));
 }
 

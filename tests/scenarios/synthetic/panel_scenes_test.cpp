@@ -23,7 +23,7 @@ Made made(const typename Made::Settings& settings = {}) {
   return Made(settings, NoiseKey{3}, scenes::kernels());
 }
 
-// Every point lies on the surface, and a step along its normal leads to the free side.
+// Checks that every point lies on the surface, and that a step along its normal leads to the free side.
 void expect_on_surface(const Scenario& scene, int frame) {
   const PointCloud cloud = scene.cloud(frame);
   const double time_s = scene.captured_s(frame);
@@ -47,7 +47,7 @@ TEST(OpenBox, HasItsSizeAndSpacing) {
   EXPECT_NEAR(box.signed_distance({0, 0.010, -0.040}, 0), 0.005, 1e-15);
   EXPECT_NEAR(box.signed_distance({0.058, 0, 0}, 0), -0.003, 1e-15);
   EXPECT_NEAR(box.signed_distance({0.01, -0.025, 0.01}, 0), -0.005, 1e-15);
-  // Above the opening: the nearest place is a rim.
+  // Above the opening, the nearest point is on a rim.
   EXPECT_NEAR(box.signed_distance({0.015, 0.05, 0}, 0), 0.05, 1e-15);
   EXPECT_GT(box.signed_distance({0, 1, 0}, 0), 0.9);
   // The distance is negative behind walls and floor, up to the rim. Beyond the rim the box has no back.
@@ -70,7 +70,8 @@ TEST(OpenBox, TheFloorCanBeLeftOut) {
   EXPECT_NE(validate(s), "");
 }
 
-// The corner of a bar of 80 x 10 mm that touches both walls of 40 mm: 40 sin + 5 cos = 20, at 22.62 degrees.
+// A bar of 80 x 10 mm touches both walls, 40 mm apart, with its corners: 40 sin + 5 cos = 20, at 22.62
+// degrees.
 TEST(Slot, CornersOfTheBarMeetTheWallsHalfWayBetweenColumns) {
   const double angle = std::asin(5.0 / 13);
   EXPECT_NEAR(angle * 180 / kPi, 22.62, 0.001);
@@ -205,7 +206,7 @@ TEST(MovingPlane, NoiseBelongsToPointAndFrame) {
   EXPECT_NEAR(std::sqrt(squares / 1e4), 0.001, 5 * 0.001 / std::sqrt(2e4));
 }
 
-// Asked again, in another order and of another object, a frame has the same bits.
+// A frame has the same bits if another object computes it, in another order.
 TEST(PanelScenes, FramesArePure) {
   const Wedge one = made<Wedge>(), other = made<Wedge>();
   std::vector<PointCloud> clouds;

@@ -10,7 +10,7 @@
 namespace remote_touch::panel_test {
 namespace {
 
-// A panel that lies askew.
+// A panel whose axes are not those of the world.
 FlatPanel askew() {
   const Vec3 normal = Vec3(1, 2, 2) / 3, u = Vec3(2, 1, -2) / 3;
   return {{0.1, 0.2, -0.3}, normal, u, 0.0301, 0.02};
@@ -59,7 +59,7 @@ TEST(FlatPanel, DistanceIsToTheNearestOfManySamples) {
   EXPECT_GT(beside, 100);
 }
 
-// Two walls of a corner: its inside is free. An edge belongs to both.
+// Two walls of a corner, whose inside is free. The edge belongs to both walls.
 TEST(FlatPanel, CornersHaveOneInside) {
   const std::vector<FlatPanel> corner = {{{1, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), 1, 1},
                                          {{0, 1, 0}, Vec3::UnitX(), Vec3::UnitY(), 1, 1}};
@@ -67,13 +67,13 @@ TEST(FlatPanel, CornersHaveOneInside) {
   EXPECT_DOUBLE_EQ(signed_distance(corner, {0.2, 0.3, 0}), 0.2);
   EXPECT_DOUBLE_EQ(signed_distance(corner, {-0.3, -0.4, 0}), -0.5);
   EXPECT_DOUBLE_EQ(signed_distance(corner, {-0.3, 0.4, 0}), -0.3);
-  // Below one wall, beyond the edge, a hair on the free side of the other.
+  // Below one wall, beyond the edge, and 1e-12 m on the free side of the other wall.
   EXPECT_DOUBLE_EQ(signed_distance(corner, {1e-12, -0.4, 0}), -0.4);
   EXPECT_EQ(signed_distance({}, {0, 0, 0}), std::numeric_limits<double>::infinity());
 }
 
-// The walls of CornersHaveOneInside: the edge at which they meet is no border, its ends and the other edges
-// are.
+// The walls are those of CornersHaveOneInside. The edge at which they meet is no border. Its ends and the
+// other edges are borders.
 TEST(FlatPanel, BesideAPanelThereIsNoBack) {
   const std::vector<FlatPanel> corner = {{{1, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), 1, 1},
                                          {{0, 1, 0}, Vec3::UnitX(), Vec3::UnitY(), 1, 1}};

@@ -1,4 +1,4 @@
-// Plates seen from above against where they must be.
+// Tests the points of plates that are seen from above against their expected positions.
 #include "scenarios/synthetic/plates.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace remote_touch::plates_test {
 namespace {
 
-// A table at rest, and a plate of 3 cm 5 cm above it that passes from x = -0.06 on at 0.3 m/s.
+// A table at rest, and a plate of 3 x 4 cm, 5 cm above it, that passes from x = -0.06 m on at 0.3 m/s.
 Plates::Settings passing() {
   Plates::Settings s;
   s.grid = {61, 41, 0.002, 0, 0};

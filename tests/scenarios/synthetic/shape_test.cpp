@@ -25,7 +25,7 @@ Shape::Settings settings_of(Kind kind) {
   return s;
 }
 
-// Height by its own formula.
+// Returns the height by the formula of each shape.
 double expected_height(const Shape::Settings& s, double x, double z) {
   const double flank = std::tan(s.slope_deg * kPi / 180) * std::abs(x);
   switch (s.kind) {
@@ -51,10 +51,10 @@ double expected_height(const Shape::Settings& s, double x, double z) {
 
 struct Samples {
   std::vector<Vec3> points;
-  double max_gap_m;  // no place of the surface is farther from a sample than half of it
+  double max_gap_m;  // no point of the surface is farther from a sample than half of this
 };
 
-// Even in x and z; the dome in its polar angles, for its rim is upright.
+// Samples are evenly spaced in x and z; those of the dome in its polar angles, because its rim is vertical.
 Samples dense_samples(const Shape::Settings& s) {
   Samples samples{{}, 0};
   if (s.kind == Kind::sphere) {
@@ -107,7 +107,7 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
         continue;
       }
       beyond += std::abs(p.x()) > 0.04 || std::abs(p.z()) > 0.02;
-      // The nearest place of the surface lies within half a gap of a sample.
+      // The nearest point of the surface lies within half a gap of a sample.
       EXPECT_LE(got, brute + 1e-12) << p.transpose();
       EXPECT_GE(std::sqrt(got * got + 0.25 * samples.max_gap_m * samples.max_gap_m) +
                     0.25 * samples.max_gap_m * samples.max_gap_m / 0.005,  // extra gap of a curved surface
@@ -143,7 +143,7 @@ TEST(Shape, DistanceToACornerIsThatToTheNearestSampleOfItsFaces) {
   EXPECT_DOUBLE_EQ(corner.signed_distance({0, 0.01, 0}), 0.01) << "from the top";
 }
 
-// Across two differences of the heights.
+// A normal must be perpendicular to the differences of the heights along x and along z.
 TEST(Shape, NormalsAreUprightOnTheSurface) {
   for (const Kind kind : kKinds) {
     const Shape::Settings s = settings_of(kind);
@@ -178,7 +178,8 @@ TEST(Shape, TheSignIsThatOfTheSide) {
   }
 }
 
-// Below the plane that ends at the border: a ridge's flank of 35 degrees goes on.
+// The distance is NaN below the plane that ends at the border. For a ridge that is the plane of its flank, at
+// 35 degrees.
 TEST(Shape, BesideTheBorderThereIsNoBack) {
   const Shape flat(settings_of(Kind::flat), kGrid), ridge(settings_of(Kind::ridge), kGrid),
       sphere(settings_of(Kind::sphere), kGrid);
@@ -189,7 +190,7 @@ TEST(Shape, BesideTheBorderThereIsNoBack) {
   const double drop = std::tan(35 * kPi / 180);
   EXPECT_GT(ridge.signed_distance({0.05, -drop * 0.05 + 0.001, 0}), 0.01);
   EXPECT_TRUE(std::isnan(ridge.signed_distance({0.05, -drop * 0.05 - 0.001, 0})));
-  // Deep below the ridge its lower borders are nearest, and it still covers the place.
+  // Deep below the ridge its lower borders are nearest, and the ridge still covers p.
   EXPECT_NEAR(ridge.signed_distance({0, -0.5, 0}), -std::hypot(0.04, 0.5 - drop * 0.04), 1e-15);
   EXPECT_TRUE(std::isnan(ridge.signed_distance({0, -0.5, 0.021})));
   EXPECT_GT(sphere.signed_distance({0.02, -0.0149, 0}), 0.005);
@@ -235,7 +236,8 @@ TEST(Shape, PointsLieOnTheSurface) {
   }
 }
 
-// The search along x finds the closest of several valleys, in closed form over crests and far away.
+// The search along x finds the nearest of several crests or troughs. The distance to these is known in closed
+// form.
 TEST(Shape, RippleFromAfarAndOverItsCrests) {
   Shape::Settings s = settings_of(Kind::ripple);
   const Shape shape(s, kGrid);
@@ -244,7 +246,8 @@ TEST(Shape, RippleFromAfarAndOverItsCrests) {
   EXPECT_NEAR(shape.signed_distance({-crest, -0.1, 0.01}), -(0.1 - s.amplitude_m), 1e-12);
   EXPECT_NEAR(shape.signed_distance({crest, s.amplitude_m + 0.0003, 0.024}), std::hypot(0.0003, 0.004),
               1e-12);
-  // Over the middle between two crests, from high above, both are nearest: by a fine scan.
+  // High above the middle between two crests both are equally near. The expected distance is that of a fine
+  // scan.
   const Vec3 p(-crest, 0.05, 0);
   double nearest = 1;
   for (int i = 0; i <= 4000000; ++i) {

@@ -38,7 +38,7 @@ TEST(FileOrder, TimesOfAClockHaveDecimals) {
   expect_order({"1305031102_5.png", "1305031102_16.png"});
 }
 
-// Whatever the names are: a before b and b before c means a before c.
+// The order is transitive for all names: if a is before b and b is before c, then a is before c.
 TEST(FileOrder, IsAnOrder) {
   Files names;
   for (const char* first : {"", "1", "01", "0000000001", "1305031102", "01305031102", "a"})

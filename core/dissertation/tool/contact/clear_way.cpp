@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kShortest = 1e-5;  // parts of a path that are shorter than this are not halved again
+constexpr double kShortest = 1e-5;  // parts of a path shorter than this fraction are not halved again
 
 // A cubic on [from, until] by its Bernstein coefficients.
 struct Cubic {
@@ -31,7 +31,8 @@ struct Cubic {
   }
 };
 
-// Returns the first position at which a cubic can be below min_m, within kShortest; 1: nowhere on this part.
+// Returns the first fraction at which a cubic can be below min_m, to within kShortest; 1 if it cannot on this
+// part.
 double first_below(const Cubic& cubic, double min_m, double from, double until) {
   if (cubic.least() >= min_m) return 1;
   if (until - from <= kShortest) return from;
@@ -73,7 +74,7 @@ double ClearWay::fraction(const Motion& motion, const Vec3& p_T, double distance
 
 namespace {
 
-// Returns the position beyond `from` at which a path passes the next plane between cells; 1, its end, if
+// Returns the fraction beyond `from` at which a path crosses the next plane between cells; 1, its end, if
 // there is none.
 double next_plane(const Vec3& start, const Vec3& along, double from) {
   constexpr double kOnPlane = 1e-9;
@@ -89,10 +90,10 @@ double next_plane(const Vec3& start, const Vec3& along, double from) {
 
 }  // namespace
 
-// Steps from cell to cell along the chord. Returns the fraction at which the field can first be too low; 1:
-// nowhere.
+// Steps from cell to cell along the chord. Returns the fraction at which the field can first be too low; 1 if
+// it cannot.
 double ClearWay::first_below(const Chord& chord) const {
-  constexpr double kRounding_m = 1e-12;  // difference of two ways to compute the field at the start
+  constexpr double kRounding_m = 1e-12;  // the field at the start is computed in two ways that differ by less
   for (double from = 0; from < 1;) {
     const double until = next_plane(chord.from, chord.along, from);
     const Vec3 middle = chord.from + 0.5 * (from + until) * chord.along;

@@ -1,10 +1,10 @@
-// The part of a motion that a tool may make before the first point of a cloud gets into it, by conservative
-// advancement of points through the tool's field (outer_field.h). Compare Xu and Barbic 2016. Not in the
-// dissertation.
+// Computes the part of a motion that a tool may make before the first point of a cloud enters it, by
+// conservative advancement of points through the tool's field (outer_field.h). Compare Xu and Barbic 2016.
+// Not in the dissertation.
 //
-// A point moves on a curve in the tool frame. The field along the chord of the curve is a cubic in every
-// cell, and the second derivative of the curve bounds its distance from the chord. A cubic is nowhere below
-// the smallest of its Bernstein coefficients, so the result is certain, not sampled.
+// A point moves on a curve in the tool frame. The second derivative of the curve bounds its distance from its
+// chord. The field along the chord is a cubic in every cell. A cubic is nowhere below the smallest of its
+// Bernstein coefficients, so the result is certain and does not depend on samples.
 #pragma once
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
@@ -15,17 +15,17 @@ namespace remote_touch {
 
 class ClearWay {
  public:
-  // A point less than kTouch_m outside counts as touched, m. A point deeper than kInside_m is in the tool
-  // already, as a new frame can put it there, and does not stop the tool.
+  // A point less than kTouch_m outside the tool counts as touched, m. A point deeper than kInside_m in the
+  // tool was put there by a new frame, and does not stop the tool.
   static constexpr double kTouch_m = 1e-6, kInside_m = 2e-6;
 
   // tool: made with outer_field; it has to outlive this.
   explicit ClearWay(const VoxelTool& tool);
-  // Returns the longest motion, m, after which a position with a field of look_ahead_m or more is still
-  // outside.
+  // Returns a length of motion, m. A position with a field value of look_ahead_m or more stays outside the
+  // tool in every motion up to this length.
   double safe_motion_m(double look_ahead_m) const;
 
-  // A motion as moved() makes it, in tool axes: the fraction s of the displacement, for s from 0 to 1.
+  // The motion moved(from, s a_g) for s from 0 to 1, in tool axes.
   struct Motion {
     Motion(const ToolPose& from, const Vector6& a_g);
 
@@ -45,7 +45,7 @@ class ClearWay {
  private:
   struct Chord {
     Vec3 from, along;  // cells
-    double bend_m;     // the field on the curve is less than on the chord by no more than bend_m s (1 - s)
+    double bend_m;     // the field on the curve is at least that on the chord less bend_m s (1 - s)
     double min_m;      // lowest field value allowed
   };
   double first_below(const Chord& chord) const;

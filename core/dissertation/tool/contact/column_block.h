@@ -28,7 +28,7 @@ class ColumnBlock {
 
  private:
   static constexpr std::size_t kLine = 64 / sizeof(double), kPage = 4096 / sizeof(double);
-  static constexpr std::size_t kShift = 5 * kLine;  // 64 lines of a page, and 5 have no common factor
+  static constexpr std::size_t kShift = 5 * kLine;  // 5 and the 64 lines of a page have no common factor
 
   Buffer<double> memory_;
   std::size_t size_ = 0, stride_ = 0;

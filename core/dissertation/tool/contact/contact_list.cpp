@@ -9,8 +9,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-5;  // factor that covers the rounding of normals, and more
-// The collision list reaches a little less far than the field.
+constexpr double kRounding = 1 + 1e-5;  // larger than the rounding of normals
+// Detection reaches a little less far than the field.
 constexpr double kMaxReach_m = kFieldMargin_m - 2e-4;
 
 }  // namespace
@@ -53,7 +53,7 @@ void ContactList::append_contacts(double side) {
   disks_.append_contacts(chosen_, finder_, kernels_, side, contacts_);
 }
 
-// Finds the nearest disk of every cell of the tool, by the bounds of the disks.
+// Finds the nearest disk of every cell of the tool; disks are compared by their bounds.
 void ContactList::gather_cells() {
   const NearDisks& disks = disks_;
   thinning_.begin();
@@ -99,8 +99,8 @@ void ContactList::gather_deepest(double side) {
 
 NearContacts ContactList::near(const ToolPose& pose, double side, double within_m) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  // A disk that is searched can be deeper than its lower bound, in a notch of the tool. So all disks within
-  // kSearch_m are included.
+  // A disk in a notch of the tool can be deeper than its lower bound. So all disks within kSearch_m are
+  // included.
   const double near_m = std::min(std::max(within_m, NearDisks::kSearch_m), p_.look_ahead_m);
   NearContacts found{{}, -kInfinite, near_m < p_.look_ahead_m ? near_m : kInfinite};
   contacts_.clear();
@@ -140,7 +140,8 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
   return found;
 }
 
-// Points beyond the reach of the voxels and of touchable disks are queried only if no point is nearer.
+// The first query covers the points that can be in a voxel or have a touched disk. Points farther away are
+// queried only if it finds no point within two voxels of the tool.
 Touched ContactList::touched(const ToolPose& pose) {
   const double voxels_m = 2 * finder_.tool().grid.size_m, shown_m = std::max(p_.look_ahead_m, voxels_m);
   const double disk_m = p_.contact_rule == TouchRule::voxels ? 0 : max_disk_m_;

@@ -1,4 +1,4 @@
-// The contacts of a pose for the contact rules, from the points of the collision list.
+// Computes the contacts of a pose for the contact rules, from the points that TouchFinder detects.
 #pragma once
 
 #include <memory>
@@ -19,9 +19,10 @@ namespace remote_touch {
 
 // The result of a detection for the printed rule.
 struct VoxelContacts {
-  // The contacts of (6.5) with depth 0. If there are collisions, those of (6.8) with depth 1 instead.
+  // The contacts of (6.5) with depth 0. If there are collisions, these are listed instead: (6.8) with depth
+  // 1.
   std::span<const ToolContact> contacts;
-  bool touched = false, collided = false;  // a point is in the tool; a point is in its interior
+  bool touched = false, collided = false;  // a point with a normal is in the tool; one is in its interior
 };
 
 // Lists are valid until the next call. If there are more contacts than MotionProgram::kMaxContacts, they are
@@ -35,20 +36,20 @@ class ContactList final : public NearContactSource {
   void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
   const TouchFinder& finder() const { return finder_; }
   const NearDisks& near_disks() const { return disks_; }  // disks of the last near()
-  // Returns every single point, none merged, with a field value of at most reach_m, and of at most
-  // look_ahead_m plus the radius of the largest disk. Only for TouchRule::continuous. Valid until the next
-  // call.
+  // Returns every single point, none merged, with a field value of at most reach_m. No point is returned
+  // whose field value is above look_ahead_m plus the radius of the largest disk, or beyond the reach of the
+  // field. Only for TouchRule::continuous. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
-  // Returns the contacts of all disks that the tool could touch within within_m, but at least
-  // NearDisks::kSearch_m; none beyond look_ahead_m or beyond the reach of the field. side: as for
+  // Returns the contacts of all disks that are within within_m of the tool, or within NearDisks::kSearch_m if
+  // that is more. Disks beyond look_ahead_m or beyond the reach of the field are left out. side: as for
   // near_contact().
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
   // Returns the contacts of the points in shell and interior voxels, except those without a normal.
   VoxelContacts in_voxels(const ToolPose& pose);
-  // Counts the points in shell or interior voxels and, unless the rule is voxels, those whose disk is
-  // touched.
+  // Counts the points in shell or interior voxels. Unless the rule is voxels, also counts the points whose
+  // disk touches the tool.
   Touched touched(const ToolPose& pose);
 
  private:

@@ -27,7 +27,8 @@ std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double c
   return key;
 }
 
-// Returns the slot of a key since begin(), or an unused one; null if the table is crowded.
+// Returns the slot that has held a key since begin(), or else an unused one; null if kMaxTries slots hold
+// other keys.
 ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   std::size_t at = first_slot(key);
   for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kMaxCells)

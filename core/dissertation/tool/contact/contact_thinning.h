@@ -8,29 +8,30 @@
 
 namespace remote_touch {
 
-// Sorts contacts by the cell of the tool frame and the octant of directions that they belong to. Allocates on
-// construction only.
+// Groups contacts by the cell of the tool frame in which they lie and by the octant of their normal.
+// Allocates on construction only.
 class ContactThinning {
  public:
-  // Limit of the number of cells, far more than a tool of a hand's size has within reach of a surface.
-  // Further cells get kNoCell.
+  // Size of the table of cells: far more cells than a hand-sized tool has within reach of a surface. A cell
+  // for which the table has no room has the number kNoCell.
   static constexpr std::size_t kMaxCells = 4096;  // a power of two
   static constexpr std::size_t kNoCell = ~std::size_t{0};
 
   ContactThinning() : slots_(kMaxCells) {}
 
   void begin();
-  // Returns the number of a cell: 0, 1, 2 ... in the order in which they are met after begin(), or kNoCell if
-  // the table is crowded.
+  // Returns the number of a cell. Cells are numbered 0, 1, 2 ... in the order in which they occur after
+  // begin(). Returns kNoCell if the table has no room near the slot of the cell.
   std::size_t cell(std::uint64_t cell_and_octant) {
     const Slot& first = slots_[first_slot(cell_and_octant)];
     return first.stamp == stamp_ && first.key == cell_and_octant ? first.cell : find_cell(cell_and_octant);
   }
 
-  // Keeps the deepest contact of every cell, in place, until there are no more than `max` contacts. The cells
-  // have the size kCell_m at first: a step rotates the tool so little that two points 4 mm apart require the
-  // same motion within a tenth of a millimetre, and the next detection finds the dropped points. Then the
-  // cells become larger, because contacts must stay spread over the tool.
+  // Keeps the deepest contact of every cell, in place, if there are more than `max` contacts, and repeats
+  // this with larger cells until there are no more than `max`. The first cells have the size kCell_m. A step
+  // rotates the tool so little that two points 4 mm apart require the same motion within a tenth of a
+  // millimetre, and the next detection finds the dropped points. Cells are used because contacts must stay
+  // spread over the tool.
   static constexpr double kCell_m = 4e-3;
   static constexpr auto kMaxCount = static_cast<std::size_t>(MotionProgram::kMaxContacts);
   void thin(std::vector<ToolContact>& contacts, std::size_t max = kMaxCount);
@@ -50,7 +51,8 @@ class ContactThinning {
   std::uint32_t stamp_ = 0, cells_ = 0;
 };
 
-// Returns the number of the cube of a grid over the tool frame in which a position lies.
+// Returns the number of the cube in which a position lies, in a grid over the tool frame. The numbers repeat
+// after 2^20 cubes along an axis.
 std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
 // Returns the same number, combined with the signs of a direction's coordinates.
 std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double cells_per_m);

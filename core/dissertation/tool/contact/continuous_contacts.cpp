@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxStops = 64;
 constexpr double kSamePoint_m = 1e-9;
-constexpr double kMinSlope = 0.3;  // limit for ridges of the field, where the distance is not reliable
+constexpr double kMinSlope = 0.3;  // a smaller slope is at a ridge, where the field is not reliable
 
 }  // namespace
 

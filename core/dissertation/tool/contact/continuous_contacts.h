@@ -1,6 +1,6 @@
-// The points of a cloud for the continuous rule: the contacts of the look-ahead rule, kept a small gap away,
-// and the part of a motion that is possible before the first point gets into the tool. Not in the
-// dissertation.
+// The points of a cloud for the continuous rule. near() returns the contacts of the look-ahead rule, kept a
+// small gap away. clear_fraction() returns the part of a motion that is possible before the first point
+// enters the tool. Not in the dissertation.
 #pragma once
 
 #include <vector>
@@ -12,30 +12,32 @@ namespace remote_touch {
 
 class ContinuousContacts final : public NearContactSource {
  public:
-  // Contacts hold the tool this far from the points, so that a step which is right only to first order does
-  // not take a point into the tool.
+  // Contacts keep the tool this far from the points, because a step that is correct only to first order could
+  // otherwise move a point into the tool.
   static constexpr double kGap_m = 5e-5;
 
   // tool: made with outer_field; it has to outlive this.
   ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool);
-  // Returns the longest motion that is allowed, because points that are not near could stop a longer one.
+  // Returns the longest motion that is allowed. A longer one could meet points that are not near yet.
   double max_motion_m() const { return max_motion_m_; }
 
-  // Begins a tick with these points, and forgets which of them stopped the tool before. They have to outlive
-  // it.
+  // Begins a tick with these points, which have to outlive it. Forgets the points that have stopped the tool
+  // before.
   void begin(ContactList& points);
 
-  // Returns all contacts within the look-ahead, with the gap; within_m is ignored. Points that have stopped
-  // the tool since begin() are contacts of their own, so that a step against one of them is not tried again.
+  // Returns all contacts within the look-ahead, each with its depth increased by the gap; within_m is
+  // ignored. Points that have stopped the tool since begin() are added as contacts of their own, so that a
+  // step against one of them is not tried again.
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
-  // True if a point is in the tool, even if near() represents it by a disk that is not.
+  // Returns true if a point is in the tool. This is checked for every point, because near() may represent
+  // points by a disk that is not in the tool.
   bool has_points_inside(const ToolPose& pose) const;
   double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;
-  // Returns the clear fraction of a motion away from a surface after a frame that can have put points
-  // anywhere. Only points with a normal that faces the tool from ahead stop it. If such a point is in the
-  // tool, as between walls that have closed, the fraction is 0. side: side of the surface, as in near(). pre:
-  // the motion is a translation.
+  // Returns the clear fraction of a motion away from a surface, after a frame that can have put points
+  // anywhere. A point stops this motion only if it has a normal that points against the motion. If such a
+  // point is already in the tool, as between walls that have closed, the fraction is 0. side: side of the
+  // surface, as in near(). pre: the motion is a translation.
   double fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const;
 
  private:

@@ -19,9 +19,9 @@ Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
 }
 
 // Moves `place` down the field in the plane of the disk, to the lowest position on a line that begins there.
-// The field of a convex tool is convex along a line, and nearly a pair of straight lines over an edge: the
-// point where the tangents at the ends meet is a better end (Kelley's cutting planes). Returns true if the
-// position moved.
+// Returns true if the position moved. The field of a convex tool is convex along a line, and over an edge it
+// is nearly a pair of straight lines. So the intersection of the tangents at the two ends is a better end
+// (Kelley's cutting planes).
 bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const Vec3 along = slope_in_plane(disk, place.at);
   const double steep = along.norm();
@@ -50,8 +50,8 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
   place.p_T = start_T + best.t * direction_T;
   place.at = best.at;
-  // The gradients of both sides of an edge are combined into one without a slope along the line. Only this
-  // one shows the side of a disk that is met at a grazing angle.
+  // The gradients on both sides of an edge are combined into one that has no slope along the line. Only this
+  // combination gives the side of a disk that meets the edge at a grazing angle.
   if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
     const double fraction = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
     place.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
@@ -59,9 +59,10 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   return best.t > 0;
 }
 
-// Returns the side of a disk that the tool is on, +1 or -1, for a flat tool on a flat surface; 0 if it is not
-// clear. Disks beside such a tool lie in the plane of its face, and would act as walls against its sides. If
-// the field rises over a step of kStep_m away from the plane, no more of the tool is on that side.
+// Returns the side of a disk on which a flat tool lies that is flush with a flat surface: +1 or -1; 0 if it
+// is not clear. Disks beside such a tool lie in the plane of its face. Their contacts would otherwise act as
+// walls against the tool's sides. If the field rises over a step of kStep_m to one side of the plane, the
+// tool is not on that side.
 double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place) {
   const auto leaves = [&](double side) {
     const Vec3 beyond = place.p_T - side * kStep_m * disk.n_T;
@@ -71,20 +72,22 @@ double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskP
   return front == back ? 0 : front ? 1 : -1;
 }
 
-// Returns the side of the disk that the tool is on by its field, +1 for the side of the sensor; 0 if the disk
-// meets the tool edge-on.
+// Returns the side of the disk on which the tool is according to the field: +1 for the side of the sensor, -1
+// for the other; 0 if the disk meets the tool edge-on.
 double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
   const double facing = -at.gradient_T.dot(disk.n_T);
   if (std::abs(facing) <= kGrazing * steep) return 0;
   return facing < 0 ? -1 : 1;
 }
 
-// Returns the side of the disk that the tool is on: known_side in the tool, if known, else as facing_side().
+// Returns the side of the disk on which the tool is. It is known_side if the position is in the tool and the
+// side is known, else facing_side().
 double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
   if (place.at.distance_m < 0 && known_side != 0) return known_side;
   const double steep = place.at.gradient_T.norm();
-  // A short gradient deep inside belongs to a ridge of the field and does not show the side; +1 is assumed.
-  // The gradient is short at a corner of the tool too, so the depth is checked.
+  // A short gradient deep inside the tool belongs to a ridge of the field, where the side cannot be
+  // determined; +1 is assumed. The depth is checked because the gradient is also short at a corner of the
+  // tool.
   if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
   return facing_side(disk, place.at, steep);
 }

@@ -1,5 +1,5 @@
-// A point of a cloud as the look-ahead rule treats it: a small disk in the plane of its normal, so that
-// corners of the tool do not sink between the points of a surface. Not in the dissertation.
+// The look-ahead rule treats a point of a cloud as a small disk in the plane of its normal, so that corners
+// of the tool do not sink between the points of a surface. Not in the dissertation.
 #pragma once
 
 #include "core/dissertation/tool/dynamics/motion_program.h"
@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// The disk of a point in the tool frame. Without a normal (NaN) it is a point.
+// The disk of a point in the tool frame. A point without a normal (NaN) has no disk and is used as a point.
 struct SurfaceDisk {
   Vec3 p_T, n_T;
   double radius_m;
@@ -37,11 +37,12 @@ struct DiskPlace {
 // Returns the position on the disk that is nearest to the tool, or deepest in it.
 DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
 
-// Returns the constraint of a disk at its nearest position, with the field there as distance. If that
-// position lies within the disk, n is the disk's normal, on the side given by the field. At the rim, or for a
-// point, n comes from the tool's surface. Inside the tool known_side, +1 or -1 of the normal (0: not known),
-// overrides the field: a frame can put points anywhere in the tool, and then the field does not show where
-// they came from.
+// Returns the constraint of a disk at its nearest position; its distance is the field there. If that position
+// lies within the disk, n is the disk's normal, on the side that the field gives. n comes from the tool's
+// surface if the position is at the rim, if the disk meets the tool edge-on, or for a point; but if the tool
+// is flush with the disk, n is the disk's normal again. known_side is +1 or -1 of the normal; 0: not known.
+// If the position is inside the tool, known_side overrides the field and the rim, because a frame can put
+// points anywhere in the tool, and the field does not show from which side they came.
 ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
                          double known_side);
 // Returns the constraint of a disk that is too far from the tool to be worth a search: at its centre, with

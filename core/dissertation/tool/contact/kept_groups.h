@@ -1,8 +1,8 @@
-// The groups of points that a tool can have within reach, for one pose after the other.
+// Keeps the groups of points that are near a tool, so that not every pose needs a new search.
 //
-// A search finds a few more groups than lie within reach. They are kept, and only measured again while the
-// tool has moved so little that no other point can have come within reach. A kept group is skipped if it has
-// been so far away that none of its points can have come within reach either.
+// A search also finds groups that lie a little beyond the reach. All of them are kept, and are only measured
+// again, as long as the tool has moved so little that no other point can have come within reach. A kept group
+// is skipped if it was so far away at the search that none of its points can have come within reach.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace remote_touch {
 
-// The groups for a kernel to measure. It writes nearest_m if is_new is true, else it reads nearest_m: groups
-// whose value is more than passed_m have no point within reach.
+// The groups that a kernel has to measure. If is_new is true, the kernel writes nearest_m. Otherwise it reads
+// nearest_m: a group whose value is above passed_m has no point within reach.
 struct GroupsInReach {
   const std::uint32_t* group;
   std::size_t count;
@@ -27,10 +27,10 @@ class KeptGroups {
  public:
   static constexpr double kSpare_m = 4e-4;  // distance beyond the reach that is searched too
 
-  void on_frame() { searched_m_ = -1; }   // the finder has a new cloud, whose size is reserved
+  void on_frame() { searched_m_ = -1; }   // call it for each new cloud of the finder
   void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
-  // Returns the groups that hold all points whose field value is reach_m or less, in order. Valid until the
-  // next call. pre: reach_m <= kFieldMargin_m - 2e-4.
+  // Returns groups that contain all points whose field value is reach_m or less, in order. Valid until the
+  // next call. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   GroupsInReach within(const TouchFinder& finder, const ToolPose& pose, double reach_m);
   void on_measured();  // call it after the kernel
 

@@ -57,7 +57,8 @@ class Cubes {
   std::vector<CloudPoint> sorted_;
 };
 
-// Returns the disk in the middle of the points; empty if they are not flat.
+// Returns the disk in the middle of the points; nullopt if they are not flat, or if their spacing is not
+// known.
 std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
   const double spacing_m = points[0].spacing_m;
   MergedPoint disk{Vec3::Zero(), Vec3::Zero(), spacing_m, 0};

@@ -14,12 +14,13 @@ struct CloudPoint {
   double spacing_m;  // distance to its neighbours; 0: not known
 };
 
-// A point of the cloud if extent_m is 0. Otherwise the disk that represents all points in a cube of a grid
-// over the world: in their middle, with their mean normal. Then
-// - none of them is farther from the middle than extent_m;
+// A point of the cloud if extent_m is 0. Otherwise a disk that represents all points in a cube of a grid over
+// the world. It lies in their middle and has their mean normal. These conditions hold:
+// - none of the points is farther from the middle than extent_m;
 // - each of them, and the rim of a disk of one spacing around it, lies within kFlat_m of its plane;
-// - the cloud covers it: within extent_m of the middle, every square of 1.5 spacings contains a point of this
-//   or a neighbouring cube, so that the disk does not reach beyond an edge or over a hole.
+// - the cloud covers it: every square of a grid within extent_m of the middle contains a point of this or a
+//   neighbouring cube, so that the disk does not reach beyond an edge or over a hole. The squares are 1.5
+//   spacings wide or somewhat wider; they are wider too if more than 32 would be needed along a side.
 struct MergedPoint {
   Vec3 p_W, n_W;
   double spacing_m, extent_m;

@@ -11,8 +11,8 @@ namespace remote_touch {
 struct NearContacts {
   std::span<const ToolContact> contacts;
   double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing was found
-  // A contact that is not listed is farther away than this, or was left out because there were too many;
-  // infinity: farther away than the look-ahead.
+  // Every contact within this distance is listed, unless it was left out because there were too many;
+  // infinity: every contact within the look-ahead.
   double within_m = std::numeric_limits<double>::infinity();
 };
 
@@ -28,8 +28,8 @@ class NearContactSource {
   NearContacts near(const ToolPose& pose, double side) {
     return near(pose, side, std::numeric_limits<double>::infinity());
   }
-  // Returns the fraction of a motion from this pose that the tool may make. Sources without better knowledge
-  // allow all of it. pre: pose is that of the last call of near().
+  // Returns the fraction of a motion from this pose that the tool may make. A source that cannot check this
+  // returns 1. pre: pose is that of the last call of near().
   virtual double clear_fraction(const ToolPose&, const Vector6&) { return 1; }
 };
 

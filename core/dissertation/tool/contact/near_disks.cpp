@@ -39,7 +39,8 @@ void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const T
   if (!cloud_ || (is_known_ && pose == pose_ && reach_m == reach_m_ && max_lower_m == max_lower_m_)) return;
   const VoxelTool& tool = finder.tool();
   field_ = posed_field(tool, pose);
-  // No point that was left out can be within reach_m: the field there was larger than searched_m_.
+  // A point that was not found by the search had a field value above searched_m_, so it cannot be within
+  // reach_m now.
   if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
   const PointColumns points{points_[kX],  points_[kY],  points_[kZ],       points_[kNx],
                             points_[kNy], points_[kNz], points_[kSpacing], points_[kPointExtent]};
@@ -84,8 +85,8 @@ void NearDisks::copy(std::size_t from, std::size_t to) {
   for (std::size_t column = 0; column < kDiskColumns; ++column) disks_[column][to] = disks_[column][from];
 }
 
-// Completes the disks that the kernel leaves at NaN, because their centres lie less than a cell outside the
-// grid, and drops those beyond the limits.
+// Completes the disks for which the kernel wrote NaN, because their centres lie less than a cell outside the
+// grid. Drops those of them that are beyond the limits.
 void NearDisks::finish_outside(const VoxelTool& tool, const DiskLimits& limits) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -1,8 +1,9 @@
-// The points near a tool as disks in its field.
+// Computes the points near a tool as disks in the tool's field.
 //
-// A search finds a few more points than lie within reach. They are kept, and only measured again while the
-// tool has moved so little that no other point can have come within reach. Points of groups that have been so
-// far away that none of them can have come within reach either are skipped.
+// A search also finds points that lie a little beyond the reach. All of them are kept, and are only measured
+// again, as long as the tool has moved so little that no other point can have come within reach. A kept group
+// of points is skipped if it was so far away at the search that none of its points can have come within
+// reach.
 #pragma once
 
 #include <bit>
@@ -21,23 +22,24 @@ class NearDisks {
  public:
   // Distance beyond the reach that is searched too.
   static constexpr double kSpare_m = 4e-4;
-  static constexpr double kSearch_m = 3e-4;  // the nearest position is searched on closer disks
+  static constexpr double kSearch_m = 3e-4;  // a search for the nearest position is made on closer disks only
 
   NearDisks(double disk_radius_ratio, double cell_m)
       : disk_radius_ratio_(disk_radius_ratio), cells_per_m_(1 / cell_m) {}
 
-  // Allocates unless reserved. The cloud has to outlive the queries; it is the finder's, or fewer points.
+  // Sets the cloud: the finder's cloud, or fewer points that represent it. It has to outlive the queries.
+  // Allocates unless reserve() was called for its size.
   void on_frame(const TiledCloud& cloud);
   void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
   // Finds the disks whose centres are within reach_m and whose lower bounds are max_lower_m or less, in the
-  // order of the cloud's tiles; none without a cloud. pre: reach_m <= kFieldMargin_m - 2e-4.
+  // order of the cloud's tiles; no disks if there is no cloud. pre: reach_m <= kFieldMargin_m - 2e-4.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
              double max_lower_m = std::numeric_limits<double>::infinity());
 
   std::size_t size() const { return count_; }
   double lower_m(std::size_t i) const { return disks_[kLower][i]; }  // lower_bound_m()
-  // Returns a lower bound of the distance from the disk to a convex tool: distance_m() if lower_m() is
-  // kSearch_m or less and the disk is flat in the field, so that there is nothing to search; else lower_m().
+  // Returns a lower bound of the distance from the disk to a convex tool. It is distance_m() if no search is
+  // needed: lower_m() is kSearch_m or less, and the disk is flat in the field. Otherwise it is lower_m().
   double bound_m(std::size_t i) const { return disks_[kBound][i]; }
   double distance_m(std::size_t i) const { return disks_[kDistance][i]; }
   Vec3 p_T(std::size_t i) const { return three(kPlace, i); }
@@ -55,7 +57,7 @@ class NearDisks {
             {distance_m(i), three(kGradient, i)},
             disks_[kExtent][i]};
   }
-  // Returns the number of kept points; not all of them become disks.
+  // Returns the number of points that the last search found; not all of them become disks.
   std::size_t kept_points() const { return point_count_; }
 
  private:
@@ -85,7 +87,7 @@ class NearDisks {
   const TiledCloud* cloud_ = nullptr;
   // The kept points, and the pose and the reach of their search.
   ColumnBlock<kPointColumns> points_;
-  Buffer<double> nearest_;  // least distance of each group of kLanes points there
+  Buffer<double> nearest_;  // least field value of each group of kLanes points at searched_at_
   std::size_t point_count_ = 0;
   ToolPose searched_at_;
   double searched_m_ = -1;

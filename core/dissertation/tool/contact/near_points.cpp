@@ -23,8 +23,8 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
   if (outside_count > 0) finish_outside(finder.tool(), reach_m);
 }
 
-// Completes the points that the kernel leaves at NaN, because they lie less than a cell outside the grid, and
-// drops those beyond reach_m.
+// Completes the points for which the kernel wrote NaN, because they lie less than a cell outside the grid.
+// Drops the points beyond reach_m.
 void NearPoints::finish_outside(const VoxelTool& tool, double reach_m) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -1,4 +1,4 @@
-// The points near a tool, each by itself: none merged, and without their disks.
+// Finds the points near a tool as single points: none is merged, and none is a disk.
 #pragma once
 
 #include "core/dissertation/tool/contact/column_block.h"
@@ -9,10 +9,10 @@ namespace remote_touch {
 
 class NearPoints {
  public:
-  void on_frame() { groups_.on_frame(), count_ = 0; }  // the finder has a new cloud, whose size is reserved
+  void on_frame() { groups_.on_frame(), count_ = 0; }  // call it for each new cloud
   void reserve(std::size_t padded_size);               // reserves memory for clouds of this size
-  // Finds the finder's points whose field value is reach_m or less, in the order of the cloud's tiles. pre:
-  // reach_m <= kFieldMargin_m - 2e-4.
+  // Finds the points of the finder's cloud whose field value is reach_m or less, in the order of the cloud's
+  // tiles. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }

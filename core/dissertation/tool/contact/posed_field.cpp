@@ -17,7 +17,7 @@ PosedField posed_field(const VoxelTool& tool, const ToolPose& pose) {
 }
 
 double max_change_m(const TouchFinder& finder, const ToolPose& from, const ToolPose& to) {
-  const double turn = 2 * (to.q_WT * from.q_WT.conjugate()).vec().norm();  // 2 sin of half the angle
+  const double turn = 2 * (to.q_WT * from.q_WT.conjugate()).vec().norm();  // chord: 2 sin(angle / 2)
   return finder.max_slope() * ((to.p_W - from.p_W).norm() + turn * finder.grid_reach_m());
 }
 

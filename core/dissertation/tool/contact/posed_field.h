@@ -8,22 +8,23 @@
 
 namespace remote_touch {
 
-inline constexpr double kMaxSearch_m = kFieldMargin_m - 1e-4;  // the field is searched no farther
+inline constexpr double kMaxSearch_m = kFieldMargin_m - 1e-4;  // the search has no larger reach
 
 // The tool has to outlive it.
 PosedField posed_field(const VoxelTool& tool, const ToolPose& pose);
 
-// Returns an upper bound of the change of the field, at a point of the world that is in the grid, between two
-// poses: the slope of the field times the path of the point through it.
+// Returns an upper bound of the change of the field, between two poses, at a point that is fixed in the world
+// and in the grid: the slope of the field times the path of the point through the grid.
 double max_change_m(const TouchFinder& finder, const ToolPose& from, const ToolPose& to);
 
-// Returns the distance that is searched for a reach: the reach and some spare.
+// Returns the distance up to which points are searched: reach_m plus spare_m, but no more than kMaxSearch_m
+// unless reach_m is.
 inline double searched_m(double reach_m, double spare_m) {
   return std::max(reach_m, std::min(reach_m + spare_m, kMaxSearch_m));
 }
 
-// Returns the distance beyond which a point cannot have come within reach_m while the field changed by
-// change_m. Infinity if the search did not go so far.
+// Returns the field value above which a point cannot have come within reach_m while the field changed by
+// change_m. Returns infinity if the search did not reach so far.
 inline double passed_m(double reach_m, double change_m) {
   const double passed = reach_m + change_m;
   return passed < kMaxSearch_m ? passed : std::numeric_limits<double>::infinity();

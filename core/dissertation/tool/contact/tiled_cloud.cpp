@@ -20,7 +20,8 @@ constexpr double kSamePlace_m = 1e-6;  // closer points count as the same point
 constexpr std::uint32_t kTileSide_px = 8;
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 
-// Returns the smallest sphere that contains `count` items and is centred in the middle of their box.
+// Returns a sphere that contains `count` items. Its centre is the middle of their box, and its radius is the
+// smallest possible with this centre.
 template <class Item>  // (i) -> BoundingSphere
 BoundingSphere around(std::uint32_t count, const Item& item) {
   BoundingBox box;
@@ -187,7 +188,7 @@ void TiledCloud::gather_blocks() {
 void TiledCloud::assign(const PointCloud& cloud, double merged_cube_m) {
   clear();
   if (cloud.image) {
-    // Blocks of 64 x 64 pixels one after the other, so that the tiles of a block lie together.
+    // The order is by blocks of 64 x 64 pixels, so that the tiles of a block lie together.
     const auto width = static_cast<std::uint32_t>(cloud.image->camera.width),
                height = static_cast<std::uint32_t>(cloud.image->camera.height);
     constexpr std::uint32_t kBlockSide_px = 8 * kTileSide_px;
@@ -217,7 +218,7 @@ void TiledCloud::merge(double cube_m) {
   const bool is_coarse = std::none_of(spacing_m_.begin(), spacing_m_.end(), [](double spacing_m) {
     return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m;
   });
-  if (is_coarse) return;  // points that are not merged anyway are not copied
+  if (is_coarse) return;  // merged_points() would merge nothing
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});
@@ -248,7 +249,8 @@ void TiledCloud::assign_merged(std::span<const MergedPoint> points) {
 void TiledCloud::measure_spacing(const PointCloud& cloud) {
   spacing_m_.assign(x_.size(), 0);
   if (cloud.image) {
-    // Pixels that see a surface at a slant are farther apart; beyond 70 degrees a depth camera sees little.
+    // Pixels on a slanted surface are farther apart. The factor is limited, because a depth camera measures
+    // little beyond 70 degrees.
     const Vec3 camera_W = cloud.image->X_WC.translation(), axis_W = cloud.image->X_WC.linear().col(2);
     for (std::uint32_t i = 0; i < x_.size(); ++i) {
       if (x_[i] == kFarAway) continue;
@@ -273,7 +275,7 @@ void TiledCloud::measure_spacing(const PointCloud& cloud) {
   }
   std::vector<double> sorted = of_tiles;
   const double usual = median_or_0(sorted);
-  for (std::size_t t = 0; t < tiles_.size(); ++t)  // a tile of few points need not hold neighbours
+  for (std::size_t t = 0; t < tiles_.size(); ++t)  // a tile of few points may contain no neighbours
     std::fill_n(spacing_m_.begin() + tiles_[t].first, tiles_[t].padded_count,
                 of_tiles[t] > 0 ? std::min(of_tiles[t], 2 * usual) : usual);
 }

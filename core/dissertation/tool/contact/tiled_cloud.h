@@ -1,5 +1,6 @@
-// The points of a frame as the tool's collision detection reads them: in tiles of neighbours with bounding
-// spheres, and blocks of tiles with theirs, so that whatever is far from the tool is skipped with one test.
+// The points of a frame in the form that detection with a tool reads. Neighbouring points form tiles with
+// bounding spheres, and tiles form blocks with bounding spheres, so that one test skips everything that is
+// far from the tool.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@
 
 namespace remote_touch {
 
-// Eight points are a group, eight groups a tile, eight tiles a row, eight rows a block: the parts of number i
-// have the numbers 8 i .. 8 i + 7.
+// Eight points form a group, eight groups a tile, eight tiles a row, and eight rows a block. Part number i of
+// each kind consists of parts 8 i .. 8 i + 7 of the kind below.
 inline constexpr std::uint32_t kTilePoints = kLanes * kLanes, kBlockTiles = kLanes * kLanes;
 
 struct BoundingSphere {
@@ -34,7 +35,7 @@ struct TileBlock {
   std::uint32_t first, count;
 };
 
-// A change of the points of a cloud, for a cloud that is shown differently.
+// A change of single points, for a TiledCloud that is a changed copy of another one.
 class PointChange {
  public:
   struct Point {
@@ -42,21 +43,21 @@ class PointChange {
     double spacing_m;
   };
   virtual ~PointChange() = default;
-  // True if it can change points in this sphere.
+  // Returns true if it can change or remove points in this sphere.
   virtual bool concerns(const BoundingSphere& sphere) const = 0;
-  // Changes a point. Returns false if the point is not shown.
+  // Changes a point. Returns false if the point is to be left out.
   virtual bool show(Point& point) const = 0;
 };
 
 class TiledCloud {
  public:
-  // Assigns the points of a cloud. The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64
-  // points along a space-filling curve. Points that are not finite are left out. merged_cube_m: if above 0, a
-  // merged() cloud is made where that is worth it. Allocates.
+  // Assigns the points of a cloud. A tile of an organised cloud is 8 x 8 pixels; a tile of any other cloud is
+  // up to 64 points along a space-filling curve. Points that are not finite are left out. If merged_cube_m is
+  // above 0, a merged() cloud is made if it saves enough points. Allocates.
   void assign(const PointCloud& cloud, double merged_cube_m = 0);
-  // Assigns the tiles of another cloud that reach into a ball, with their points changed, in the same order.
-  // Allocates unless reserve() was called for as many points, or for the pixels of an image, sides rounded up
-  // to 8.
+  // Assigns those tiles of another cloud that reach into a ball, in the same order and with their points
+  // changed. Allocates, unless reserve() was called for at least as many points. If the cloud is an image,
+  // that is the number of its pixels with both sides rounded up to 8.
   void assign(const TiledCloud& all, const BoundingSphere& ball, const PointChange& change);
   void reserve(std::size_t points);
 
@@ -72,16 +73,17 @@ class TiledCloud {
     return {x_.data(),  y_.data(),  z_.data(),         nx_.data(),
             ny_.data(), nz_.data(), spacing_m_.data(), extent_m_.data()};
   }
-  // Bounding spheres of every tile, padded to whole rows, and of every group; a far-away one if it has no
-  // point.
+  // Bounding spheres of every tile, padded to whole rows, and of every group. A sphere without points is a
+  // far-away one.
   SphereColumns tile_spheres() const { return tile_spheres_.columns(); }
   SphereColumns group_spheres() const { return group_spheres_.columns(); }
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
-  // Returns the distance to the points around it. With an image: the size of a pixel at the point's depth, up
-  // to three times larger if the surface is seen at a slant. Otherwise: the median distance of the tile's
-  // points to their nearest neighbours, at most twice the median over all tiles.
+  // Returns the distance from a point to its neighbours. If there is an image, it is the size of a pixel at
+  // the point's depth, up to three times larger if the surface is slanted to the ray or the point has no
+  // normal. If there is no image, it is the median distance of the tile's points to their nearest neighbours,
+  // at most twice the median over all tiles.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
   double max_spacing_m() const { return max_spacing_m_; }
   // Returns the largest extent of a point: 0, or in a merged() cloud the largest distance of a represented

@@ -11,8 +11,8 @@ namespace remote_touch {
 
 namespace {
 
-// The smallest field value of a cell in quarter millimetres below 16 mm, so that a nearer cell counts more
-// and a byte holds it.
+// Unit and zero of nearness(): a field value in quarter millimetres below 16 mm. A nearer cell has a larger
+// value, and the value fits into a byte.
 constexpr double kNearnessUnit_m = 2.5e-4, kNearnessZero_m = 0.016;
 
 int nearness(double distance_m) {
@@ -20,7 +20,8 @@ int nearness(double distance_m) {
       std::clamp(std::floor((kNearnessZero_m - distance_m) / kNearnessUnit_m), -128.0, 127.0));
 }
 
-// Smallest of the eight nodes of every cell: the trilinear field goes no lower.
+// Returns the nearness of every cell, from the smallest of its eight nodes; the trilinear field is nowhere
+// smaller.
 std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
   const int nx = tool.grid.cells[0], ny = tool.grid.cells[1], nz = tool.grid.cells[2];
   const std::size_t row = static_cast<std::size_t>(nx) + 1, layer = row * (static_cast<std::size_t>(ny) + 1);
@@ -43,7 +44,8 @@ std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
   return table;
 }
 
-// Largest of the nodes of all cells that are not free: the trilinear field goes no higher, but for rounding.
+// Returns the largest node value of all cells that are not free; the trilinear field in them is nowhere
+// larger, but for rounding.
 double max_voxel_m(const VoxelTool& tool) {
   const std::size_t nx = static_cast<std::size_t>(tool.grid.cells[0]),
                     ny = static_cast<std::size_t>(tool.grid.cells[1]),

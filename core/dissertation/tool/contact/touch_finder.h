@@ -1,4 +1,4 @@
-// The collision list, 6.2.2: the points of the newest frame that are in the tool, or near it.
+// Detects the points of the newest frame that are in the tool or near it: the collision list of 6.2.2.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// Both lists hold points in the order of the cloud's tiles and stay valid until the next call.
+// Lists of points are in the order of the cloud's tiles and stay valid until the next call.
 class TouchFinder {
  public:
   TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
@@ -22,27 +22,28 @@ class TouchFinder {
   void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
   const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
-  // Upper bound of the length of the field's gradient where the field is below kFieldMargin_m, and of the
-  // distance of any place in the grid from the tool's origin.
+  // max_slope() is an upper bound of the length of the field's gradient where the field is below
+  // kFieldMargin_m. grid_reach_m() is an upper bound of the distance of any position in the grid from the
+  // tool's origin.
   double max_slope() const { return max_slope_; }
   double grid_reach_m() const { return grid_reach_m_; }
-  // Upper bound of the field in shell and interior voxels: they lie inside the surface, or about half a voxel
-  // outside.
+  // Upper bound of the field in shell and interior voxels. It can be above 0, because such a voxel can reach
+  // about half a voxel out of the surface.
   double max_voxel_m() const { return max_voxel_m_; }
 
-  // The points in shell or interior voxels.
+  // Returns the points in shell or interior voxels.
   std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
-  // All points whose field value is distance_m or less, and some that lie up to two voxels farther away.
-  // pre: distance_m < kFieldMargin_m.
+  // Returns all points whose field value is distance_m or less, and some that are a little farther away:
+  // those in cells with a node below distance_m + 0.25 mm. pre: distance_m < kFieldMargin_m.
   std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const {
     return within(*cloud_, pose, distance_m);
   }
-  // The same for another cloud, which has no more points.
+  // Returns the same for another cloud, which has no more points than the finder's.
   std::span<const std::uint32_t> within(const TiledCloud& cloud, const ToolPose& pose,
                                         double distance_m) const;
 
-  // The groups of kLanes points of a cloud that hold all points whose field value is distance_m or less, and
-  // some others. Valid until the next call, like the lists. pre: as above.
+  // Returns the groups of kLanes points that contain all points of a cloud whose field value is distance_m or
+  // less, and some others. Valid until the next call, like the lists. pre: as above.
   std::span<const std::uint32_t> groups_within(const TiledCloud& cloud, const ToolPose& pose,
                                                double distance_m) const;
 

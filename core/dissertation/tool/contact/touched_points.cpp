@@ -40,7 +40,8 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
   return all;
 }
 
-// Adds the points whose disks have to be searched for the nearest position, and points outside the grid.
+// Adds the points that the kernel could not classify: those whose disks have to be searched, and those
+// outside the grid.
 void TouchedPoints::add_unclear(const TouchFinder& finder, const ToolPose& pose, const TouchLimits& limits,
                                 Touched& all) {
   const VoxelTool& tool = finder.tool();

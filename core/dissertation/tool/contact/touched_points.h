@@ -1,8 +1,7 @@
-// Counts the points of a cloud that a pose touches, each point by itself.
+// Counts the points of a cloud that the tool touches at a pose. Every point is counted by itself.
 //
-// Groups of points are kept from one pose to the next (kept_groups.h). Most points are classified by the
-// voxel that they lie in, or by their distance. The nearest position on a disk is searched only if these do
-// not decide.
+// Groups of points are kept from one pose to the next (kept_groups.h). The voxel in which a point lies, or
+// its distance, classifies most points. Only for the others, the nearest position on the disk is searched.
 #pragma once
 
 #include <limits>
@@ -16,7 +15,7 @@ namespace remote_touch {
 struct Touched {
   ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
   int points = 0;
-  int clusters = 0;               // 10 mm cells of the tool frame with such points
+  int clusters = 0;               // number of 10 mm cells of the tool frame with touched points
   double nearest_distance_m = 0;  // smallest field value of a point; infinite beyond the reach
 };
 
@@ -24,15 +23,15 @@ class TouchedPoints {
  public:
   static constexpr double kTouch_m = 1e-4;  // a disk closer to the tool than this is touched
 
-  // Points with a touched disk count too if with_disks is true, not only points in voxels.
+  // Counts points in voxels. If with_disks is true, points whose disk touches the tool count too.
   TouchedPoints(double disk_radius_ratio, bool with_disks)
       : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {}
 
-  void on_frame() { groups_.on_frame(); }  // the finder has a new cloud, whose size is reserved
+  void on_frame() { groups_.on_frame(); }  // call it for each new cloud of the finder
   void reserve(std::size_t padded_size);   // reserves memory for clouds of this size
-  // Counts the touched points among those whose field value is reach_m or less: points in shell and interior
-  // voxels, if they are within voxels_m, and points whose disks are touched. pre: reach_m <= kFieldMargin_m -
-  // 2e-4.
+  // Counts the touched points among those whose field value is reach_m or less. A point is touched if it lies
+  // in a shell or interior voxel and its field value is voxels_m or less, or if its disk touches the tool.
+  // pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   Touched query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
                 double voxels_m);
 

@@ -1,6 +1,6 @@
 // The points of a frame as voxels: the voxmap of McNeely, Puterbaugh and Troy 1999, for a scene of which only
-// points are known. The voxels with a point in them are its surface; all others are free, for points say
-// nothing about what is behind them.
+// points are known. A voxel with a point in it is a surface voxel. All others are free, because points do not
+// show what is behind them.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class Voxmap {
   std::size_t slot_of(std::uint64_t key) const;
 
   double voxel_m_;
-  std::vector<std::uint64_t> slots_;  // open addressing: keys, or kFree; a power of two, half of them free
+  std::vector<std::uint64_t> slots_;  // open addressing: keys, or kFree; a power of two, half or more free
 };
 
 }  // namespace remote_touch

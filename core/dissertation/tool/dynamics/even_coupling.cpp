@@ -17,7 +17,7 @@ Parameters parameters(EvenCoupling& p) {
 ToolParameters tool_parameters(const EvenCoupling& p) {
   ToolParameters tool;
   tool.stiffness_N_per_m = p.stiffness_N_per_m, tool.gyration_radius_m = p.gyration_radius_m;
-  tool.merged_disk_m = 0;  // none of these methods has disks that it could merge
+  tool.merged_disk_m = 0;  // none of these methods merges disks
   tool.max_force_N = p.max_force_N, tool.max_torque_Nm = p.max_torque_Nm;
   return tool;
 }

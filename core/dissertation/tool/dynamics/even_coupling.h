@@ -1,5 +1,5 @@
-// The settings of the coupling (6.9) with one stiffness for all directions, which the methods for comparison
-// share.
+// The settings of the coupling (6.9) with the same stiffness in all directions. The methods for comparison
+// share them.
 #pragma once
 
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
@@ -14,7 +14,7 @@ struct EvenCoupling {
 };
 
 Parameters parameters(EvenCoupling& p);
-// Returns tool settings with this coupling and the defaults otherwise.
+// Returns tool settings with this coupling and without merged disks; the other settings have their defaults.
 ToolParameters tool_parameters(const EvenCoupling& p);
 
 }  // namespace remote_touch

@@ -31,8 +31,8 @@ Vector6 MotionProgram::row_of(const ToolContact& contact) const {
   return row;
 }
 
-// Adds all rows at once, with the operations of row_of() in its order. If that fails, adds the useful rows
-// one by one.
+// Adds all rows at once, with the same operations as row_of() in the same order, so that the bits are the
+// same. If that fails, adds the rows one by one and leaves out those that the program rejects.
 void MotionProgram::add_rows(std::span<const ToolContact> contacts) {
   rigid_.clear();
   const std::size_t count = contacts.size();

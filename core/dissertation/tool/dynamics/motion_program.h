@@ -1,8 +1,9 @@
-// Gauss' least constraints for the tool, 6.2.3: the motion nearest to a desired one, in kinetic distance,
-// that the contacts allow. It is computed in tool axes, where the inertia is constant. At rest, M times the
-// remaining displacement is a sum of contact normals. The wrench of a coupling (6.9) is such a sum only if M
-// has its gyration radius, MotionMetric::coupling. Then the elastic energy is also the least that the
-// contacts allow.
+// Gauss' principle of least constraint for the tool, 6.2.3: the motion that the contacts allow and that is
+// nearest to a desired one, in kinetic distance. It is computed in tool axes, where the inertia is constant.
+//
+// When the tool is at rest, M times the remaining displacement is a sum of contact normals. The wrench of the
+// coupling (6.9) is also such a sum only if M has the gyration radius of the coupling,
+// MotionMetric::coupling. Then the elastic energy is also the least that the contacts allow.
 #pragma once
 
 #include <span>
@@ -19,7 +20,7 @@ struct ToolContact {
   Vec3 r_T;        // vector from the centre of mass to the contact point
   Vec3 n_T;        // unit, out of the surface: the tool may move freely along +n
   double depth_m;  // d: positive if the point is inside the tool, negative while it is still outside
-  double side;     // +1 if n is the normal of the cloud, -1 if it is the opposite, 0 without a normal
+  double side;     // side of the surface that the tool is on: +1 the normal's, -1 the other, 0 not known
 };
 
 struct ConstrainedMotion {
@@ -27,7 +28,7 @@ struct ConstrainedMotion {
   int active_count = 0;           // contacts that push: their multipliers are above 0
   Vec3 push_T = Vec3::Zero();     // sum of their multipliers times normals
   double side = 0;                // sum of their multipliers times sides
-  bool elastic = false;           // the constraints were infeasible and relaxed, all by the same slack
+  bool elastic = false;           // not all constraints could be met; all were relaxed by the same slack
 };
 
 // Returns the inertia of a body of 1 kg with the same gyration radius about every axis.
@@ -39,14 +40,15 @@ class MotionProgram {
  public:
   static constexpr int kMaxContacts = 256;
 
-  // M is that of motion_metric.
+  // Uses the M that parameters.motion_metric selects.
   MotionProgram(const ToolParameters& parameters, const VoxelTool& tool);
   // inertia_m2: inertia of the body about its centre of mass, divided by its mass.
   explicit MotionProgram(const Eigen::Matrix3d& inertia_m2);
 
-  // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero
-  // and depths of 1. If a wedge makes (6.5) infeasible, the desired motion stays in the objective and one
-  // slack variable relaxes every row. Contacts beyond kMaxContacts are ignored. Does not allocate.
+  // Solves (6.4), (6.5) for a desired motion in tool axes. (6.7), (6.8) is the same with a desired motion of
+  // zero and depths of 1. If a wedge makes (6.5) infeasible, one slack variable relaxes every row, and the
+  // objective is still the desired motion. If that fails too, the motion is zero. Contacts beyond
+  // kMaxContacts are ignored. Does not allocate.
   ConstrainedMotion solve(const Vector6& desired_T, std::span<const ToolContact> contacts);
 
  private:

@@ -1,4 +1,4 @@
-// The position that a slave robot with a tool is sent to, 5.2. Its orientation is that of the same pose.
+// The commanded position of a slave robot with a tool, 5.2. Its orientation is that of the same pose.
 #pragma once
 
 #include <limits>
@@ -12,8 +12,8 @@ namespace remote_touch {
 class SlavePosition {
  public:
   explicit SlavePosition(ToolCommand rule) : rule_(rule) {}
-  // Returns the tool's position or, with ToolCommand::hip, the device's. Without a valid device pose the last
-  // command is repeated, NaN before the first.
+  // Returns the tool's position for ToolCommand::tool, and the device's for ToolCommand::hip. If the device's
+  // pose is not valid, ToolCommand::hip repeats the last command; the result is NaN before the first one.
   Vec3 command_W(const ToolPose& tool, const std::optional<ToolPose>& device) {
     if (rule_ == ToolCommand::tool) return tool.p_W;
     if (device) last_W_ = device->p_W;

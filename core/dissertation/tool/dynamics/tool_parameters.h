@@ -1,4 +1,4 @@
-// Settings of the 6-DOF renderer, 6.3, and the readings that can be chosen.
+// Settings of the 6-DOF renderer, 6.3, including the choices between different readings of an equation.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// look_ahead: on the distance field. voxels: 6.2.3 to 6.2.5 as printed. continuous: on the distance field,
-// with certified steps.
+// The rule by which contacts limit the motion. look_ahead: constraints from the distance field. voxels: 6.2.3
+// to 6.2.5 as printed. continuous: as look_ahead, with certified steps.
 enum class TouchRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // torque of (6.9)
 enum class MotionMetric { tool, coupling };           // M of (6.4)
@@ -42,12 +42,14 @@ struct ToolParameters {
 };
 
 Parameters parameters(ToolParameters& p);
-// Returns merged_disk_m for the rules that use it, else 0. Also 0 for points without disks, which would leave
-// gaps.
+// Returns merged_disk_m for the rules that merge disks, else 0. It is also 0 if points have no disks, because
+// merged points would then leave gaps.
 double used_merged_disk_m(const ToolParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
+// Returns one line that describes the first invalid combination of settings; an empty string if there is
+// none.
 std::string validate(const ToolParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
+// of the HIP, N/m. It does not cover points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const ToolParameters& p) {
   return p.stiffness_N_per_m * p.stiffness_ratio.maxCoeff();
 }

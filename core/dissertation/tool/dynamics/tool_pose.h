@@ -1,6 +1,7 @@
 // Poses of a rigid tool and the small motions between them, (6.1), (6.2). A generalised displacement, which
-// the dissertation calls an acceleration, is three metres and three radians per unit step. Rotations are
-// world-frame rotation vectors: the exponential map from the left.
+// the dissertation calls an acceleration, consists of a translation (three metres) and a rotation (three
+// radians) per unit step. A rotation is a rotation vector in the world frame; its exponential map is applied
+// from the left.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,8 @@ namespace remote_touch {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// The tool's centre of mass and orientation: tool coordinates T to the world W.
+// The position of the tool's centre of mass, and the orientation that transforms tool coordinates T to the
+// world W.
 struct ToolPose {
   Vec3 p_W = Vec3::Zero();
   Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  // a unit quaternion
@@ -23,15 +25,15 @@ struct ToolPose {
   }
 };
 
-// Returns the pose of a tool that the device holds by its centre of mass. Empty if the device is not finite,
-// more than 1000 km away or without an orientation.
+// Returns the pose of a tool that the device holds by its centre of mass. Returns nullopt if the device is
+// not finite, more than 1000 km away along an axis, or without an orientation.
 std::optional<ToolPose> device_pose(const DeviceState& device);
 
 ToolPose moved(const ToolPose& pose, const Vector6& a_g);
-// Returns the displacement (6.2) that takes one pose to the other in a unit step, in world axes.
+// Returns the displacement (6.2) that moves one pose to the other in a unit step, in world axes.
 Vector6 displacement(const ToolPose& from, const ToolPose& to);
 
-// Returns the same displacement in other axes; q takes coordinates in the present axes to the new ones.
+// Returns the same displacement in other axes; q transforms coordinates in the present axes to the new ones.
 Vector6 rotated(const Eigen::Quaterniond& q, const Vector6& a_g);
 
 // Returns an upper bound of the displacement of any point of the tool, |a| + |alpha| reach.

@@ -17,7 +17,7 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
 Eigen::Matrix3d inverse_left_jacobian(const Vec3& phi) {
   const double angle = phi.norm();
   const Eigen::Matrix3d cross = cross_matrix(phi);
-  // 1/a^2 - cot(a/2)/(2a), 1/12 at 0
+  // c = 1/a^2 - cot(a/2)/(2a) for the angle a; 1/12 in the limit a = 0
   const auto [sine, cosine] = sin_cos(0.5 * angle);
   const double c =
       angle < 1e-4 ? 1.0 / 12 + angle * angle / 720 : (1 - 0.5 * angle * cosine / sine) / (angle * angle);

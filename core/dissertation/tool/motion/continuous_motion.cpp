@@ -76,7 +76,8 @@ void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& repor
   ToolPose outside = pose;
   const double out_m = leave(outside, report.detections);
   if (out_m <= 0) return;
-  // If no point is in the tool, the surface has left it, and may have gone the other way as well.
+  // If no point is in the tool, the surface has left it. It may have moved away from the tool, so that
+  // direction is checked as well.
   if (is_clear(near_.near(pose, 0), pose)) {
     ToolPose ahead = pose;
     if (approach(ahead, out_m, report.detections) < out_m) return;

@@ -1,13 +1,15 @@
-// The continuous rule: the look-ahead rule with steps that end before the first point would get into the
-// tool. So between two frames no point that is outside gets into a closed tool (clear_way.h).
+// The continuous rule: the look-ahead rule, with steps that end before the first point would enter the tool.
+// So no point that is outside a closed tool enters it between two frames (clear_way.h).
 //
-// A frame can put its points anywhere, also into the tool or past it. A tool that points held is then moved
-// out, in the direction in which they pushed it, to the first position where no point is in it and a surface
-// is close on the side that held it. From there it moves back until the first point stops it. So it stays on
-// its side of the surface, however thin the surface is, if the surface moved by less than frame_reach_m. The
-// tool stays where it is if a surface on the other side is nearer, or if a surface that faces the tool is in
-// the way. Points that are still in the tool then are left as in the look-ahead rule, without certainty for
-// the points that are passed in that tick. Not in the dissertation.
+// A new frame can put its points anywhere, also into the tool or past it. If points held the tool before the
+// frame, the tool is first moved out, in the direction in which they pushed it. It stops at the first
+// position where no point is in it and a surface is close on the side that held it. Then it moves back until
+// the first point stops it. So it stays on its side of the surface, however thin the surface is, if the
+// surface moved by less than frame_reach_m.
+//
+// The tool is not moved out if a surface on the other side is nearer, or if a surface that faces the tool is
+// in the way. Points that are still in the tool are then treated as in the look-ahead rule, and it is not
+// certain that the tool passes no points in that tick. Not in the dissertation.
 #pragma once
 
 #include "core/dissertation/tool/contact/continuous_contacts.h"

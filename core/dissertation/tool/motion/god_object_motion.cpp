@@ -8,11 +8,11 @@ namespace remote_touch {
 
 namespace {
 
-// A contact within this distance of the gap is touched.
+// A contact counts as touched if its distance exceeds the gap by no more than this.
 constexpr double kTouching_m = 1e-6;
-// A contact deeper than this behind the gap was put there by a frame.
+// A contact at which more than this distance is missing was put there by a frame.
 constexpr double kTolerance_m = 2 * ContinuousContacts::kGap_m;
-// Number of steps in a row without progress, or that no contact permits, that ends a tick.
+// A tick ends after this number of successive steps without progress, or of steps that contacts stop at once.
 constexpr int kGodObjectPatience = 8;
 
 }  // namespace
@@ -69,7 +69,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   if (touched_.empty()) return a_gu;
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
-  if (motion.elastic) {  // two walls leave no room for the gap; J a >= 0 always has a = 0
+  if (motion.elastic) {  // two walls leave no room for the gap; J a >= 0 is always feasible, with a = 0
     for (ToolContact& contact : touched_) contact.depth_m = 0;
     motion = program_.solve(desired_T, touched_);
   }

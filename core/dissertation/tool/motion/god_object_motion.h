@@ -1,33 +1,35 @@
 // A god-object with six degrees of freedom for comparison, after M. Ortega, S. Redon and S. Coquillart, "A
 // six degree-of-freedom god-object method for haptic display of rigid bodies with surface properties", IEEE
-// TVCG 13(3), 2007: the tool never gets into what it touches, and the hand feels what the contacts take away
-// from its motion. In each step
+// TVCG 13(3), 2007. The tool never penetrates what it touches, and the hand feels the part of its motion that
+// the contacts prevent. Each step computes
 //
 //   a_u = displacement from the tool to the device,
 //   a_c = argmin over a of 1/2 (a - a_u)^T M (a - a_u) subject to J a >= 0,
 //
-// with J of the contacts of the present pose only (Gauss' principle; quasi-static, so there is no velocity).
-// The tool moves along a_c until continuous collision detection finds the first new contact, which is a row
-// of J in the next step. Steps are made until the tool is at rest, or the budget is used up. Force and torque
-// on the hand are those of the constraints at the last pose, k M (a_c - a_u): none for the part of the motion
-// that no contact hinders, also where the tool has not caught up yet.
+// where J consists of the contacts of the present pose only (Gauss' principle; quasi-static, so there is no
+// velocity). The tool moves along a_c until continuous collision detection finds the first new contact, which
+// is a row of J in the next step. Steps are made until the tool is at rest, or until the budget is used up.
+// Force and torque on the hand are those of the constraints at the last pose, k M (a_c - a_u). They are zero
+// for the part of the motion that no contact hinders, even if the tool has not reached the device yet.
 //
-// The mesh of the scene. The source has two meshes at rest, and contacts of corners with faces and of edges
-// with edges. Here the faces of the scene are the small disks around its points (disk_contact.h): a point
-// against the surface of the tool, and the surface of the tool against a disk, with the normal of the disk.
-// Points are never passed (clear_way.h); for disks the time of contact is that of the linearised motion.
-// Edges of a scene are not known, and there is nothing where the sensor saw nothing.
+// The mesh of the scene. The source has two meshes at rest. Its contacts are corners against faces and edges
+// against edges. Here the faces of the scene are the small disks around its points (disk_contact.h). A
+// contact is a point against the surface of the tool, or the surface of the tool against a disk, with the
+// normal of the disk. The tool never passes a point (clear_way.h); the time of contact with a disk is that of
+// the linearised motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
-// Contacts are kept ContinuousContacts::kGap_m away: while no frame has put points into the tool, a contact
-// within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do
-// not accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and
-// not of the tool, so that the spring is the same as with the other methods.
+// The tool is kept ContinuousContacts::kGap_m away from its contacts. While no frame has put points into the
+// tool, a contact at which up to twice this distance is missing is a row J a >= d, where d is the missing
+// distance, so that errors of second order do not accumulate. M is that of a body of 1 kg with the gyration
+// radius of the coupling about every axis, and not that of the tool, so that the spring is the same as with
+// the other methods.
 //
-// New frames. In the source only the hand moves. Points that a frame puts into the tool are contacts of the
-// present pose like any others: J a >= 0 lets the tool go out but does not take it out, and if it waits at
-// the device, a_u = 0 and there is no force. So a surface that moves into a tool is not felt before the hand
-// moves, and it has passed the tool when it comes out at the other side. The outer side of a disk in the tool
-// is known as with the look-ahead rule: it is the side from which a surface was touched last.
+// New frames. Only the hand moves in the source. Here, points that a frame puts into the tool are contacts of
+// the present pose like any others. J a >= 0 allows the tool to move out but does not push it out, and if it
+// waits at the device, a_u = 0 and there is no force. So the hand does not feel a surface that moves into the
+// tool until the hand moves, and the surface has passed the tool when it leaves the tool on the other side.
+// The outer side of a disk in the tool is the side from which a surface was touched last, as with the
+// look-ahead rule.
 #pragma once
 
 #include "core/dissertation/tool/contact/continuous_contacts.h"
@@ -45,13 +47,15 @@ struct ToolGodObjectParameters {
 };
 
 Parameters parameters(ToolGodObjectParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
+// Returns one line that describes the first invalid combination of settings; an empty string if there is
+// none.
 std::string validate(const ToolGodObjectParameters& p);
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
+// of the HIP, N/m.
 inline double max_stiffness_N_per_m(const ToolGodObjectParameters& p) {
   return p.coupling.stiffness_N_per_m;
 }
-// Returns the spring, its limits and the way in which contacts are counted, for ToolRenderer.
+// Returns the settings that ToolRenderer reads: the spring, its limits, and how contacts are counted.
 ToolParameters tool_parameters(const ToolGodObjectParameters& p);
 
 class GodObjectMotion final : public ToolMotion {

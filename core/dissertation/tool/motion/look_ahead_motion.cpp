@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kCollision_m = LookAheadProgram::kCollision_m;
 
-// Number of looks without progress that ends a tick. On noisy surfaces the tool could move to and fro by a
-// hair forever.
+// A tick ends after this number of successive detections without progress. Otherwise the tool could move back
+// and forth by tiny steps forever on a noisy surface.
 constexpr int kLookAheadPatience = 8;
 
 ContactState state_of(const NearContacts& near) {
@@ -28,10 +28,11 @@ Vec3 touched_direction(const NearContacts& near) {
 
 }  // namespace
 
-// Returns the step of a look, and reports the contacts that hold it. Points that a frame put deep into the
-// tool would need many steps of max_step_m. So a step may be as long as the deepest position is deep:
-// everything within that distance of it is tool, so the position stays in the tool or comes to its surface,
-// and is not jumped over. The next look finds anything that the step runs into beyond the look-ahead.
+// Returns the step that one detection allows, and reports the contacts that hold it. A step is normally
+// limited to max_step_m. Points that a frame put deep into the tool would then need many steps, so a step may
+// also be as long as the deepest position is deep. No position is jumped over: everything within that
+// distance of the deepest position is tool, so this position stays in the tool or comes to its surface. If
+// the step runs into something beyond the look-ahead, the next detection finds it.
 Vector6 LookAheadMotion::step_of(const LookAheadProgram::Look& look, const ToolPose& pose,
                                  ToolMotionReport& report) {
   report.active_count = look.motion.active_count;
@@ -50,7 +51,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   ContactState first = ContactState::free;
   settling_ |= updated;
   MotionProgress progress(p_.rest_threshold_m, kLookAheadPatience);
-  int stopped = 0;  // looks in a row after which the tool could not move
+  int stopped = 0;  // successive detections after which the tool could not move
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
     const LookAheadProgram::Look look = program_.look(pose, a_gu, source, settling_ ? side_ : 0);
@@ -78,7 +79,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
                      (near.deepest_m <= kCollision_m && progress.has_ended()) ||
                      stopped >= kLookAheadPatience;
     if (report.at_rest || report.detections >= p_.detections_per_tick) break;
-    // The tool first leaves points that a frame put into it, so they do not stop it.
+    // Points that a frame put into the tool do not stop it in this tick, because it has to leave them first.
     const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);
     stopped = clear * max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
     pose = clear == 1 && a_g == a_gu ? device : moved(pose, clear * a_g);

@@ -1,6 +1,6 @@
-// The look-ahead rule: every point near the tool is a constraint with its signed distance, so that one and
-// the same program slows the tool down before it touches, lets it slide along what it touches, and pushes it
-// out of what it is in. Not in the dissertation.
+// The look-ahead rule: every point near the tool is a constraint with its signed distance. So the same
+// program slows the tool down before it touches a surface, lets it slide along the surface, and pushes it out
+// if it is inside. Not in the dissertation.
 #pragma once
 
 #include "core/dissertation/tool/motion/look_ahead_program.h"
@@ -10,10 +10,11 @@ namespace remote_touch {
 
 class LookAheadMotion {
  public:
-  // reach_m: distance of the farthest point of the tool from its centre of mass, for the source of contacts.
+  // reach_m: distance of the farthest point of the tool from its centre of mass, as the source of contacts
+  // defines the tool.
   LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
       : p_(parameters), reach_m_(reach_m), program_(parameters, tool, reach_m) {}
-  // Same as ToolMotion::move(). detections: number that the tick has already used of its budget.
+  // Does the same as ToolMotion::move(). detections: number of detections that the tick has already made.
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated,
                         int detections = 0);
 

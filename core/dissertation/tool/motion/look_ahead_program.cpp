@@ -14,8 +14,8 @@ constexpr double kSpare = 1.25;  // the next motion can be somewhat longer than 
 
 static_assert(LookAheadProgram::kMinFirst_m > LookAheadProgram::kCollision_m, "every collision is seen");
 
-// Computes the motion of a look from its contacts. In a wedge no motion leads out of all of them; the tool
-// then follows the device as far as they allow.
+// Computes the motion from the contacts in `look`. A wedge allows no motion that leads out of all of them.
+// Then the tool follows the device as far as they allow.
 void LookAheadProgram::solve(const ToolPose& pose, const Vector6& a_gu, Look& look) {
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   const bool collides = look.near.deepest_m > kCollision_m;

@@ -1,8 +1,8 @@
-// One look of the look-ahead rule: the contacts of a pose, and the motion that they allow.
+// One detection of the look-ahead rule, a "look": the contacts of a pose, and the motion that they allow.
 //
-// A contact that is farther away than the motion moves any point of the tool cannot limit that motion. So the
-// nearest contacts are queried first, and farther ones only if the motion is longer. The motion is still the
-// one that all contacts within the look-ahead allow. Not in the dissertation.
+// A contact cannot limit a motion that moves every point of the tool by less than the distance of the
+// contact. So the nearest contacts are queried first, and farther ones only if the motion is longer. The
+// result is still the motion that all contacts within the look-ahead allow. Not in the dissertation.
 #pragma once
 
 #include "core/dissertation/tool/contact/near_contacts.h"
@@ -17,27 +17,27 @@ class LookAheadProgram {
   static constexpr double kMinFirst_m = 1.5e-4;  // smallest distance that is queried
 
   struct Look {
-    // Contacts nearer than kMinFirst_m, and farther ones within the distance queried. Empty: nothing is
-    // within the look-ahead.
+    // All contacts nearer than kMinFirst_m, and farther ones up to the distance that was queried. Empty: no
+    // contact is within the look-ahead.
     NearContacts near;
-    // The admissible motion, world axes; if nothing is near, the motion towards the device by the look-ahead
-    // at most.
+    // The admissible motion, world axes. If there are no contacts, it is the motion towards the device,
+    // limited to the look-ahead.
     Vector6 a_g = Vector6::Zero();
-    ConstrainedMotion motion;  // the same in tool axes, and the contacts that hold it; zero if none is near
+    ConstrainedMotion motion;  // a_g in tool axes, and the contacts that hold it; zero if there are none
   };
 
   // reach_m: distance of the farthest point of the tool from its centre of mass, for the source of contacts.
   LookAheadProgram(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
       : look_ahead_m_(parameters.look_ahead_m),
         reach_m_(reach_m),
-        // A contact can lie anywhere where the field is known.
+        // A contact can be anywhere in the grid of the field.
         contact_reach_m_(reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
         program_(parameters, tool) {}
 
-  // Returns the motion out of a collision, (6.7), else towards the device, (6.4). a_gu: the motion to the
-  // device, world axes. side: as for near(). The list of contacts is valid until the next query of the
-  // source. If no contact is left out because there are too many, the motion does not depend on earlier
-  // looks, up to rounding.
+  // Returns the contacts and the motion: out of a collision, (6.7), else towards the device, (6.4). a_gu: the
+  // motion to the device, world axes. side: as for near(). The list of contacts is valid until the next query
+  // of the source. The motion does not depend on earlier calls, up to rounding, unless contacts were left out
+  // because there were too many.
   Look look(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
 
  private:
@@ -45,7 +45,7 @@ class LookAheadProgram {
 
   const double look_ahead_m_, reach_m_, contact_reach_m_;
   MotionProgram program_;
-  double first_m_ = kMinFirst_m;  // distance that the next look queries first
+  double first_m_ = kMinFirst_m;  // distance that the next call queries first
 };
 
 }  // namespace remote_touch

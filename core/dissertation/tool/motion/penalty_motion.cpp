@@ -7,7 +7,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kFullPoints = 10;  // more points than this push no more in sum
+constexpr int kFullPoints = 10;  // if more points push, all are scaled as if this many did
 
 struct PreparedVoxmap final : FramePreparation {
   PreparedVoxmap(const PointCloud& cloud, double voxel_m) : map(cloud, voxel_m) {}
@@ -47,7 +47,8 @@ void PenaltyMotion::Push::add(const Vec3& r_T, const Vec3& n_T, double depth_m, 
   stiffness_T += k_p_N_per_m * line * line.transpose();
 }
 
-// Returns the step in world axes. The depth of a point falls by its line times the displacement of the tool.
+// Returns the step in world axes. The linearisation: a displacement of the tool reduces the depth of a point
+// by the dot product of the point's line and the displacement.
 Vector6 PenaltyMotion::balancing_step(const ToolPose& pose, const ToolPose& device, const Push& push) const {
   const double k = p_.coupling.stiffness_N_per_m;
   const double turning = k * p_.coupling.gyration_radius_m * p_.coupling.gyration_radius_m;

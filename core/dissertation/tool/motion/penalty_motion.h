@@ -1,36 +1,36 @@
-// Penalty methods for comparison: points push the tool, and nothing constrains it. Each of N points that
-// touch pushes with the force
+// Penalty methods for comparison: points push the tool, and no constraint limits its motion. Each of N points
+// that touch pushes with the force
 //
 //   f_i = k_p d_i n_i at r_i,
 //
 // where r_i is the point, d_i its depth and n_i a normal. If N > 10, all f_i are multiplied by 10 / N, as in
-// the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool moves towards
-// the pose at which the wrench of the points and that of the coupling balance, linearised at the present
-// pose, by half a voxel at most. Two force laws:
+// the source. The virtual coupling (6.9) pulls the tool to the device. Each step moves the tool towards the
+// pose at which the wrench of the points and the wrench of the coupling balance, linearised at the present
+// pose, by half a voxel at most. There are two force laws:
 //
 // Voxmap and pointshell (`voxmap`): W. McNeely, K. Puterbaugh and J. Troy, "Six degree-of-freedom haptic
-// rendering using voxel sampling", SIGGRAPH 1999. The tool is points with normals into it (pointshell.h), the
-// scene is voxels (voxmap.h), made anew from each frame in prepare(). A point of the tool in a surface voxel
-// is as deep as it is below its tangent plane: the plane through the middle of the voxel, across the normal
-// of the point.
+// rendering using voxel sampling", SIGGRAPH 1999. The tool consists of points with normals into it
+// (pointshell.h). The scene consists of voxels (voxmap.h), which prepare() makes from each frame. The depth
+// of a tool point in a surface voxel is its depth below the tangent plane: the plane through the middle of
+// the voxel, perpendicular to the normal of the point.
 //
-// Distance field (`distance-field`): as J. Barbic and D. James, "Six-DoF haptic rendering of contact between
-// geometrically complex reduced deformable models", IEEE Transactions on Haptics 2008, take the depth from a
-// distance field. Here the roles are exchanged: the field is the tool's, the points are the cloud's, and n_i
-// is the normal of the cloud; without one, the direction in which the tool leaves the point soonest.
+// Distance field (`distance-field`): J. Barbic and D. James, "Six-DoF haptic rendering of contact between
+// geometrically complex reduced deformable models", IEEE Transactions on Haptics 2008, compute the depth from
+// a distance field. Here the roles are exchanged: the field belongs to the tool, and the points to the cloud.
+// n_i is the normal of the cloud; if there is none, it is the direction in which the tool leaves the point
+// soonest.
 //
-// Differences from the sources: the tool has no mass, but rests where the wrenches balance, as in M. Wan and
+// Differences from the sources. The tool has no mass, but rests where the wrenches balance, as in M. Wan and
 // W. McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", IEEE Visualization
-// 2003. So there is no velocity that the proximity layers of the 1999 paper could brake before contact; that
-// no step is longer than half a voxel keeps points from jumping over a layer of voxels, which braking is for.
-// The points of the pointshell lie on the surface and not in the middle of voxels. A cloud has no interior
-// voxels.
+// 2003. So there is no velocity that the proximity layers of the 1999 paper could brake before contact.
+// Instead, no step is longer than half a voxel, so that points do not jump over a layer of voxels. The points
+// of the pointshell lie on the surface and not in the middle of voxels. A cloud has no interior voxels.
 //
-// Known limits, which the comparison should show: the depth of the points in the tool is proportional to the
-// force; the tool passes through points that are deeper in it than its middle, or, with a voxmap, through a
-// layer of voxels that gives way; where walls are close, the points of all walls push at once. With a voxmap
-// a surface is where the middles of its voxels are, up to half a voxel beside its points and in steps where
-// it is not along an axis.
+// Known limits, which the comparison should show. The depth of the points in the tool is proportional to the
+// force. The tool passes through points that are deeper in it than its middle, or, with a voxmap, through a
+// layer of voxels that yields. If walls are close together, the points of all walls push at once. The surface
+// of a voxmap is where the middles of its voxels are: up to half a voxel beside its points, and in steps if
+// it is not parallel to an axis.
 #pragma once
 
 #include "core/dissertation/tool/contact/voxmap.h"
@@ -56,11 +56,12 @@ Parameters parameters(ToolPenaltyParameters& p);
 inline std::string validate(const ToolPenaltyParameters&) {
   return {};
 }
-// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
+// of the HIP, N/m.
 inline double max_stiffness_N_per_m(const ToolPenaltyParameters& p) {
   return p.coupling.stiffness_N_per_m;
 }
-// Returns the spring, its limits and the way in which contacts are counted, for ToolRenderer.
+// Returns the settings that ToolRenderer reads: the spring, its limits, and how contacts are counted.
 ToolParameters tool_parameters(const ToolPenaltyParameters& p);
 
 // The part that both force laws share.
@@ -78,7 +79,7 @@ class PenaltyMotion : public ToolMotion {
     int points = 0;
     Vector6 wrench_T = Vector6::Zero();  // N, N m
     Eigen::Matrix<double, 6, 6> stiffness_T =
-        decltype(stiffness_T)::Zero();  // decrease of the wrench by displacement
+        decltype(stiffness_T)::Zero();  // decrease of the wrench per displacement of the tool
 
     // Adds a point at r_T, depth_m deep along the unit vector n_T, that pushes with k_p.
     void add(const Vec3& r_T, const Vec3& n_T, double depth_m, double k_p_N_per_m);

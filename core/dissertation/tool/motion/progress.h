@@ -1,4 +1,4 @@
-// Detects whether a tool still gets nearer to its device within a tick. Steps that go back and forth forever
+// Detects whether a tool still approaches its device within a tick. Steps that move back and forth forever
 // count as rest, however long they are.
 #pragma once
 
@@ -9,8 +9,8 @@ namespace remote_touch {
 
 class MotionProgress {
  public:
-  // min_m: an approach by this or less is no progress. patience: number of updates without progress after
-  // which the progress has ended.
+  // min_m: an approach by this or less is no progress. patience: number of successive updates without
+  // progress after which the progress has ended.
   MotionProgress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
 
   // remaining_m: remaining displacement to the device, as max_point_displacement_m() measures it.

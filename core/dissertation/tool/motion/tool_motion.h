@@ -1,4 +1,4 @@
-// Moving the tool towards the device, one tick: the algorithm of 6.2.5 in three rules.
+// Moves the tool towards the device in one tick: the algorithm of 6.2.5, in three variants ("rules").
 #pragma once
 
 #include <memory>
@@ -13,28 +13,28 @@ namespace remote_touch {
 struct ToolMotionReport {
   int steps = 0;
   int detections = 0;           // number of poses whose contacts were queried
-  bool at_rest = false;         // the tool has converged; else the budget of detections was used up
+  bool at_rest = false;         // the tool has converged; false: the budget was used up before
   int active_count = 0;         // contacts that pushed in the last step
   Vec3 push_W = Vec3::Zero();   // sum of their multipliers times normals: the direction of contact
   Vec3 touch_W = Vec3::Zero();  // sum of the normals of all touched contacts, pushing or not
   // Displacement from the start of the tick to the first change of state: the first step of (4.13).
   Vec3 first_step_m = Vec3::Zero();
-  // Displacement, in world axes, that the constraints at the last pose would still allow. There is no force
-  // for it: the coupling begins where it ends. Zero for rules whose coupling begins at the tool.
+  // Displacement, in world axes, that the constraints at the last pose would still allow. It causes no force:
+  // the coupling pulls from the end of this displacement. Zero for rules whose coupling pulls from the tool.
   Vector6 allowed_W = Vector6::Zero();
 };
 
-// Writes the report of a motion into the output. normal_W: contact normal, kept if the report has no
-// direction. pre: out.tool is there.
+// Writes the report of a motion into the output. normal_W: contact normal; it is not changed if the report
+// has no direction. pre: out.tool has a value.
 void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out);
 
-// The interface of the rules.
+// Interface of the rules that move the tool.
 class ToolMotion {
  public:
   virtual ~ToolMotion() = default;
-  // prepared() returns the data that the rule reads of a frame besides the tiles of its points, made in
-  // advance as by Renderer::prepare(). Null if the rule reads no more. on_frame() sets the newest data for
-  // all later calls.
+  // prepared() returns the data of a frame that the rule needs in addition to the tiles of its points. It is
+  // computed in advance, as by Renderer::prepare(); null if the rule needs no such data. on_frame() sets the
+  // data that all later calls use.
   virtual std::shared_ptr<const FramePreparation> prepared(const PointCloud& /*cloud*/) const { return {}; }
   virtual void on_frame(const std::shared_ptr<const FramePreparation>& /*prepared*/) {}
   // Moves the pose towards the device. updated: a frame came in since the last tick. Does not allocate.

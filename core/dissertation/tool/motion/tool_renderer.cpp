@@ -88,12 +88,12 @@ void ToolRenderer::on_frame(const Frame& frame) {
   frame_correction_m_ += correction;
 }
 
-// The estimate starts anew when it is switched on again.
+// Applies changed settings. When the estimate is switched on again, it starts from zero.
 void ToolRenderer::parameters_changed() {
   if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
 }
 
-// One tick of 6.2.5.
+// Moves the tool by one tick of 6.2.5.
 void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
   const ToolMotionReport report = motion_->move(pose_, device, contacts_, std::exchange(updated_, false));
   velocity_.on_step(report.first_step_m);  // (4.13)
@@ -149,8 +149,8 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double time_s) {
   return out;
 }
 
-// Writes the contacts of the pose at the end of the tick. They do not count in the budget of detections,
-// because the method does not need them.
+// Writes the contacts at the end of the tick to the output. This query does not count in the budget of
+// detections, because the method does not need it.
 void ToolRenderer::measure(RenderOutput& out) {
   if (!is_measured_ || !(pose_ == measured_at_)) {
     touched_ = contacts_.touched(pose_);

@@ -21,8 +21,8 @@ struct ToolSurfaceMotion {
   Vector6 rate_per_s = Vector6::Zero();    // rate of the surface that holds the tool, m/s and rad/s
 };
 
-// The device holds the tool at its centre of mass. Points without a normal are ignored by the printed rule,
-// and are points instead of disks for the look-ahead rule; ToolOutput::disabled_points counts them.
+// The device holds the tool at its centre of mass. The printed rule ignores points without a normal. The
+// look-ahead rule treats them as points instead of disks. ToolOutput::disabled_points is their number.
 class ToolRenderer : public Renderer {
  public:
   // pre: validate(parameters) is empty.
@@ -36,11 +36,11 @@ class ToolRenderer : public Renderer {
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
-  // The same with points of its own, and a motion that was measured by other means, in place of (4.3) and
-  // (4.13).
+  // Adds a frame, with other points than its own, and with a motion that was measured by other means and
+  // replaces (4.3) and (4.13).
   void on_frame(const Frame& frame, std::shared_ptr<const TiledCloud> points,
                 const ToolSurfaceMotion& motion);
-  // Replaces the newest frame's points, and moves the tool.
+  // replace_points() replaces the points of the newest frame. displace() moves the tool.
   void replace_points(std::shared_ptr<const TiledCloud> points);
   void displace(const Vector6& by);
   bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
@@ -78,7 +78,7 @@ class ToolRenderer : public Renderer {
   FrameOrder order_;
   Vec3 frame_correction_m_ = Vec3::Zero();
 
-  ToolPose measured_at_;  // the last pose measured, while the frame is the same
+  ToolPose measured_at_;  // pose of touched_, valid while is_measured_
   Touched touched_;
   bool is_measured_ = false;
 };

@@ -9,7 +9,8 @@ namespace remote_touch {
 
 namespace {
 
-// Number of looks in contact without progress that ends a tick: contact and collision can alternate forever.
+// A tick ends after this number of successive steps in contact without progress, because contact and
+// collision can alternate forever.
 constexpr int kVoxelPatience = 4;
 
 }  // namespace
@@ -50,9 +51,9 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
   return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped};
 }
 
-// Moves along a displacement in sub-steps, to its end or until the state changes; the change is found by
-// bisection. A change from contact to free does not count. If the budget is used up, the tool stays at the
-// last pose that was queried and accepted. Returns true if it came to the end.
+// Moves along a displacement in sub-steps, to its end or until the state changes; bisection then finds the
+// change. A change from contact to free does not end the motion. If the budget is used up, the tool stays at
+// the last pose that was queried and accepted. Returns true if the tool reached the end.
 bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, const ToolPose* goal,
                           ContactList& contacts, ToolMotionReport& report) const {
   const ToolPose start = pose;
@@ -71,8 +72,9 @@ bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, c
       pose = at(fraction), here = there, before = fraction;
       continue;
     }
-    // The end `after` is used: the touching one on the way into contact, 6.2.5, and the one outside on the
-    // way out of a collision. One detection is kept for it, in case the last query was at the other end.
+    // The tool is put at the end `after` of the interval. It is the touching end on the way into contact,
+    // 6.2.5, and the end outside on the way out of a collision. One detection is reserved for this pose, in
+    // case the last query was at the other end.
     double after = fraction;
     bool seen = true;  // the last query was at `after`
     const double accuracy = from == ContactState::entrenched ? p_.exit_accuracy_m : p_.free_accuracy_m;

@@ -1,5 +1,5 @@
-// The rule as printed, 6.2.3 to 6.2.5: points in shell voxels are contacts, points in interior voxels are
-// collisions, and the tool moves in steps of half a voxel so that none is missed.
+// The rule as printed, 6.2.3 to 6.2.5. Points in shell voxels are contacts, and points in interior voxels are
+// collisions. The tool moves in sub-steps of half a voxel so that no contact is missed.
 #pragma once
 
 #include "core/dissertation/tool/motion/tool_motion.h"

@@ -1,5 +1,5 @@
-// The trilinear field in one cell of a tool's grid, m, with the cell's first node as origin and its edge as
-// unit of length.
+// The trilinear field in one cell of a tool's grid, m. Positions are relative to the cell's first node, in
+// units of the cell's edge.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +30,9 @@ class CellField {
     const double at_z0 = c_ + p.x() * x_ + p.y() * (y_ + p.x() * xy_);
     return at_z0 + p.z() * (z_ + p.x() * xz_ + p.y() * (yz_ + p.x() * xyz_));
   }
-  // Returns an upper bound of the second derivative in any direction, anywhere in the cell, m per squared
-  // edge. The mixed derivatives are linear, so their largest values are at the ends.
+  // Returns an upper bound of the magnitude of the second derivative in any direction, anywhere in the cell,
+  // m per squared edge. The mixed derivatives are linear, so their largest values are at the ends of the
+  // cell.
   double max_bend() const {
     const auto largest = [&](double at_0) { return std::max(std::abs(at_0), std::abs(at_0 + xyz_)); };
     return std::sqrt(2.0) * Vec3(largest(xy_), largest(xz_), largest(yz_)).norm();

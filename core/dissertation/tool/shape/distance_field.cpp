@@ -34,7 +34,7 @@ class CubeCorners {
     return grid_.origin_T + grid_.size_m * Vec3(i, j, k);
   }
 
-  // The faces nearest to the corners of a cube, each once, beginning with that of the first corner.
+  // The faces nearest to the corners of a cube, each once. The first one belongs to the first corner.
   struct Faces {
     std::array<int, 8> face;
     int count = 0;
@@ -77,8 +77,8 @@ class CubeCorners {
 // best so far.
 class NearFaces {
  public:
-  // Gathers all faces that can be nearest to a position within radius_m of the centre, if a face is upper_m
-  // away from the centre.
+  // Gathers all faces that can be nearest to a position within radius_m of the centre. upper_m: distance from
+  // the centre to some face, as an upper bound of the distance to the nearest one.
   void gather(const TriangleTree& tree, const Vec3& centre, double radius_m, double upper_m) {
     centre_ = centre;
     tree.faces_within(centre, upper_m + 2 * radius_m, faces_);

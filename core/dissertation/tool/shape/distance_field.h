@@ -6,10 +6,11 @@
 
 namespace remote_touch {
 
-// Returns the distance at every node, metres, positive outside. Within kExactField_m of the surface it is the
-// distance to the nearest triangle. Farther away it is the distance to the nearest of the triangles that are
-// nearest to the corners of a cube of 4 x 4 x 4 cells around the node. That is never too small. It is too
-// large only if the corners have different nearest triangles: by less than a voxel, and mostly not at all.
+// Returns the distance at every node, metres, positive outside. Nodes within kExactField_m of the surface
+// have the distance to the nearest triangle. Only a few triangles are compared for nodes farther away: those
+// nearest to the corners of a cube of 4 x 4 x 4 cells around the node. The result is never too small. It is
+// too large only if the corners have different nearest triangles: by less than a voxel, and mostly not at
+// all.
 inline constexpr double kExactField_m = 3e-3;
 std::vector<float> distance_field(const TriangleTree& tree, const VoxelGrid& grid,
                                   const std::vector<std::uint8_t>& inside_nodes);

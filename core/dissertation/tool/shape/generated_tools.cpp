@@ -22,8 +22,8 @@ double capsule(const Vec3& p, const Vec3& from, const Vec3& to, double radius) {
   return (p - from - t * displacement).norm() - radius;
 }
 
-// The distance to a box with rounded edges and corners of this radius; half: half sides, measured to the
-// outside.
+// Returns the distance to a box whose edges and corners are rounded with this radius. half: half of each side
+// of the box, including the rounding.
 double rounded_box(const Vec3& p, const Vec3& centre, const Vec3& half, double radius) {
   const Vec3 q = (p - centre).cwiseAbs() - (half - Vec3::Constant(radius));
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - radius;
@@ -48,10 +48,11 @@ double blend_all(std::initializer_list<double> distances, double width) {
   return all;
 }
 
-// The tool that the box of Fig 6.3 stops: four corners of equal reach, so that walls 110 and 90 mm apart hold
-// the dog at about 21.35 degrees in either sense. The head and the tip of the tail are balls of 10 mm at
-// (+-34.75, 24). The paws, of 8 mm, lie so that (26 cos + 35.12 sin) + 8 mm is the same 45 mm. The code has
-// 0.1 mm more in x at all four corners. Nothing else reaches there.
+// A dog whose four outer corners have the same reach, so that a box with walls 110 and 90 mm apart, as in Fig
+// 6.3, stops it at about 21.35 degrees in both directions of rotation. Two of the corners are the head and
+// the tip of the tail: balls with a radius of 10 mm at (+-34.75, 24). The other two are the paws, with a
+// radius of 8 mm at (+-35.12, -26), so that (26 cos + 35.12 sin) + 8 mm is the same 45 mm as that of the
+// head. The code has all four corners 0.1 mm farther out in x. No other part of the body reaches as far.
 double husky_mm(const Vec3& p) {
   const Vec3 q(p.x(), std::abs(p.y()), p.z());                              // both sides are alike
   const double body = blend_all({capsule(q, {-22, 0, 6}, {20, 0, 8}, 8.8),  //
@@ -88,8 +89,8 @@ double key_mm(const Vec3& p) {
   return std::max(blend(blend(handle, shaft, 6), head, 4), -socket);
 }
 
-// A block as long, wide and high as the husky, with edges of 8 mm, so that its outline from above is that of
-// a plate.
+// A block as long, wide and high as the husky. Its edges are rounded with a radius of 8 mm, so that its
+// outline from above is that of a plate.
 double block_mm(const Vec3& p) {
   return rounded_box(p, Vec3::Zero(), {47.5, 10, 34}, 8);
 }

@@ -1,5 +1,5 @@
-// Finds the nodes of a grid that are inside a mesh: by lines through a closed mesh, by winding numbers of an
-// open one.
+// Finds the nodes of a grid that are inside a mesh. A closed mesh is crossed by lines through the nodes; an
+// open one is evaluated by winding numbers.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,15 +10,15 @@ namespace remote_touch {
 
 namespace {
 
-// A vertex with y and z in whole units, one voxel being `unit` of them, and x in voxels.
+// A vertex in the grid: x in voxels, y and z in integer units. One voxel is `unit` of them.
 struct Snapped {
   double x;
   std::int64_t y, z;
 };
 
-// Twice the area of the triangle that the edge u v makes with q, exact. Its sign is the side of q. If q is on
-// the line of the edge, it counts as moved by (e, e^2), e tiny, so that both triangles at an edge see it on
-// the same side.
+// Twice the area of the triangle that the edge u v forms with q; exact. Its sign is the side of the edge on
+// which q lies. If q is on the line of the edge, it is treated as if it were moved by (e, e^2) with a tiny e.
+// So both triangles of an edge agree on the side.
 struct Side {
   std::int64_t area;
   int sign;
@@ -30,15 +30,17 @@ Side side_of(const Snapped& u, const Snapped& v, std::int64_t y, std::int64_t z)
   return {area, (first > 0) - (first < 0)};
 }
 
-// Units are as small as they can be with products of differences below 2^62.
+// Returns the number of units per voxel. Units are as small as possible while products of differences stay
+// below 2^62.
 std::int64_t unit_for(const VoxelGrid& grid) {
   std::int64_t unit = 1 << 20;
   while (unit > 1 && (std::max(grid.cells[1], grid.cells[2]) + 1) * unit > (std::int64_t(1) << 29)) unit /= 2;
   return unit;
 }
 
-// Adds the crossing of a triangle and the line along x through q, if they cross. It changes the winding
-// number of all nodes from there on: down if the line leaves the surface there in the direction of x.
+// Adds the crossing of a triangle and the line along x through q, if they cross. The crossing changes the
+// winding number of all nodes from there on. It decreases the number if the line leaves the solid there in
+// the direction of x.
 void cross(const Snapped& a, const Snapped& b, const Snapped& c, std::int64_t y, std::int64_t z, int columns,
            int* row) {
   const Side bc = side_of(b, c, y, z), ca = side_of(c, a, y, z), ab = side_of(a, b, y, z);

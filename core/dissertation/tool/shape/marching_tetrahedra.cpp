@@ -10,8 +10,9 @@ namespace remote_touch {
 
 namespace {
 
-// Corner c of a cube is at (c & 1, c >> 1 & 1, c >> 2). Six ways along edges from corner 0 to 7; odd ones
-// make a tetrahedron of the other orientation.
+// Corner c of a cube is at (c & 1, c >> 1 & 1, c >> 2). Each tetrahedron consists of the four corners along
+// one of the six paths over edges from corner 0 to corner 7. Every second one has two corners swapped, so
+// that all tetrahedra have the same orientation.
 constexpr int kDirections[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
                                    {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
@@ -81,7 +82,7 @@ class March {
     }
   }
 
-  // Adds a triangle, with its corners in the order in which the normal points from the node inside to the one
+  // Adds a triangle. Its corners are ordered so that the normal points from the node inside to the node
   // outside.
   void triangle(std::array<int, 3> v, std::size_t in, std::size_t out) {
     const Vec3 &a = mesh_.vertices[v[0]], &b = mesh_.vertices[v[1]], &c = mesh_.vertices[v[2]];
@@ -89,8 +90,8 @@ class March {
     mesh_.triangles.push_back(v);
   }
 
-  // Returns the vertex where the function vanishes between a node inside and one outside, made once for each
-  // edge.
+  // Returns the vertex on the edge from a node inside to a node outside, where the function vanishes. It is
+  // made once for each edge.
   int vertex(std::size_t in, std::size_t out) {
     const std::size_t low = std::min(in, out), high = std::max(in, out);
     // Ends of an edge differ by 0 or 1 along every axis.

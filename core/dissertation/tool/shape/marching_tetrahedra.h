@@ -7,10 +7,10 @@
 
 namespace remote_touch {
 
-// Every cube of the grid from `low` on is divided into six tetrahedra along its diagonal. A surface through
-// them has no ambiguous cases, so it is closed and manifold. Vertices lie where the function vanishes on the
-// edges, but at least a hundredth of an edge from its ends, so that no triangle is degenerate. Throws
-// InputError unless the function is positive on the sides of the box.
+// Every cube of the grid, which begins at `low`, is divided into six tetrahedra around its diagonal. A
+// surface through tetrahedra has no ambiguous cases, so the mesh is closed and manifold. Vertices lie on the
+// edges where the function vanishes, but at least a hundredth of an edge from its ends, so that no triangle
+// is degenerate. Throws InputError if the function is negative at a node on a side of the grid.
 TriangleMesh marching_tetrahedra(const std::function<double(const Vec3&)>& function, const Vec3& low,
                                  const Vec3& high, double cell_m);
 

@@ -12,12 +12,12 @@ struct MassProperties {
   Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Zero();  // about the centre, divided by the mass
 };
 
-// Computes the exact values, as sums over the tetrahedra from one point to every triangle. pre: a closed
-// mesh. Faces that point inwards give a negative volume, and the same centre and inertia.
+// Computes the exact values, as sums over the tetrahedra between one point and every triangle. pre: a closed
+// mesh. If the faces point inwards, the volume is negative; the centre and the inertia are the same.
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-// Computes them from the nodes inside, each as a cube of one voxel: for a mesh with gaps, for which the sum
-// above has no meaning.
+// Computes the values from the nodes inside, each as a cube of one voxel. This is for a mesh with gaps, for
+// which the sum above has no meaning.
 MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes);
 
 }  // namespace remote_touch

@@ -64,7 +64,7 @@ std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>&
 
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.vertices.empty()) return 0;
-  const Vec3 o = mesh.vertices.front();  // near the mesh: less is lost to rounding
+  const Vec3 o = mesh.vertices.front();  // a point near the mesh reduces rounding errors
   double six_volumes = 0;
   for (const auto& [a, b, c] : mesh.triangles)
     six_volumes += (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));

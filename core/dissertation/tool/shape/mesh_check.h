@@ -20,8 +20,8 @@ struct MeshCheck {
   double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
 
   bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }
-  // True if every edge belongs to two triangles, in opposite directions. Equal vertices must have been
-  // merged.
+  // Returns true if every edge belongs to exactly two triangles that run along it in opposite directions.
+  // Vertices at the same position count as different, so merge them before.
   bool closed() const {
     return readable() && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
   }
@@ -30,10 +30,12 @@ struct MeshCheck {
 
 MeshCheck check_mesh(const TriangleMesh& mesh);
 
-// "not closed: 81 boundary edges, 6 non-manifold edges (5 parts, 1795 triangles)", "closed (1 part, ...)".
+// Returns the result as text, such as "not closed: 81 boundary edges, 6 non-manifold edges (5 parts, 1795
+// triangles)" or "closed (1 part, ...)".
 std::string text(const MeshCheck& check);
 
-// An edge of the triangles that share it: sorted by low, high, then triangle.
+// An edge of one triangle. edges_by_vertices() sorts edges by low, high, then triangle, so that the edges of
+// the triangles that share one follow each other.
 struct MeshEdge {
   int low, high;  // vertices
   int triangle;
@@ -48,7 +50,8 @@ std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>&
 // Returns the sum of the signed volumes of the tetrahedra from a point to all triangles.
 double signed_volume(const TriangleMesh& mesh);
 
-// True if a corner occurs twice, or the area is negligible against the length of the edges.
+// Returns true if a corner occurs twice, or if the area is negligible compared with the squared length of the
+// edges.
 bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
 }  // namespace remote_touch

@@ -14,8 +14,8 @@ namespace remote_touch {
 
 namespace {
 
-// Merges vertices: the first vertex within reach replaces later ones. It is found by cells twice the reach
-// wide.
+// Merges vertices: a vertex is replaced by the first one within reach of it. Cells that are twice the reach
+// wide find it.
 void weld(TriangleMesh& mesh, MeshRepair& done) {
   const BoundingBox box = bounding_box(mesh.vertices);
   const double reach = 1e-6 * box.sizes().maxCoeff();
@@ -64,9 +64,9 @@ void drop_useless(TriangleMesh& mesh, MeshRepair& done) {
   mesh.triangles = std::move(kept);
 }
 
-// Walks from triangle to triangle over edges of two, and flips triangles that run along an edge in the same
-// direction as their neighbour. The walk does not cross edges of three or more. Returns the component of each
-// triangle.
+// Walks from triangle to triangle over the edges that two triangles share. Flips each triangle that runs
+// along an edge in the same direction as its neighbour. The walk does not cross edges of three triangles or
+// more. Returns the component of each triangle: the index of the component's first triangle.
 std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   struct Neighbour {
@@ -102,12 +102,13 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
   return component;
 }
 
-// A loop of boundary edges, from each edge's end to the next edge, is closed by a fan around its middle.
+// Closes every loop of boundary edges: a loop of three edges by a triangle, a longer one by a fan around its
+// middle.
 void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& done) {
   struct Way {
     int to, component;
   };
-  std::multimap<int, Way> directions;  // along the hole: against the direction of the triangle there
+  std::multimap<int, Way> directions;  // edges along holes, opposite to the direction of their triangles
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto same = [&](std::size_t other) {
@@ -146,7 +147,8 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRe
   std::map<int, std::vector<int>> parts;
   for (std::size_t t = 0; t < component.size(); ++t) parts[component[t]].push_back(static_cast<int>(t));
   for (const auto& [first, triangles] : parts) {
-    // The volume is computed about the part itself, so that a part with gaps has the sign of most of it.
+    // The volume is computed about a vertex of the part, so that it has the sign of most of the part even if
+    // there are gaps.
     const Vec3 o = mesh.vertices[mesh.triangles[triangles.front()][0]];
     double volume = 0;
     for (const int t : triangles) {

@@ -8,10 +8,10 @@
 namespace remote_touch {
 
 struct MeshRepair {
-  int welded_vertices = 0;    // within a millionth of the mesh's size of another one
-  int dropped_triangles = 0;  // degenerate or duplicate
-  int flipped_triangles = 0;  // against the orientation of their part
-  int filled_holes = 0;       // loops of boundary edges, each with a fan around its middle
+  int welded_vertices = 0;    // closer to another one than a millionth of the mesh's size
+  int dropped_triangles = 0;  // a corner occurs twice, or another triangle has the same corners
+  int flipped_triangles = 0;  // turned to match a neighbour, or together with their part; may count twice
+  int filled_holes = 0;       // loops of boundary edges, each closed by a triangle or a fan
 };
 
 // Repairs a mesh. Every part is oriented outwards separately: a part that was a hollow in another becomes

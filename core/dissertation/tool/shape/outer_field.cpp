@@ -11,10 +11,10 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kAccuracy_m = 2e-6;  // accuracy of the largest value on a part of the surface, upwards
+constexpr double kAccuracy_m = 2e-6;  // accuracy of the upper bound of the field on a part of the surface
 constexpr int kMaxHalvings = 8;
-// Covers the rounding of nodes to float, and of positions on the surface that a fraction of a nanometre puts
-// into the next cell.
+// Covers two rounding errors: nodes are rounded to float, and a position on the surface can be counted in the
+// next cell if it is a fraction of a nanometre away.
 constexpr double kRounding_m = 1e-8;
 
 // Returns an upper bound of the field on a triangle: f + bend / 2 |x - middle|^2 is convex, so largest at a
@@ -72,7 +72,7 @@ bool passes_by(const std::array<Vec3, 3>& triangle) {
   return std::abs(normal.dot(Vec3::Constant(0.5) - triangle[0])) > reach * (1 + 1e-6) + 1e-12;
 }
 
-// Returns the amount by which the nodes of every cell are too high.
+// Returns, for every cell, the amount by which its nodes are too high.
 std::vector<float> excess_of_cells(const TriangleMesh& mesh, const VoxelGrid& grid,
                                    const std::vector<float>& nodes) {
   std::vector<float> excess(grid.cell_count(), 0);

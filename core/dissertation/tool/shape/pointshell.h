@@ -14,9 +14,9 @@ struct Pointshell {
   std::size_t size() const { return p_T.size(); }
 };
 
-// Returns one point for each cube of spacing_m of the tool frame that has voxels of the shell: the voxel
-// nearest to the middle of the cube, moved onto the surface along the gradient of the field. The source takes
-// the middle of the cube.
+// Returns one point for each cube of the tool frame, of side spacing_m, that contains voxels of the shell.
+// The point is the middle of that voxel which is nearest to the middle of the cube, moved onto the surface
+// along the gradient of the field; no point if the gradient is zero. The source uses the middle of the cube.
 Pointshell make_pointshell(const VoxelTool& tool, double spacing_m);
 
 }  // namespace remote_touch

@@ -40,8 +40,8 @@ bool is_line(const std::vector<Vec3>& corners) {
   return max_area <= 1e-10 * max_length;
 }
 
-// Projects the polygon, seen from the side on which it runs counter-clockwise. One coordinate is dropped and
-// none is computed, because rounding would bend straight edges.
+// Projects the polygon so that it runs counter-clockwise. The projection drops one coordinate and computes
+// none, because rounding would bend straight edges.
 std::vector<Vec2> seen_flat(const std::vector<Vec3>& corners, const Vec3& normal) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -51,7 +51,8 @@ std::vector<Vec2> seen_flat(const std::vector<Vec3>& corners, const Vec3& normal
   return flat;
 }
 
-// True if all other corners, seen from the first one, come one after the other within half a turn.
+// Returns true if the directions from the first corner to the others turn counter-clockwise from one to the
+// next, and by less than half a turn in all.
 bool has_fan(const std::vector<Vec2>& at) {
   for (std::size_t i = 2; i < at.size(); ++i)
     if (!(turn(at[0], at[1], at[i]) > 0) || !(turn(at[0], at[i - 1], at[i]) > 0)) return false;
@@ -89,7 +90,7 @@ bool is_ear(const std::vector<Vec2>& at, const std::vector<int>& left, std::size
   return true;
 }
 
-// Cuts off one ear after the other. Empty if no ear is found before the end.
+// Cuts off one ear after the other. Returns nullopt if no ear is left before the polygon is used up.
 std::optional<Triangles> ears(const std::vector<Vec2>& at) {
   std::vector<int> left(at.size());
   std::iota(left.begin(), left.end(), 0);
@@ -107,8 +108,8 @@ std::optional<Triangles> ears(const std::vector<Vec2>& at) {
   return triangles;
 }
 
-// True if the areas of the triangles sum up to that of the polygon. All of them are positive, so an error of
-// one cannot cancel that of another.
+// Returns true if the areas of the triangles add up to that of the polygon. All areas are counted as
+// positive, so an error of one cannot cancel that of another.
 bool have_area_of_polygon(const Triangles& triangles, const std::vector<Vec2>& at) {
   double whole = 0, sum = 0;
   for (std::size_t i = 2; i < at.size(); ++i) whole += turn(at[0], at[i - 1], at[i]);

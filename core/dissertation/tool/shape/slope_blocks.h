@@ -1,5 +1,5 @@
 // Bounds of the slope of a trilinear field around a position: the range of its gradient in blocks of cells.
-// So a point that slides along a flat face of a tool is known to stay outside after one look.
+// They show with one table access that a point which slides along a flat face of a tool stays outside.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,13 @@ namespace remote_touch {
 class SlopeBlocks {
  public:
   static constexpr int kSize = 4;    // cells along a block
-  static constexpr int kAround = 2;  // cells around it that its range covers, too
+  static constexpr int kAround = 2;  // cells on each side of a block that its range also covers
 
   SlopeBlocks(const VoxelGrid& grid, const std::vector<float>& distance_m);
 
-  // Returns a lower bound of the change of the field anywhere on the path from `at` by `along` (both in cells
-  // from the grid's origin). Minus infinity if the path is longer than kAround cells along an axis, or starts
-  // outside.
+  // Returns a lower bound, 0 or less, of the change of the field between `at` and any position on the path
+  // from `at` to `at + along` (both in cells from the grid's origin). Returns minus infinity if the path is
+  // longer than kAround cells along an axis, or starts outside the grid.
   double min_change_m(const Vec3& at, const Vec3& along) const;
 
  private:

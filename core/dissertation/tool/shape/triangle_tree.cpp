@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLeaf = 4;
 constexpr int kDeepest = 64;  // trees are halved: no tree of 2^31 triangles is deeper than 32
-constexpr double kFar = 3;    // distance in radii from which on triangles are combined
+constexpr double kFar = 3;    // triangles farther away than this many radii are combined
 constexpr double kPi = 3.14159265358979323846;
 
 // Returns the squared distance from v to the segment from 0 to d. dd: squared length of d; vd = v d.
@@ -64,7 +64,8 @@ void TriangleTree::gather(const TriangleMesh& mesh, const std::vector<int>& orde
     }
 }
 
-// Builds the tree by halving the triangles, by their middles along the longest side of their box.
+// Builds the node of a range of triangles, and the nodes below it, and returns its index. The range is halved
+// by the triangles' middles along the longest side of its box.
 int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int begin, int end) {
   const int index = static_cast<int>(nodes_.size());
   nodes_.emplace_back();
@@ -92,8 +93,9 @@ int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int b
   return index;
 }
 
-// Returns the squared distance to the plane if p is over the inside of the triangle, else to the nearest
-// edge. It is right for slivers too, where a decision by regions goes wrong.
+// Returns the squared distance to the triangle's plane if p projects into the triangle, else to its nearest
+// edge. This is also right for slivers, where a decision by regions would fail. It is not reliable for a
+// triangle without area: rounding can make the result 0.
 double TriangleTree::squared_to(const Face& f, const Vec3& p) {
   const Vec3 v = p - f.a;
   const double vb = v.dot(f.ab), vc = v.dot(f.ac);
@@ -168,7 +170,7 @@ void TriangleTree::faces_within(const Vec3& p, double distance_m, std::vector<Ca
   });
 }
 
-// Van Oosterom and Strackee 1983.
+// Returns the solid angle of a face at p, after Van Oosterom and Strackee 1983.
 double TriangleTree::solid_angle(const Face& f, const Vec3& p) {
   const Vec3 a = f.a - p, b = a + f.ab, c = a + f.ac;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();

@@ -1,4 +1,5 @@
-// A tree over the triangles of a mesh: the nearest one, and the generalised winding number.
+// A tree over the triangles of a mesh. It finds the nearest triangle and computes the generalised winding
+// number.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +14,14 @@ class TriangleTree {
   explicit TriangleTree(const TriangleMesh& mesh);  // pre: indices in range, vertices finite, not empty
 
   struct Nearest {
-    int face = 0;  // index in the tree's own order, only for the next query
+    int face = 0;  // index in the tree's own order, for squared_to() and nearest()
     double squared_m2 = 0;
   };
-  // first: a face that may be near, such as the result for a position close by; any is correct.
+  // Returns the face that is nearest to p. first: a face from which the search starts; a near one, such as
+  // the result for a position close by, makes it fast, but any is correct.
   Nearest nearest(const Vec3& p, int first) const;
 
-  // Gathers all faces within a distance of p, the nearest first.
+  // Gathers all faces within distance_m of p, sorted by distance.
   struct Candidate {
     double distance_m;
     int face;
@@ -44,7 +46,7 @@ class TriangleTree {
   // A node is bounded by a disc rather than a box: a patch of a smooth surface is flat, and a box around it
   // would give a much too small distance.
   struct Node {
-    Vec3 centre = Vec3::Zero(), axis = Vec3::UnitX();  // the centre of the surface below
+    Vec3 centre = Vec3::Zero(), axis = Vec3::UnitX();  // mean position and normal of the triangles below
     double radius = 0, half_height = 0;                // size of the disc, across and along its axis
     double reach = 0;                                  // radius of a ball around the centre
     Vec3 area = Vec3::Zero();                          // area vector

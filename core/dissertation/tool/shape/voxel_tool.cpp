@@ -55,8 +55,8 @@ FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T) {
   FieldSample sample = trilinear(tool, within);
   if (within == at) return sample;
   const Vec3 out = grid.size_m * (at - within);
-  // The gradient leads away from the nearest position of the surface, which the field and its gradient at
-  // `within` give.
+  // The gradient leads away from the nearest position of the surface. The field and its gradient at `within`
+  // give an estimate of that position.
   const double distance = out.norm();
   sample.gradient_T = (out + sample.distance_m * sample.gradient_T).normalized();
   sample.distance_m += distance;
@@ -157,7 +157,8 @@ bool is_thin(const VoxelTool& tool, int i, int j, int k) {
 
 void count_voxels(const VoxelTool& tool, ToolReport& report) {
   const auto& cells = tool.grid.cells;
-  // The thin fraction is that of the surface cells, because a part thinner than a voxel has no shell either.
+  // The fraction is measured over the cells that the surface crosses, because a part thinner than a voxel has
+  // no shell cells.
   const std::vector<std::uint8_t> crossed = crossed_cells(tool.mesh, tool.grid);
   std::size_t surface = 0, thin = 0, shell = 0, interior = 0;
 #pragma omp parallel for schedule(dynamic) reduction(+ : surface, thin, shell, interior)

@@ -1,5 +1,5 @@
-// A rigid tool as the collision detection sees it, 6.2.2: voxels of three values, and the distance field of
-// its mesh. The tool frame T has its origin in the centre of mass and the axes of the mesh; metres.
+// A rigid tool in the form that collision detection needs, 6.2.2: voxels of three values, and the distance
+// field of its mesh. The tool frame T has its origin in the centre of mass and the axes of the mesh; metres.
 #pragma once
 
 #include <cstdint>
@@ -49,17 +49,18 @@ struct FieldSample {
   Vec3 gradient_T;    // gradient of the trilinear field, out of the tool; about 1 long, not normalised
 };
 
-// Returns the field between its nodes, trilinear. Outside the grid it is the distance to the grid's box plus
-// the field at the nearest position of the box, with the gradient towards p. It is at most a voxel less than
-// the true distance; beside the edges and corners of the box it can be millimetres more.
+// Returns the trilinear field. The distance at a position outside the grid is the distance to the grid's box
+// plus the field at the nearest position of the box. It is at most a voxel less than the true distance;
+// beside the edges and corners of the box it can be millimetres more. The gradient outside has unit length
+// and leads away from the nearest position of the surface, as the field at the box estimates it.
 FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
 
 struct VoxelToolSettings {
   double voxel_m = 5e-4;
   double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
   bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
-  // Lowers distance_m as outer_field.h describes: no position in a closed tool is outside. The voxels stay
-  // the same.
+  // Lowers distance_m as outer_field.h describes, so that the field is nowhere positive in a closed tool. The
+  // voxels do not change.
   bool outer_field = false;
 };
 
@@ -69,16 +70,16 @@ struct ToolReport {
   Vec3 sides_m = Vec3::Zero();          // sides of its box, after scaling
   bool inverted = false;                // all faces pointed inwards, and were flipped
   MeshRepair repaired;                  // all zero without repair
-  bool by_winding_number = false;       // repaired, and still open
+  bool by_winding_number = false;       // repaired and still open: inside is by winding numbers
   std::array<std::size_t, 3> voxels{};  // free, shell, interior
   double thin_fraction = 0;             // fraction of the surface farther than two voxels from all interior
 };
 std::string text(const ToolReport& report);
 
-// Scales the mesh, moves it with its centre of mass into the origin, and makes voxels and a distance field of
-// it. name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair),
-// without volume, with vertices that are not finite, with corners that are no vertices, too fine for
-// kMaxCells, or thinner than a voxel everywhere.
+// Scales the mesh, moves its centre of mass to the origin, and computes its voxels and distance field. name
+// is used in messages only. Throws InputError for a mesh that is empty or not closed (without repair), that
+// has no volume, vertices that are not finite, corners that are no vertices or a part that is inside out,
+// that needs more than kMaxCells voxels, or that is thinner than a voxel everywhere.
 inline constexpr double kMaxCells = 150e6;
 VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
                           const std::string& name = "mesh");

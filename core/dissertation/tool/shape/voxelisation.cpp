@@ -9,8 +9,8 @@ namespace remote_touch {
 
 namespace {
 
-// Returns the distance of a face from the nearest plane between cells, in cells: 0 between two cells, 1/2 in
-// the middle of one.
+// Returns the distance of a face from the nearest plane between cells, in cells: 0 for a face between two
+// cells, 1/2 for a face through the middle of a cell.
 double off_the_cells(double face) {
   return std::abs(face - std::round(face));
 }
@@ -106,7 +106,7 @@ std::vector<std::uint8_t> crossed_cells(const TriangleMesh& mesh, const VoxelGri
       triangle.normal = (v[1] - v[0]).cross(v[2] - v[0]);
       Cell low, high;
       for (int i = 0; i < 3; ++i) {
-        // One more on either side: a surface between two cells touches both.
+        // The range reaches slightly farther, because a surface between two cells touches both.
         low[i] = static_cast<int>(std::floor(std::min({v[0][i], v[1][i], v[2][i]}) - 1e-6));
         high[i] = static_cast<int>(std::floor(std::max({v[0][i], v[1][i], v[2][i]}) + 1e-6));
         low[i] = std::max(low[i], 0), high[i] = std::min(high[i], grid.cells[i] - 1);

@@ -12,7 +12,7 @@ constexpr double kPrintedContacts = 6;  // 6.3.1
 // Maxima over a run, for each spacing.
 struct Counts {
   std::string name, rule;       // name in tables; rule of the experiment
-  double known_at_default = 0;  // points that touch at once, 3 mm apart: equal bits on every processor
+  double known_at_default = 0;  // touching points at 3 mm, the same on every processor
   std::vector<double> spacing_m, points, active, clusters;
 
   double points_at(double wanted_m) const {

@@ -24,8 +24,8 @@ inline std::string column_of(Carrier rule) {
   return kCarriers[static_cast<std::size_t>(rule)].column;
 }
 
-// A sweep with the measure tool_popped_through. Its last axis is the rule, in the order of kCarriers, the one
-// before it a strength, rising; a setting is a combination of values of the axes before these.
+// A sweep with the measure tool_popped_through. Its last axis is the rule, in the order of kCarriers. The
+// axis before it is a strength, rising. A setting is a combination of values of the axes before these two.
 class CarrySweep {
  public:
   explicit CarrySweep(SweepResult result) : result_(std::move(result)) {}
@@ -37,9 +37,9 @@ class CarrySweep {
   double value(std::size_t setting, std::size_t axis) const;
   Tally lost(std::size_t setting, std::size_t strength, Carrier rule) const;
   struct Limit {
-    double carried = 0;  // the largest strength up to which every run is carried; 0: none
-    double lost = std::numeric_limits<double>::infinity();      // the next one; infinite: none is lost
-    double all_lost = std::numeric_limits<double>::infinity();  // no run is carried from here on
+    double carried = 0;  // every run is carried up to this strength; 0: none is known
+    double lost = std::numeric_limits<double>::infinity();      // the next strength; infinite: no run is lost
+    double all_lost = std::numeric_limits<double>::infinity();  // all runs are lost from here on
   };
   Limit limit(std::size_t setting, Carrier rule) const;
 
@@ -51,8 +51,8 @@ class CarrySweep {
   SweepResult result_;
 };
 
-// Number of rows in which a limit is not between two columns: a run is lost below `low`, or carried above
-// `high`.
+// Returns the number of rows in which a limit is not between two columns: a run is lost below `low`, or
+// carried above `high`.
 double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
                         const std::string& low, const std::string& high);
 

@@ -19,9 +19,9 @@ constexpr double kSpacing_m = 0.0015;
 // The surface under a plate that reaches half_m to either side.
 using Under = std::function<UnderPlate(double half_m)>;
 
-// Jump that a contact rule allows. The printed rule counts the interior of the plate, 6.2.4. Look-ahead
-// counts the whole plate. The continuous rule also counts the way out, on which the highest position has to
-// come free.
+// Returns the jump that a contact rule allows. The printed rule counts the interior of the plate, 6.2.4.
+// Look-ahead counts the whole plate. The continuous rule also counts the way out, along which the highest
+// position must become free.
 double jump_m(Carrier rule, double thickness_m, const UnderPlate& under) {
   if (rule == Carrier::voxels) return thickness_m - 2 * ToolSettings{}.voxel_m + under.drop_m;
   const double through_m = thickness_m + under.drop_m;
@@ -39,7 +39,8 @@ Jump derived(Carrier rule, double thickness_m, const Under& under) {
   return {std::min({jumps_m[0], jumps_m[1], bound_m}), bound_m, std::max({jumps_m[0], jumps_m[1], bound_m})};
 }
 
-// The points under the plate, and those that noise may bring there.
+// Returns all points of the shape: their heights, and the probability that noise leaves or brings them under
+// the plate.
 std::vector<NoisyPoint> noisy_points(Shape::Kind kind, double half_m, double sigma_m) {
   Shape::Settings settings;
   settings.kind = kind, settings.slope_deg = kSlope_deg, settings.radius_m = kRadius_m;
@@ -64,8 +65,8 @@ Jump on_edge(Carrier rule, double thickness_m, double slope_deg, double turn_deg
   });
 }
 
-// One of the faces of a corner may be what holds the plate. The way out of the continuous rule then leads
-// along that face's normal.
+// The contact that holds the plate may be one of the faces of a corner. The way out of the continuous rule is
+// then along that face's normal.
 Jump on_corner(Carrier rule, double thickness_m, double slope_deg) {
   const double slope_rad = slope_deg * kRadiansPerDegree;
   Jump jump = derived(rule, thickness_m, [&](double half_m) { return under_corner(slope_rad, half_m); });
@@ -75,7 +76,7 @@ Jump on_corner(Carrier rule, double thickness_m, double slope_deg) {
   return jump;
 }
 
-// The lowest points that are seen may be a spacing from the rim.
+// The lowest measured points may be a spacing away from the rim of the ball.
 Jump on_ball(Carrier rule, double thickness_m, double radius_m) {
   return derived(rule, thickness_m, [&](double half_m) {
     const double seen_m = std::sqrt(2.0) * half_m;
@@ -88,8 +89,8 @@ Jump on_plane(Carrier rule, double extent_m) {
   return derived(rule, extent_m, [](double) { return UnderPlate{}; });
 }
 
-// The least and the largest jump are those of a plate that reaches a spacing less, or a disk more, as without
-// noise.
+// The smallest and the largest jump are those of a plate that is narrower by a spacing, or wider by a disk,
+// as without noise.
 Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m) {
   const double shell_m = rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0;
   const double way_out_m = rule == Carrier::continuous ? ToolParameters{}.frame_reach_m : 0;

@@ -1,4 +1,4 @@
-// Tables that a picture of a tool in a cloud is drawn from.
+// Tables from which a picture of a tool in a cloud is drawn.
 #pragma once
 
 #include <memory>
@@ -17,19 +17,20 @@ struct Trace;
 // The tool that an experiment's 6-DOF renderer moves.
 std::shared_ptr<const VoxelTool> tool_of(const Experiment& experiment);
 
-// A frame's cloud as the renderer gets it: filtered and with normals, if the experiment has a depth pipeline.
+// Returns a frame's cloud as the renderer receives it: filtered and with normals, if the experiment has a
+// depth pipeline.
 PointCloud processed_cloud(const Experiment& experiment, const Kernels& kernels, int frame);
 
-// Chosen points, with their normals, and colours as 0xRRGGBB if the cloud has them.
+// Returns the chosen points, with their normals, and their colours as 0xRRGGBB if the cloud has them.
 Table cloud_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                   const std::vector<std::size_t>& chosen);
 Table vertex_table(const std::string& name, const TriangleMesh& mesh);
 Table triangle_table(const std::string& name, const TriangleMesh& mesh);
-// Two rows for each of the ticks: the tool, then the device.
+// Returns two rows for each of the ticks: the tool, then the device.
 Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks);
 
-// A cloud, and the tool at tick number `instant` of the pose table: filled at the tool's pose, transparent at
-// the device's. Tables are NAME_cloud, NAME_vertices, NAME_triangles and NAME_poses.
+// Returns a cloud, and the tool at tick number `instant` of the pose table: filled at the tool's pose,
+// transparent at the device's. Tables are NAME_cloud, NAME_vertices, NAME_triangles and NAME_poses.
 std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instant, double point_m);
 
 Panel scene_panel(const std::string& title, int row, int column, Scene scene);

@@ -1,4 +1,4 @@
-// Bags of all kinds, sound and damaged. Writers of others are tried in tests/system/bags.
+// Tests bags of all kinds, intact and damaged. Bags of other writers are tested in tests/system/bags.
 #include "scenarios/recordings/bags/bag_file.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 const WantedTopic kAll = [](const BagTopic&) { return true; };
 
-// Ten messages of two topics, in the order in which the recorder got them: 3 after 4.
+// Ten messages of two topics, in the order in which the recorder received them: 3 after 4.
 std::vector<BagMessage> messages() {
   std::vector<BagMessage> list;
   for (const int i : {0, 1, 2, 4, 3}) {
@@ -109,7 +109,8 @@ TEST_F(Bags, ListOnlyWhatIsWanted) {
   }
 }
 
-// Cut anywhere: what is there is read, or refused in one line; never less than the whole chunks before.
+// A bag that is cut at any byte is read as far as it goes, or refused in one line. A longer piece never has
+// fewer messages.
 TEST_F(Bags, CutShortAreReadUpToThere) {
   const std::string whole = mcap_file(messages(), {true, true, true, "lz4"});
   std::size_t most = 0;
@@ -149,7 +150,8 @@ TEST_F(Bags, DamagedAreFoundByTheirCrc) {
   EXPECT_EQ(bag->remark(), "has a damaged index: it was read from end to end");
 }
 
-// A change of one byte anywhere gives a one-line error or an answer, in bounded memory; the sanitizers watch.
+// A change of any one byte leads to a one-line error or an answer, in bounded memory; the sanitizers check
+// this.
 TEST_F(Bags, AChangedByteIsNoDanger) {
   write_db3((folder_ / "y.db3").string(), messages());
   const std::string kinds[] = {mcap_file(messages(), {true, true, false, ""}), ros1_file(messages(), "lz4"),
@@ -180,7 +182,7 @@ TEST_F(Bags, OtherKindsAreRefused) {
   EXPECT_FALSE(is_bag(folder_ / "folder.mcap"));
 }
 
-// Tables that compute what they like, as long as they like.
+// Tables that can run any computation, for any time.
 TEST_F(Bags, HostileDatabasesAreRefused) {
   const auto made = [&](const std::string& text) {
     const std::string file = (folder_ / "h.db3").string();

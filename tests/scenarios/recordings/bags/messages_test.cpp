@@ -1,4 +1,5 @@
-// Messages of ROS, decoded, and what is refused. Writers of others are tried in tests/system/bags.
+// Tests the decoding of ROS messages, and which are refused. Other writers' messages are tested in
+// tests/system/bags.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -45,7 +46,7 @@ TEST(Messages, HaveTheSameCloudInEveryFormat) {
   }
 }
 
-// Whatever is cut off, the answer is one line.
+// A message that is cut at any byte is refused in one line.
 TEST(Messages, RefuseEveryShorterMessage) {
   for (const Format format : {Format::cdr, Format::ros1}) {
     const std::string bytes = cloud_message(format, 1, 3, 2, 1);
@@ -93,7 +94,7 @@ TEST(Messages, MarkMissingPointsAndKeepColours) {
   EXPECT_EQ(cloud.grid_columns, 0);
 }
 
-// NaN as C++ and NumPy write it; that of an opaque colour is a colour.
+// 0x7FC00000 is the NaN that C++ and NumPy write, and is no colour. The NaN of an opaque colour is a colour.
 TEST(Messages, HaveNoColourWhereItIsNan) {
   std::string data;
   for (const std::uint32_t rgb : {0x00112233u, 0x7FC00000u, 0xFFFF0000u, 0x4A808060u})
@@ -127,7 +128,7 @@ TEST(Messages, RefuseCloudsThatDoNotFitTogether) {
   EXPECT_HAS(error([](auto& m) { m.height = 4, m.width = 1, m.row_step = 8; }), "row_step = 8: expected 16");
 }
 
-// However many rows it claims.
+// A cloud with 0 columns or 0 rows has no points, however large the other number is.
 TEST(Messages, HaveNoPointsWithoutColumns) {
   PointCloudMessage message = four_points();
   message.width = 0, message.height = 0xFFFFFFFF;
@@ -204,7 +205,7 @@ CameraInfoMessage info(int width, int height, const std::vector<double>& distort
   return read_camera_info({bytes, WireFormat::cdr, "m"});
 }
 
-// The formula of the plumb bob as it is printed, forwards: where the lens puts a ray.
+// The published formula of the plumb bob: returns the ray to which the lens bends the ray through p.
 std::array<double, 2> bent(const Vec3& p, const std::vector<double>& d) {
   const double x = p.x() / p.z(), y = p.y() / p.z(), r2 = x * x + y * y;
   const double radial = 1 + d[0] * r2 + d[1] * r2 * r2 + d[4] * r2 * r2 * r2;
@@ -212,8 +213,8 @@ std::array<double, 2> bent(const Vec3& p, const std::vector<double>& d) {
           y * radial + d[2] * (r2 + 2 * y * y) + 2 * d[3] * x * y};
 }
 
-// A depth image whose depths tell the pixel: every point is bent back to the centre of the pixel it is from,
-// and lies in the pixel of the pinhole image that the slack promises.
+// Each depth identifies its pixel. The lens must bend every point to the centre of the pixel that it is from,
+// and the point must lie within pixel_slack of its pixel in the pinhole image.
 TEST(Messages, PutPointsOnTheRaysOfALens) {
   const std::vector<double> d = {-0.25, 0.08, 0.002, -0.003, -0.01};
   constexpr int kWidth = 12, kHeight = 9;
@@ -286,7 +287,8 @@ TEST(Messages, ReadBinningAndRegion) {
   EXPECT_EQ(camera.region, (RegionMessage{12, 13, 14, 15, true}));
 }
 
-// A pixel looks along the mean of the sensor's pixels that it is made of, which is computed pixel by pixel.
+// A pixel has the ray of the mean position of the sensor's pixels that it covers. The test averages them one
+// by one.
 TEST(Messages, UseBinningAndRegionOfACamera) {
   CameraInfoMessage camera = info(16, 12, {});
   camera.binning_x = 2, camera.binning_y = 3;
@@ -341,7 +343,7 @@ TEST(Messages, RefuseCamerasWhoseImageIsNotClear) {
   EXPECT_EQ(error([](auto& c) { c.region = {1, 1, 2, 2, true}; }), "no InputError");
 }
 
-// A lens that folds the image over has no points beyond the fold, and no time is lost on it.
+// A lens that folds the image over gives no points beyond the fold.
 TEST(Messages, LeaveOutWhatALensCannotShow) {
   const ImageRays rays(info(40, 40, {-1.5, 0, 0, 0, 0}), false, "m");
   const PointCloud cloud = rays.cloud({40, 40, std::vector<double>(1600, 1.0)});

@@ -83,7 +83,7 @@ std::string big_endian(std::uint32_t value) {
   return bytes;
 }
 
-// Length, type, data and the CRC over type and data.
+// Returns a chunk: length, type, data and the CRC over type and data.
 std::string chunk(const std::string& type, const std::string& data) {
   std::uint32_t crc = 0xFFFFFFFFu;
   for (const char c : type + data) {
@@ -93,7 +93,7 @@ std::string chunk(const std::string& type, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(~crc);
 }
 
-// 16-bit grey; what follows the header is up to the caller.
+// Returns the signature and the header of a 16-bit grey PNG. The caller adds the rest.
 std::string png_header(std::uint32_t width, std::uint32_t height) {
   return "\x89PNG\r\n\x1a\n" +
          chunk("IHDR", big_endian(width) + big_endian(height) + std::string("\x10\0\0\0\0", 5));
@@ -106,7 +106,7 @@ TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
   EXPECT_HAS(text, file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
 }
 
-// 0.8 MB could hold as many zeros; that would take 4 GB in memory.
+// A deflate stream of 0.8 MB could expand to that many zeros, which would take 4 GB in memory.
 TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
   const std::string rest = chunk("IDAT", std::string(800'000, 'x')) + chunk("IEND", "");
   for (const auto& [width, height] :
@@ -133,7 +133,7 @@ TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
       }
 }
 
-// Chunks other than the pixels change nothing.
+// Chunks other than those of the pixels change nothing.
 TEST_F(DepthPng, LeavesOutTexts) {
   const std::uint16_t samples[1] = {5};
   std::string bytes = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));

@@ -22,7 +22,7 @@ class PcdFile : public ::testing::Test {
  protected:
   PcdCloud read(const std::string& bytes) { return read_pcd(folder_.write("cloud.pcd", bytes)); }
 
-  // The message of the refusal, which must name the file.
+  // Returns the message of the refusal, which must name the file.
   std::string error(const std::string& bytes) {
     std::string text = refusal([&] { read(bytes); });
     EXPECT_EQ(text.rfind((folder_ / "cloud.pcd").string() + ":", 0), 0u) << text;
@@ -101,7 +101,7 @@ TEST_F(PcdFile, ReadsTheColourOfAFloatField) {
   EXPECT_EQ(read(head("binary") + point).cloud.colour.at(0), 0xA1B2C3u);
 }
 
-// A number that is no colour, and one that has lost digits, is none.
+// A float whose bits hold no colour, or that has lost digits, gives kNoColour.
 TEST_F(PcdFile, GivesNoColourWhereItIsNoColour) {
   const auto colour = [&](const char* type, const char* word) {
     const std::string types = std::string("F F F ") + type;
@@ -268,7 +268,8 @@ TEST_F(PcdFile, RefusesACompressedSizeThatLies) {
 }
 
 TEST_F(PcdFile, NeverDoesMoreThanRefuseDamagedFiles) {
-  // Every byte of a good file damaged in turn, in two ways: either it still reads or it is an InputError.
+  // Damages every byte of a good file in turn, in two ways: the file can still be read, or it is an
+  // InputError.
   const CameraIntrinsics camera{4, 3, 20, 25, 1.5, 1};
   const std::string binary = organised_pcd(camera, 0);
   const std::string packed =

@@ -21,19 +21,19 @@ std::string refusal_of(const std::string& bytes) {
   return refusal([&] { read_text(bytes); });
 }
 
-// The same file with another line VIEWPOINT.
+// Returns the same file with another line VIEWPOINT.
 std::string seen_from(std::string pcd, const std::string& viewpoint) {
   const std::string at_origin = "VIEWPOINT 0 0 0 1 0 0 0";
   return pcd.replace(pcd.find(at_origin), at_origin.size(), "VIEWPOINT " + viewpoint);
 }
 
-// The point of pixel (u, v) in the camera's frame.
+// Returns the point of pixel (u, v) in the camera's frame.
 Vec3 seen_by(int u, int v) {
   return {0.2 * (u - 1.5), 0.2 * (v - 1), 2 + 0.1 * u};
 }
 
-// A wall in 4 x 3 pixels before a camera at X_FC. The colours tell the pixels, which come from left to right
-// or from right to left.
+// Returns a file with a wall in 4 x 3 pixels before a camera at X_FC. The colours identify the pixels, which
+// are stored from left to right or from right to left.
 std::string wall_before(const RigidTransform& X_FC, const std::string& viewpoint, bool right_to_left) {
   std::string pcd = pcd_header("x y z rgb", "4 4 4 4", "F F F U", "1 1 1 1", "4", "3", "12", "ascii");
   for (int i = 0; i < 12; ++i) {
@@ -85,7 +85,7 @@ TEST(PcdViewpoint, FramesWithoutAnyPointHaveNothingToTurn) {
   EXPECT_FALSE(read_text(seen_from(holes, "0 0.5 -2 1 0 0 0")).has_unused_viewpoint);
 }
 
-// A sensor whose axes are not those of the file: the points form an image along x, against z, and so on.
+// The axes of the sensor are not those of the file: the points form an image along x, against z, and so on.
 TEST(PcdViewpoint, ATurnAtTheOriginTurnsTheCamera) {
   const std::vector<std::pair<RigidTransform, std::string>> turns = {
       {RigidTransform(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY())), "0.70710678 0 0.70710678 0"},
