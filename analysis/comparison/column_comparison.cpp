@@ -16,10 +16,10 @@ std::string extent(const Column& column) {
 
 // Returns in words the first mismatch of the two columns; empty if there is none.
 std::string mismatch(const Column& a, const Column& b) {
-  if (a.values.index() != b.values.index()) return "another kind of values";
+  if (a.values.index() != b.values.index()) return "different type of values";
   if (a.width != b.width || a.length() != b.length()) return extent(a) + " against " + extent(b);
   if (a.units != b.units) return "units " + a.units + " against " + b.units;
-  if (a.value_names != b.value_names) return "other names of values";
+  if (a.value_names != b.value_names) return "different names of the values";
   return {};
 }
 

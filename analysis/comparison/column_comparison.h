@@ -24,7 +24,7 @@ struct ColumnComparison {
   std::size_t baseline_rows = 0, candidate_rows = 0;
   std::size_t rows = 0;         // rows compared
   std::size_t outside = 0;      // rows outside the tolerance
-  std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity
+  std::size_t not_numbers = 0;  // rows outside because of a NaN, an infinity or a difference that overflows
   double max = 0, rms = 0;      // largest and rms finite deviation, in units; 0 for names, texts and hashes
   std::optional<std::size_t> first_difference = {}, first_outside = {};
 
@@ -34,7 +34,8 @@ struct ColumnComparison {
 ColumnComparison compare_columns(const Column& baseline, const Column& candidate, const Tolerance& tolerance);
 
 // Returns the deviation of every row that both have; none if their types or widths differ. NaN if one has a
-// NaN or an infinity and the other does not. For names, texts and hashes it is 0 if they are equal, else 1.
+// NaN or an infinity and the other does not, or if the difference overflows. For names, texts and hashes it
+// is 0 if they are equal, else 1.
 std::vector<double> deviations(const Column& baseline, const Column& candidate);
 
 }  // namespace remote_touch

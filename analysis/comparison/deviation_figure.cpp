@@ -30,14 +30,37 @@ Table pieces(const std::string& column, const std::vector<double>& time,
   return table;
 }
 
+bool differs(const ColumnComparison& column) {
+  return column.first_difference || !column.is_same();
+}
+
+std::string caption_of(const TraceComparison& comparison) {
+  if (comparison.divergence)
+    return "First divergent tick " + std::to_string(comparison.divergence->tick) + ", " +
+           comparison.divergence->quantity + ": " + name_of(comparison.divergence->cause) + ", " +
+           comparison.divergence->explanation + ".";
+  const auto count = std::count_if(comparison.columns.begin(), comparison.columns.end(), differs);
+  if (count == 0) return "No column differs.";
+  const bool is_inside = std::all_of(comparison.columns.begin(), comparison.columns.end(),
+                                     [](const ColumnComparison& column) { return column.is_same(); });
+  return std::to_string(count) + " column(s) differ" + (is_inside ? ", within the tolerances." : ".");
+}
+
+bool has_time(const ColumnSource& trace) {
+  return trace.has("time") && std::holds_alternative<std::vector<double>>(trace.column("time").values);
+}
+
 }  // namespace
 
 Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candidate,
                         const TraceComparison& comparison) {
-  Figure figure{"deviation", "Deviation of two traces over time", "No column differs."};
-  if (!baseline.has("time")) return figure;
+  Figure figure{"deviation", "Deviation of two traces over time", caption_of(comparison)};
+  if (!has_time(baseline)) {
+    if (std::any_of(comparison.columns.begin(), comparison.columns.end(), differs))
+      figure.caption += " Nothing is drawn, because the baseline has no column time.";
+    return figure;
+  }
   const Column time = baseline.column("time");
-  if (!std::holds_alternative<std::vector<double>>(time.values)) return figure;
   const auto& time_s = std::get<std::vector<double>>(time.values);
   for (const ColumnComparison& column : comparison.columns) {
     if (!column.first_difference || figure.panels.size() == kMaxPanels) continue;
@@ -59,10 +82,6 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
     }
     figure.panels.push_back(panel);
   }
-  if (comparison.divergence)
-    figure.caption = "First divergent tick " + std::to_string(comparison.divergence->tick) + ", " +
-                     comparison.divergence->quantity + ": " + name_of(comparison.divergence->cause) + ", " +
-                     comparison.divergence->explanation + ".";
   return figure;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "analysis/trace/hash64.h"
 
@@ -35,8 +36,7 @@ class PartingTick {
   // Returns the situation at that tick, and one line with its reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
-    if (!inputs.empty())
-      return {Cause::input, joined(inputs) + " differs; the renderers had different input"};
+    if (!inputs.empty()) return {Cause::input, "different inputs of the renderers: " + joined(inputs)};
     if (differs("frame_index"))
       return {Cause::frame_update, "both received the same frames, but one did not use the newest"};
     if (new_frame(baseline_) || new_frame(candidate_))
@@ -51,7 +51,7 @@ class PartingTick {
     if (!integer(baseline_, "frame_index", tick_)) return "unknown: the traces have no frame_index here";
     const Column frames = baseline_.column("frame_index");
     const auto& index = std::get<std::vector<std::int32_t>>(frames.values);
-    if (index[tick_] < 0) return "none had arrived yet";
+    if (index[tick_] < 0) return "no frame had arrived yet";
     std::size_t since = tick_, next = tick_ + 1;
     while (since > 0 && index[since - 1] == index[tick_]) --since;
     while (next < index.size() && index[next] == index[tick_]) ++next;
@@ -119,12 +119,13 @@ double deviation_at(const ColumnSource& baseline, const ColumnSource& candidate,
   return deviations(baseline.rows(column, tick, 1), candidate.rows(column, tick, 1)).at(0);
 }
 
-// Returns 0 if the trace has no time at that tick.
+// Returns NaN if the trace has no time at that tick.
 double time_of(const ColumnSource& trace, std::size_t tick) {
-  if (!trace.has("time")) return 0;
+  constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+  if (!trace.has("time")) return kNoTime;
   const Column time = trace.column("time");
   const auto* time_s = std::get_if<std::vector<double>>(&time.values);
-  return time_s && tick < time_s->size() ? (*time_s)[tick] : 0;
+  return time_s && tick < time_s->size() ? (*time_s)[tick] : kNoTime;
 }
 
 std::optional<Divergence> find_divergence(const ColumnSource& baseline, const ColumnSource& candidate,

@@ -24,7 +24,7 @@ const char* name_of(Cause cause);
 // The first divergent tick.
 struct Divergence {
   std::size_t tick = 0;                     // the first with a value outside its tolerance
-  double time_s = 0;                        // time of the baseline; 0 if it has none
+  double time_s = 0;                        // time of the baseline; NaN if it has none
   std::string quantity;                     // the column, the first in the trace's order
   double deviation = 0;                     // there, in its units; NaN for a NaN or an infinity
   std::size_t first_difference = 0;         // the first tick with any difference, inside or not; at most tick

@@ -22,7 +22,7 @@ const char* text_of(Better better) {
     case Better::near_zero:
       return "nearer to zero is better";
     case Better::not_negative:
-      return "below zero larger is better";
+      return "larger is better up to 0; all values from 0 on are equally good";
     case Better::neither:
       break;
   }

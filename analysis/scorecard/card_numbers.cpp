@@ -67,6 +67,11 @@ void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std:
 void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::vector<std::string>& list) {
   const MeanDifference &a = then.value, &b = now.value;
   if (std::isnan(a.mean)) return;  // no stored mean to compare with; the counts show it
+  if (then.units != now.units) {
+    list.push_back(words(now.place) + ": " + now.measure + " is in " + now.units + ", stored in " +
+                   then.units);
+    return;
+  }
   const std::string what = now.measure + (now.units == "1" ? "" : " in " + now.units);
   const double slack = kSlack * std::abs(a.mean);
   const double low = (std::isnan(a.low) ? a.mean : a.low) - slack;
@@ -105,8 +110,8 @@ Table counts_table(const CardNumbers& numbers) {
   }
   Table table{"success", "fractions of successful runs with Wilson's 95 % interval", places(numbers.counts)};
   table.columns.push_back(column_of("successes", "1", "successful runs", events));
-  table.columns.push_back(column_of(
-      "runs", "1", "runs; those that are one and the same run, as without noise, count once", runs));
+  table.columns.push_back(
+      column_of("runs", "1", "number of runs; identical runs, as without noise, count once", runs));
   table.add("fraction", "1", "fraction of successful runs", fraction);
   table.add("low", "1", "lower end of the interval", low);
   table.add("high", "1", "upper end of the interval", high);
@@ -124,8 +129,8 @@ Table means_table(const CardNumbers& numbers) {
   }
   Table table{
       "measures",
-      "means with Student's 95 % intervals: of a measure that is judged over the successful runs, of one that is "
-      "reported over all",
+      "means with Student's 95 % intervals; judged measures over the successful runs, reported measures over "
+      "all runs",
       places(numbers.means)};
   table.columns.push_back(column_of("measure", "1", "measure", measure));
   table.columns.push_back(column_of("units", "1", "unit of the measure", units));

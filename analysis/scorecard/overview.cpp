@@ -124,11 +124,12 @@ Table overview_table(const Scorecard& card) {
   table.add("low", "1", "lower end of its interval, of a bootstrap over scenes", low);
   table.add("high", "1", "upper end of its interval", high);
   table.add("noise_free", "1", "mean over the scenes of the fraction of successes without noise", noise_free);
-  table.add("old_success", "1", "as success, by the rule before, over the scenes that have one", old);
+  table.add("old_success", "1", "like success, by the previous rule, over the scenes that have one", old);
   table.columns.push_back({"held", "1", "scenes held in more than 90 % of the runs", held, 1, {}});
   table.columns.push_back(
-      {"best", "1", "scenes in which it is best, told apart from all others", best, 1, {}});
-  table.columns.push_back({"worst", "1", "scenes in which it is worst", worst, 1, {}});
+      {"best", "1", "scenes in which it is significantly better than all other methods", best, 1, {}});
+  table.columns.push_back(
+      {"worst", "1", "scenes in which it is significantly worse than all other methods", worst, 1, {}});
   return table;
 }
 
@@ -145,9 +146,9 @@ Table behind_table(const Scorecard& card) {
   table.columns = {{"scene", "1", "scene", scene, 1, {}},
                    {"what", "1", "success or measure", what, 1, {}},
                    {"units", "1", "unit of the measure", units, 1, {}},
-                   {"other", "1", "the first of the methods that are ahead", other, 1, {}},
+                   {"other", "1", "the best of the methods that are ahead", other, 1, {}},
                    {"ahead", "1", "number of methods that are ahead", ahead, 1, {}},
-                   {"shown", "1", "1: by more than chance", shown, 1, {}}};
+                   {"shown", "1", "1 if the difference is significant, else 0", shown, 1, {}}};
   table.add("own_mean", "1", "mean of the own method, in the measure's unit", own);
   table.add("other_mean", "1", "mean of the other", better);
   table.add("p", "1", "p value, corrected for all comparisons of the card; NaN: not tested", p);

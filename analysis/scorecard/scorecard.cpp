@@ -177,7 +177,7 @@ Table success_table(const Scorecard& card, const CardNumbers& numbers) {
         old_events.push_back(s.old_success.empty() ? -1 : s.old_success[c].at_level[i].events);
   Table table = counts_table(numbers);
   table.columns.push_back(
-      counts("old_successes", "successes by the rule before; -1: there was none", old_events));
+      counts("old_successes", "successes by the previous rule; -1 if there is none", old_events));
   return table;
 }
 
@@ -201,12 +201,14 @@ Table ranking_table(const Scorecard& card) {
       if (m.better != Better::neither) add(s, m.name, m.ranking);
   }
   Table table{"standings", "methods in order over all levels with noise"};
-  table.columns = {texts("scene", "scene", scene),
-                   texts("measure", "success or measure", measure),
-                   counts("place", "place in the order, 1 the best", place),
-                   texts("method", "method", method),
-                   counts("mark", "1: best, -1: worst, told apart from all others", mark),
-                   counts("top_group", "1: the first, and whom it is not shown to be better than", top)};
+  table.columns = {
+      texts("scene", "scene", scene),
+      texts("measure", "success or measure", measure),
+      counts("place", "place in the order, 1 the best", place),
+      texts("method", "method", method),
+      counts("mark", "1 if significantly better, -1 if significantly worse than all others, else 0", mark),
+      counts("top_group", "1 for the first method and for all that it is not significantly better than",
+             top)};
   return table;
 }
 
@@ -241,11 +243,12 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
 
 Figure scorecard_figure(const Scorecard& card) {
   const CardNumbers numbers = numbers_of(card, KeptMeasures::all);
-  Figure figure{kScorecardFigure,
-                "Scorecard of 3-DOF renderers",
-                "Share of successful runs over noise, scene by scene. Every method met the same noise.",
-                {success_table(card, numbers), means_table(numbers), ranking_table(card),
-                 overview_table(card), behind_table(card)}};
+  Figure figure{
+      kScorecardFigure,
+      "Scorecard of 3-DOF renderers",
+      "Share of successful runs over noise, scene by scene. All methods were run with the same noise.",
+      {success_table(card, numbers), means_table(numbers), ranking_table(card), overview_table(card),
+       behind_table(card)}};
   for (std::size_t i = 0; i < card.scenes.size(); ++i) add_panel(card, i, figure);
   return figure;
 }

@@ -7,11 +7,11 @@
 namespace remote_touch {
 
 std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds) {
-  std::vector<bool> kept(result.run_count(), true);
+  std::vector<bool> kept;
+  for (const RunState state : result.state) kept.push_back(state == RunState::done);
   for (const Bound& bound : bounds) {
     const std::vector<double>& values = result.measure(bound.measure);
-    for (std::size_t run = 0; run < kept.size(); ++run)
-      kept[run] = kept[run] && result.state[run] == RunState::done && bound.holds(values[run]);
+    for (std::size_t run = 0; run < kept.size(); ++run) kept[run] = kept[run] && bound.holds(values[run]);
   }
   return kept;
 }

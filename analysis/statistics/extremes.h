@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace remote_touch {
 
@@ -27,6 +29,25 @@ inline double min_of(std::span<const double> values) {
   double min = values.empty() ? std::nan("") : values[0];
   for (const double v : values) min = min_or_nan(min, v);
   return min;
+}
+
+// Returns value(i) for each i below `count` for which qualifies(i) is true.
+template <class Qualifies, class Value>
+std::vector<double> values_where(std::size_t count, Qualifies&& qualifies, Value&& value) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i)
+    if (qualifies(i)) values.push_back(value(i));
+  return values;
+}
+// Returns the largest of these values; NaN if one of them is NaN or no i qualifies.
+template <class Qualifies, class Value>
+double max_where(std::size_t count, Qualifies&& qualifies, Value&& value) {
+  return max_of(values_where(count, qualifies, value));
+}
+// Returns the smallest of these values; NaN if one of them is NaN or no i qualifies.
+template <class Qualifies, class Value>
+double min_where(std::size_t count, Qualifies&& qualifies, Value&& value) {
+  return min_of(values_where(count, qualifies, value));
 }
 
 }  // namespace remote_touch

@@ -62,7 +62,7 @@ MeanDifference bootstrap_mean(const std::vector<std::vector<double>>& difference
   }
   const double pairs = static_cast<double>(result.pairs);
   if (result.pairs > 0) result.mean = sum / pairs;
-  if (result.pairs < 2) return result;
+  if (result.pairs < 2 || draws < 1) return result;
   std::vector<double> means;
   for (int draw = 0; draw < draws; ++draw) means.push_back(drawn_mean(groups, Choices(key, draw), pairs));
   std::sort(means.begin(), means.end());

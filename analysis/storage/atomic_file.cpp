@@ -49,8 +49,10 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
                    std::string("cannot be written (") + std::strerror(error) + "): expected " + allowed);
 }
 
-[[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size) {
-  refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
+// remark: what else the user has to know.
+[[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size,
+                              const std::string& remark = "") {
+  refuse(target, error, "a writable folder with free space for " + std::to_string(size) + " bytes" + remark);
 }
 
 bool is_folder(const std::filesystem::path& target) {
@@ -72,6 +74,7 @@ std::filesystem::path write_temporary(const std::filesystem::path& target, const
   std::filesystem::path temporary = temporary_of(target);
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) refuse_size(target, errno, size);
+  keep_permissions(file, resolved(target));
   int error = write_and_flush(file, static_cast<const char*>(data), size);
   if (::close(file) != 0 && error == 0) error = errno;
   if (error == 0) return temporary;
@@ -112,12 +115,16 @@ class Replacement {
     renamed_ = ::rename(new_.c_str(), place_.c_str()) == 0;
     return renamed_ ? 0 : errno;
   }
-  void put_back() {
-    if (!renamed_) return;
-    if (!copied_)
+  // Returns an empty text, or where the old file is if it cannot be put back.
+  std::string put_back() {
+    if (!renamed_) return {};
+    if (!copied_) {
       ::unlink(place_.c_str());
-    else if (::rename(old_.c_str(), place_.c_str()) == 0)
-      copied_ = false;
+      return {};
+    }
+    copied_ = false;  // the copy is moved, or it stays
+    if (::rename(old_.c_str(), place_.c_str()) == 0) return {};
+    return "; the old " + place_.string() + " is now " + old_.string();
   }
 
  private:
@@ -135,6 +142,12 @@ void flush_folder(const std::filesystem::path& target) {
   if (folder < 0) return;
   ::fsync(folder);
   ::close(folder);
+}
+
+void keep_permissions(int descriptor, const std::filesystem::path& place) {
+  struct stat there = {};
+  if (::stat(place.c_str(), &there) == 0 && S_ISREG(there.st_mode))
+    ::fchmod(descriptor, (there.st_mode & 0777) | S_IRUSR | S_IWUSR);
 }
 
 void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input) {
@@ -187,8 +200,9 @@ void write_files_together(const std::vector<NewFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const int error = replacements[i].rename();
     if (error == 0) continue;
-    for (Replacement& done : replacements) done.put_back();
-    refuse_size(files[i].target, error, files[i].content.size());
+    std::string kept;
+    for (Replacement& done : replacements) kept += done.put_back();
+    refuse_size(files[i].target, error, files[i].content.size(), kept);
   }
   for (const NewFile& file : files) flush_folder(resolved(file.target));
 }
@@ -201,12 +215,13 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
   const std::filesystem::path place = resolved(target);
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
-  if (error == 0 && ::fsync(file) != 0) error = errno;
+  if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != EROFS) error = errno;
+  if (error == 0) keep_permissions(file, place);
   if (file >= 0) ::close(file);
   if (error == 0) error = rename_or_keep(temporary, target);
   if (error != 0) {
     ::unlink(temporary.c_str());
-    refuse(target, error, "a writable place with room for the file");
+    refuse(target, error, "a writable folder with free space for the file");
   }
   flush_folder(place);
 }

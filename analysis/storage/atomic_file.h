@@ -10,9 +10,9 @@ namespace remote_touch {
 
 // Writes to a temporary name in the same folder, flushes to the disk and renames over the target, or over
 // what it links to. On failure (missing folder, no permission, full disk, a pipe, a socket or a device)
-// throws InputError naming the target, and leaves neither a partial nor a temporary file. The only device
-// that can be written is /dev/null. A file that appeared at the target meanwhile is kept if
-// replacement_rule.h requires it.
+// throws InputError naming the target, and leaves neither a partial nor a temporary file. The new file has
+// the permissions of the file that it replaces. The only device that can be written is /dev/null. A file that
+// appeared at the target meanwhile is kept if replacement_rule.h requires it.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
 
 struct NewFile {
@@ -21,8 +21,9 @@ struct NewFile {
 };
 // Replaces files that belong together. All are written beside their targets and flushed to the disk first;
 // then they are renamed, with nothing else to do in between. If one cannot be written or renamed, it throws
-// InputError, which names that target, and all targets are as before. Only a program that is killed between
-// two renames leaves the first files new and the others old.
+// InputError, which names that target, and all targets are as before. If an old file cannot be put back, it
+// is kept beside its target, and the message names it. Only a program that is killed between two renames
+// leaves the first files new and the others old.
 void write_files_together(const std::vector<NewFile>& files);
 
 // Throws the InputError of write_file_atomically() if the folder is missing or not writable, or if the target
@@ -37,6 +38,10 @@ std::filesystem::path temporary_of(const std::filesystem::path& target);
 // Flushes the temporary file to the disk and renames it over the target. Fails like write_file_atomically(),
 // also if a file appeared meanwhile.
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
+
+// Gives an open file the permissions of the file at the place, if there is one; its owner can always read and
+// write it.
+void keep_permissions(int descriptor, const std::filesystem::path& place);
 
 // Flushes the folder of the target, so that the names of its files outlast a power cut, if the file system
 // supports that.

@@ -92,9 +92,9 @@ void require_no_journal_beside(const std::filesystem::path& target) {
   std::error_code unreachable;
   if (!std::filesystem::exists(std::filesystem::symlink_status(journal, unreachable))) return;
   throw InputError(journal.string(),
-                   "is there already, an earlier recording that did not end: expected another "
-                   "name for the new one, or that you remove it after " +
-                       way_to_recover(journal));
+                   "exists, an earlier recording that did not end: use another name for the new one, or "
+                   "recover it with " +
+                       way_to_recover(journal) + " and remove it");
 }
 
 JournalWriter::JournalWriter(const std::filesystem::path& target, const JournalBlock& first)
@@ -147,18 +147,21 @@ void JournalWriter::give_name(const std::filesystem::path& temporary) const {
 
 void JournalWriter::refuse(int error) const {
   throw InputError(target_.string(), std::string("cannot be written (") + std::strerror(error) +
-                                         "): expected a writable place with room");
+                                         "): expected a writable folder with free space");
 }
 
-// Removes the written part of a block for which there is no room. If that fails, readers ignore this part.
+// Removes the written part of a block for which there is no room. If that fails, readers ignore this part and
+// all that is behind it, so nothing more is written.
 void JournalWriter::write(const std::string& bytes) {
+  if (lasting_error_ != 0) refuse(lasting_error_);
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
       const int error = written < 0 ? errno : ENOSPC;
-      if (::ftruncate(descriptor_, static_cast<off_t>(size_)) == 0)
-        ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET);
+      if (done > 0 && (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0 ||
+                       ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0))
+        lasting_error_ = error;
       refuse(error);
     }
     done += static_cast<std::size_t>(written);

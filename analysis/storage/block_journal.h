@@ -38,7 +38,8 @@ struct JournalBlock {
 // Creates a journal with its first block, and appends further blocks. The journal exists from the constructor
 // until remove(); the destructor leaves it. The writer locks the file, so that readers know that it still
 // grows. The lock ends with the process at the latest. Members throw InputError, which names the target, if
-// the file cannot be written. The earlier blocks stay whole then.
+// the file cannot be written. The earlier blocks stay whole then. If the written part of a block cannot be
+// removed, every later append() throws too, because its block could not be read.
 class JournalWriter {
  public:
   // Throws InputError if the target is a folder, a pipe or a device, or if it already has a journal.
@@ -65,6 +66,7 @@ class JournalWriter {
   const std::filesystem::path target_, file_;
   int descriptor_ = -1;
   std::uint64_t next_number_ = 0, size_ = 0;  // size_: bytes up to the end of the last whole block
+  int lasting_error_ = 0;                     // errno of the write whose part could not be removed
 };
 
 // Reads the blocks in order, up to the first one that is not whole: cut off, changed or out of order.

@@ -78,7 +78,10 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFEXITED(status)) return {};
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  if (WIFEXITED(status))
+    return "the process that reads it ended with exit code " + std::to_string(WEXITSTATUS(status)) +
+           ", before its answer";
   if (WTERMSIG(status) == SIGXCPU) return "it takes more than " + std::to_string(limits.processor_s) + " s";
   return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + ", perhaps out of memory";
 }
@@ -118,7 +121,8 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
   ::close(ends[0]);
   if (child < 0) throw std::runtime_error(std::strerror(error));
   if (const std::string end = end_of(child, limits); !end.empty()) throw std::runtime_error(end);
-  if (answered.empty()) throw std::runtime_error("its reader gave no answer, perhaps out of memory");
+  if (answered.empty())
+    throw std::runtime_error("the process that reads it gave no answer, perhaps because memory ran out");
   const char kind = answered.front();
   answered.erase(0, 1);
   if (kind == kNoMemory)

@@ -45,7 +45,7 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target)
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) continue;
     if (errno != EWOULDBLOCK) return;
     ::close(descriptor_);
-    throw InputError(target.string(), "another process is writing it: expected one at a time");
+    throw InputError(target.string(), "another process is writing this file: expected one at a time");
   } while (!is_same_file(descriptor_, lock_));
   try {
     remove_leftovers(target);

@@ -50,7 +50,7 @@ void Hdf5Appender::guarded(const Call& call) {
     throw InputError(target_.string(), "cannot be written (out of memory): expected more memory");
   } catch (const std::exception& error) {
     throw InputError(target_.string(), std::string("cannot be written (") + error.what() +
-                                           "): expected a writable place with room");
+                                           "): expected a writable folder with free space");
   }
 }
 

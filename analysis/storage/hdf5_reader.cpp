@@ -86,7 +86,9 @@ bool require_readable(const std::filesystem::path& file) {
 }  // namespace
 
 ReplacedFile::ReplacedFile(const std::string& file)
-    : InputError(file, "was replaced while it was read: expected once its writer has ended") {}
+    : InputError(file,
+                 "was replaced by another program while it was read: expected a file that no program "
+                 "writes") {}
 
 // Holds a file open, so that no other file gets its inode number.
 class Hdf5Reader::HeldFile {
@@ -139,8 +141,8 @@ void Hdf5Reader::damaged(const std::string& how) const {
 void Hdf5Reader::require_kind(const std::string& kind, const std::string& made_by) const {
   const std::string found = attribute(attributes_, "schema");
   if (found == schema_name(kind)) return;
-  throw InputError(file_, (found.empty() ? "names no schema" : "is of schema " + found) + ": expected " +
-                              schema_name(kind) + ", " + made_by);
+  throw InputError(file_, (found.empty() ? "has no attribute schema" : "is of schema " + found) +
+                              ": expected " + schema_name(kind) + ", " + made_by);
 }
 
 // Columns and keys have other names in other versions: nothing of such a file can be used.

@@ -50,7 +50,7 @@ class Hdf5Reader {
   std::vector<T> values(const std::string& dataset, int width = 1) const {
     Column read = column(dataset);
     auto* values = std::get_if<std::vector<T>>(&read.values);
-    if (!values || read.width != width) damaged(dataset + " has values of another kind");
+    if (!values || read.width != width) damaged(dataset + " has values of another type or width");
     return std::move(*values);
   }
   std::int64_t offset(const std::string& dataset) const;  // byte offset of values; pre: stored in one piece

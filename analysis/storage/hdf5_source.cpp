@@ -1,7 +1,6 @@
 #include "analysis/storage/hdf5_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <new>
 #include <stdexcept>
@@ -28,6 +27,14 @@ std::string last_part(const std::string& path) {
   return path.substr(path.rfind('/') + 1);
 }
 
+std::string name_of_attribute(hid_t attribute) {
+  const ssize_t length = H5Aget_name(attribute, 0, nullptr);
+  if (length < 0) throw_refusal();
+  std::string name(static_cast<std::size_t>(length), '\0');
+  if (H5Aget_name(attribute, name.size() + 1, name.data()) < 0) throw_refusal();
+  return name;
+}
+
 class LibrarySource final : public Hdf5Source {
  public:
   explicit LibrarySource(const std::string& file)
@@ -41,9 +48,7 @@ class LibrarySource final : public Hdf5Source {
     for (hsize_t i = 0; i < root.num_attrs; ++i) {
       const Handle attribute(
           H5Aopen_by_idx(file_, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-      std::array<char, 256> name{};
-      check(H5Aget_name(attribute, name.size(), name.data()) < 0 ? -1 : 0);
-      found.emplace_back(name.data(), read_text(attribute));
+      found.emplace_back(name_of_attribute(attribute), read_text(attribute));
     }
     return found;
   }

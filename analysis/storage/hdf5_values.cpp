@@ -1,6 +1,8 @@
 #include "analysis/storage/hdf5_values.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -95,13 +97,35 @@ std::vector<Number> read_numbers(hid_t data, hid_t type, const Selection& wanted
   return numbers;
 }
 
-std::vector<std::string> names_of(hid_t enumeration) {
-  std::vector<std::string> names;
-  for (int i = 0; i < H5Tget_nmembers(enumeration); ++i) {
-    char* member = H5Tget_member_name(enumeration, static_cast<unsigned>(i));
-    if (!member) throw_refusal();
-    names.emplace_back(member);
-    H5free_memory(member);
+std::string member_name(hid_t enumeration, unsigned member) {
+  char* text = H5Tget_member_name(enumeration, member);
+  if (!text) throw_refusal();
+  std::string name = text;
+  H5free_memory(text);
+  return name;
+}
+
+std::int64_t member_value(hid_t enumeration, unsigned member) {
+  std::int64_t value = 0;
+  std::vector<char> bytes(std::max(H5Tget_size(enumeration), sizeof value));
+  check(H5Tget_member_value(enumeration, member, bytes.data()));
+  const Handle integers(H5Tget_super(enumeration), H5Tclose);
+  check(H5Tconvert(integers, H5T_NATIVE_INT64, 1, bytes.data(), nullptr, H5P_DEFAULT));
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return value;
+}
+
+// Returns the names in the order of their values. Throws std::runtime_error unless these are 0, 1, 2, ...
+std::vector<std::string> names_of(hid_t enumeration, const std::string& dataset) {
+  const int members = H5Tget_nmembers(enumeration);
+  check(members);
+  std::vector<std::string> names(static_cast<std::size_t>(members));
+  for (unsigned i = 0; i < names.size(); ++i) {
+    const std::int64_t value = member_value(enumeration, i);
+    if (value < 0 || value >= members)
+      throw std::runtime_error(dataset + " names the value " + std::to_string(value) +
+                               ", and not only 0, 1, 2, ...");
+    names[static_cast<std::size_t>(value)] = member_name(enumeration, i);
   }
   return names;
 }
@@ -197,7 +221,7 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* some) {
   Selection wanted;
   wanted.count = product(size, 1).value();
   if (by_character) wanted.text_length = size.back();
-  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type);
+  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type, name);
   if (!some) {
     column.values = read_values(data, type, wanted);
     return column;

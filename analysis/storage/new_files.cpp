@@ -20,7 +20,7 @@ NewFiles::~NewFiles() {
 void NewFiles::refuse(const File& file, int error) const {
   throw InputError(file.target.string(),
                    std::string("cannot be written (") + std::strerror(error) +
-                       "): expected a writable place with room for the files that are exported");
+                       "): expected a writable folder with free space for the exported files");
 }
 
 void NewFiles::begin(const std::filesystem::path& target) {
@@ -33,6 +33,7 @@ void NewFiles::begin(const std::filesystem::path& target) {
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) refuse(file, EINVAL);
   descriptor_ = ::open(file.temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) refuse(file, errno);
+  keep_permissions(descriptor_, file.place);
 }
 
 void NewFiles::append(const std::string& bytes) {

@@ -24,7 +24,7 @@ std::vector<std::int32_t> numbers_of(const std::vector<RunState>& states) {
 Column state_column(const SweepResult& result) {
   return {"state",
           "1",
-          "what became of the run",
+          "state of the run",
           numbers_of(result.state),
           1,
           {"not_sampled", "pending", "done", "failed", "elsewhere"}};
@@ -33,7 +33,7 @@ Column error_column(const SweepResult& result) {
   return {"error", "1", "why the run failed", result.error, 1, {}};
 }
 Column round_column(const SweepResult& result) {
-  return {"round", "1", "round of refinement that asked for the run, -1: none", result.round, 1, {}};
+  return {"round", "1", "round of refinement that added the run; -1 if none did", result.round, 1, {}};
 }
 Column notes_column(const SweepResult& result) {
   return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes, 1, {}};
@@ -106,8 +106,13 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   if (!result.round.empty()) hdf5.array("/sweep", round_column(result), axes, Storage::compact);
   if (storage == Storage::in_place)
     hdf5.array("/sweep",
-               {"checksum", "1", "of the run's values, while the sweep runs", checksums(result), 1, {}}, axes,
-               storage);
+               {"checksum",
+                "1",
+                "checksum of the run's values, only while the sweep runs",
+                checksums(result),
+                1,
+                {}},
+               axes, storage);
   else
     hdf5.array("/sweep", error_column(result), axes, storage);
   hdf5.attributes("/sweep", {{"NX_class", "NXdata"}, {"signal", result.measures.front().name}});
@@ -192,7 +197,8 @@ class SweepReader {
   Column column(const std::string& name, std::size_t length) const {
     Column column = hdf5_.column("/sweep/" + name);
     const auto* values = std::get_if<std::vector<Value>>(&column.values);
-    if (values == nullptr || values->size() != length) damaged("/sweep/" + name + " has another shape");
+    if (values == nullptr || values->size() != length)
+      damaged("/sweep/" + name + " has another length or type");
     column.width = 1;  // a second dimension is an axis
     return column;
   }
@@ -270,12 +276,12 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
     take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
-    if (reader.text("digest") != digest(result)) reader.damaged("its digest is another");
+    if (reader.text("digest") != digest(result)) reader.damaged("its digest does not match");
   }
   require_known_notes(reader, result);
   for (std::size_t run = 0; run < result.round.size(); ++run)
     if ((result.round[run] < 0) != (result.state[run] == RunState::not_sampled))
-      reader.damaged("a run belongs to no round");
+      reader.damaged("a sampled run has no round, or a run that is not sampled has one");
   return stored;
 }
 

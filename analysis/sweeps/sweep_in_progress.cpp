@@ -58,17 +58,18 @@ void SweepInProgress::put(std::int64_t offset, const void* value, std::size_t si
   } while (written < 0 && errno == EINTR);
   if (written == static_cast<ssize_t>(size)) return;
   refuse(file_, std::string("cannot be written (") + std::strerror(written < 0 ? errno : ENOSPC) +
-                    "); what is finished is kept in it; make room and repeat the command");
+                    "); finished runs are kept in the file; free some space and repeat the command");
 }
 
 void SweepInProgress::flush() {
-  if (::fdatasync(descriptor_) != 0 && errno != EINVAL)
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
     refuse(file_, std::string("cannot be written (") + std::strerror(errno) +
-                      "); what is finished is kept in it; make room and repeat the command");
+                      "); finished runs are kept in the file; free some space and repeat the command");
   struct stat ours = {}, there = {};
   if (::fstat(descriptor_, &ours) != 0 || ::stat(file_.c_str(), &there) != 0 || ours.st_ino != there.st_ino ||
       ours.st_dev != there.st_dev)
-    refuse(file_, "was replaced or removed while it was written: expected one process at a time");
+    refuse(file_,
+           "was replaced or removed by another program during the sweep: expected only one that writes it");
 }
 
 }  // namespace remote_touch

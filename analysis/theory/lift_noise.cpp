@@ -8,6 +8,8 @@ namespace remote_touch {
 
 namespace {
 
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 bool counts(const LiftUpdate& update, SettledFrom settled) {
   return update.above_before && update.frame > settled.frame;
 }
@@ -22,7 +24,7 @@ struct Moments {
   double mean() const { return sum / static_cast<double>(count); }
   double variance() const {
     const double n = static_cast<double>(count);
-    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0;
+    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : kNotKnown;
   }
   double deviation() const { return std::sqrt(variance()); }
 };
@@ -59,9 +61,10 @@ NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, Sett
       velocity.add(velocity_error(update));
       margin.add(update.margin_m(r1_m, frame_rate_hz));
     }
-  return {
-      thickness.mean(), thickness.deviation(), normal_error.mean(), normal_error.deviation(),
-      velocity.mean(),  velocity.deviation(),  margin.deviation(),  gain(lifts, settled, velocity.mean())};
+  return {thickness.mean(),    thickness.deviation(),
+          normal_error.mean(), normal_error.deviation(),
+          velocity.mean(),     velocity.deviation(),
+          margin.deviation(),  velocity.count > 1 ? gain(lifts, settled, velocity.mean()) : kNotKnown};
 }
 
 LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled) {
@@ -71,8 +74,7 @@ LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled) {
     thickness.add(update.thickness_m);
     normal_error.add(update.normal_error);
   }
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  if (thickness.count == 0) return {nothing, nothing};
+  if (thickness.count == 0) return {kNotKnown, kNotKnown};
   return {thickness.mean(), normal_error.mean()};
 }
 

@@ -15,7 +15,8 @@ struct SettledFrom {
 };
 
 // Computes means and scatter over the updates of all lifts of one noise strength before which the proxy was
-// still above the plane.
+// still above the plane. The means are NaN without such an update, the scatter and the gain with fewer than
+// two.
 NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
                          double frame_rate_hz);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/statistics/polynomial_fit.h"
 
@@ -47,6 +48,7 @@ double survival_probability(const Lift& lift, const NoiseEffect& noise, double a
     const double variance =
         square(noise.margin_sd_m) + square(noise.thickness_sd_m) +
         (square(estimate) - square(lift.start_velocity_m_per_s)) * square(noise.normal_error_sd / f);
+    if (std::isnan(margin) || std::isnan(variance)) return std::numeric_limits<double>::quiet_NaN();
     // Zero variance: the probability is a step from 0 to 1, and the rounding of (4.14) does not affect it.
     probability *= variance > 0 ? 0.5 * std::erfc(-margin / std::sqrt(2 * variance)) : margin > 0 ? 1 : 0;
     estimate += noise.gain * (velocity - estimate);
@@ -55,8 +57,15 @@ double survival_probability(const Lift& lift, const NoiseEffect& noise, double a
 }
 
 double scatter_bound(const Lift& lift, const NoiseEffect& noise) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr int kMaxDoublings = 60;
   double low = 0, high = 10 * critical_acceleration(lift);
-  if (survival_probability(lift, noise, low) < 0.5) return 0;
+  const double at_rest = survival_probability(lift, noise, low);
+  if (std::isnan(at_rest)) return kNone;
+  if (at_rest < 0.5) return 0;
+  int doublings = 0;
+  while (survival_probability(lift, noise, high) >= 0.5 && doublings++ < kMaxDoublings) high *= 2;
+  if (!(survival_probability(lift, noise, high) < 0.5)) return kNone;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (survival_probability(lift, noise, middle) >= 0.5 ? low : high) = middle;

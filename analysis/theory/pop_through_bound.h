@@ -61,8 +61,11 @@ struct NoiseEffect {
 //
 // Not using the bias makes the bound too low at little noise; at much noise, where e_n grows, it is about
 // right. The figure "bounds" shows predicted and observed survival.
+//
+// NaN if a part of the noise that it needs is NaN.
 double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration);
-// The acceleration at which the survival probability is one half.
+// The acceleration at which the survival probability is one half; 0 if it is less at rest. NaN if it is NaN,
+// or if more lifts survive at any acceleration.
 double scatter_bound(const Lift& lift, const NoiseEffect& noise);
 
 }  // namespace remote_touch

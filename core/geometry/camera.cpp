@@ -1,5 +1,7 @@
 #include "core/geometry/camera.h"
 
+#include <stdexcept>
+
 namespace remote_touch {
 
 Vec3 unproject(const CameraIntrinsics& camera, double u, double v, double z_m) {
@@ -10,8 +12,23 @@ std::string size_text(const CameraIntrinsics& camera) {
   return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
 }
 
+namespace {
+
+void require_size(const DepthImage& depth, const CameraIntrinsics& camera) {
+  if (depth.width != camera.width || depth.height != camera.height)
+    throw std::invalid_argument("depth image: " + std::to_string(depth.width) + " x " +
+                                std::to_string(depth.height) + " pixels: expected the camera's " +
+                                size_text(camera));
+  if (depth.z_m.size() != camera.pixels())
+    throw std::invalid_argument("depth image: " + std::to_string(depth.z_m.size()) +
+                                " depths: expected one for each of " + size_text(camera));
+}
+
+}  // namespace
+
 PointCloud cloud_from_depth(const DepthImage& depth, const CameraIntrinsics& camera,
                             const RigidTransform& X_WC) {
+  require_size(depth, camera);
   PointCloud cloud;
   const std::size_t count = depth.z_m.size();
   cloud.x.resize(count), cloud.y.resize(count), cloud.z.resize(count);

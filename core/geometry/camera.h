@@ -24,7 +24,8 @@ Vec3 unproject(const CameraIntrinsics& camera, double u, double v, double z_m);
 std::string size_text(const CameraIntrinsics& camera);
 
 // Returns the organised cloud of a depth image, in the world frame. A pixel without a measurement becomes a
-// NaN point, never the origin.
+// NaN point, never the origin. Throws std::invalid_argument if the image does not have the camera's size, or
+// another number of depths than pixels.
 PointCloud cloud_from_depth(const DepthImage& depth, const CameraIntrinsics& camera,
                             const RigidTransform& X_WC);
 

@@ -6,8 +6,10 @@
 namespace remote_touch {
 
 std::uint32_t colour_of_float(std::uint32_t bits) {
+  constexpr std::uint32_t kComputedNan = 0xFFC00000;
   const std::uint32_t alpha = bits >> 24;
-  return alpha == 0 || alpha == 0xFF ? bits & 0xFFFFFF : kNoColour;
+  const bool has_colour = (alpha == 0 || alpha == 0xFF) && bits != kComputedNan;
+  return has_colour ? bits & 0xFFFFFF : kNoColour;
 }
 
 HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb) {

@@ -11,7 +11,8 @@ inline constexpr std::uint32_t kNoColour = 0xFF000000;
 // Converts the bits of a 32-bit float, in which files and messages of clouds store 0xAARRGGBB, to 0xRRGGBB.
 // The alpha value A is 0, or 255 where colours are opaque; many opaque colours are a NaN when they are read
 // as a float. Another alpha value means that the float holds no colour, or is the NaN of a point without a
-// colour: the result is kNoColour.
+// colour: the result is kNoColour. 0xFFC00000 is kNoColour too, although it could be an opaque dark red: it
+// is the NaN that an x86 processor computes, for example for 0.0 / 0.0.
 std::uint32_t colour_of_float(std::uint32_t bits);
 
 // The double cone (HSL). A grey has saturation 0 and no hue; its hue_deg is 0.

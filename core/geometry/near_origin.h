@@ -29,8 +29,8 @@ inline bool is_far_from_origin(const PointCloud& cloud) {
 
 // Returns the error message. what: the subject of the message, such as the scene.
 inline std::string far_from_origin(const std::string& what) {
-  return what + " farther than " + std::to_string(static_cast<int>(kMaxCoordinate_m)) +
-         " m from the origin, along an axis: expected a scene and a hand near the origin";
+  return what + " more than " + std::to_string(static_cast<int>(kMaxCoordinate_m)) +
+         " m from the origin along an axis: expected a scene and a hand near the origin";
 }
 
 }  // namespace remote_touch

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace remote_touch {
 
@@ -26,8 +27,13 @@ std::size_t character_at(const std::string& text, std::size_t at) {
   return size;
 }
 
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+// Returns true if the UTF-8 character controls a terminal or ends a line: ASCII control characters, those
+// from U+0080 to U+009F, and the separators U+2028 and U+2029.
+bool is_control(std::string_view character) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7F;
+  if (character.size() == 2) return byte(0) == 0xC2 && byte(1) < 0xA0;
+  return character == "\xE2\x80\xA8" || character == "\xE2\x80\xA9";
 }
 
 // Returns the position of the first byte of the UTF-8 character that contains byte `at`.
@@ -73,10 +79,12 @@ std::string printable(const std::string& text) {
     const char c = text[at];
     if (c == '\n' || c == '\t' || c == '\r') {
       line += ' ', ++at;
-    } else if (size == 0 || is_control(c)) {
-      const auto byte = static_cast<unsigned char>(c);
-      line.append("\\x") += kDigits[byte >> 4];
-      line += kDigits[byte & 15], ++at;
+    } else if (size == 0 || is_control(std::string_view(text).substr(at, size))) {
+      for (const std::size_t end = at + std::max<std::size_t>(size, 1); at < end; ++at) {
+        const auto byte = static_cast<unsigned char>(text[at]);
+        line.append("\\x") += kDigits[byte >> 4];
+        line += kDigits[byte & 15];
+      }
     } else {
       line.append(text, at, size), at += size;
     }

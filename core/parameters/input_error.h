@@ -7,9 +7,10 @@
 
 namespace remote_touch {
 
-// Returns the text as one line of UTF-8. A line break or tab becomes a blank; other ASCII control characters
-// and bytes that are not UTF-8 are written as \x and two hexadecimal digits. The middle of a word longer than
-// 400 bytes, and then of a line longer than 1000 bytes, is replaced with "...".
+// Returns the text as one line of UTF-8. A line break or tab becomes a blank. The bytes of other control
+// characters (ASCII and U+0080 to U+009F), of the separators U+2028 and U+2029, and those that are not UTF-8
+// are written as \x and two hexadecimal digits. The middle of a word longer than 400 bytes, and then of a
+// line longer than 1000 bytes, is replaced with "...".
 std::string printable(const std::string& text);
 
 class InputError : public std::runtime_error {

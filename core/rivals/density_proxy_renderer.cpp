@@ -24,7 +24,7 @@ std::string validate(const DensityProxyParameters& p) {
   std::ostringstream text;
   const double half_shell = 0.5 * (p.proxy.r2_m - p.proxy.r1_m);
   if (p.max_radius_m < p.min_radius_m)
-    text << "max_radius_m = " << p.max_radius_m << ": expected from min_radius_m = " << p.min_radius_m;
+    text << "max_radius_m = " << p.max_radius_m << ": expected at least min_radius_m = " << p.min_radius_m;
   else if (p.min_radius_m <= half_shell)
     text << "min_radius_m = " << p.min_radius_m << ": expected above (r2_m - r1_m) / 2 = " << half_shell;
   else

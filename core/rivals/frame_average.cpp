@@ -18,21 +18,23 @@ Parameters parameters(FrameAverageSettings& s) {
        "average of each point over the frames; exponential: temporal filter of a depth camera, along the ray; mean: of the last frames"},
       {"alpha", &s.alpha, 0.01, 1, "weight of the newest depth in the exponential average; 1: no filter"},
       {"step_threshold_m", &s.step_threshold_m, 0, 10,
-       "a depth that differs from the average by this or more replaces it"},
+       "exponential: a depth that differs from the average by this distance or more replaces the average"},
       {"persistence_hits", &s.persistence_hits, 1, 16,
-       "exponential: a missing point is shown at its last place if it was measured in so many of the last frames"},
-      {"persistence_frames", &s.persistence_frames, 0, 16, "of how many last frames; 0: never"},
-      {"mean_frames", &s.mean_frames, 1, 16, "mean: number of frames"},
+       "exponential: a missing point is shown at its last position if it was measured in at least this many of the "
+       "last persistence_frames frames"},
+      {"persistence_frames", &s.persistence_frames, 0, 16,
+       "exponential: number of last frames that persistence_hits counts; 0: a missing point is never shown"},
+      {"mean_frames", &s.mean_frames, 1, 16, "mean: number of last frames that are averaged"},
       {"view", &s.view_direction, -1, 1,
        "viewing direction of the sensor; for images the ray of each pixel is used instead"},
   };
 }
 
 std::string validate(const FrameAverageSettings& s) {
-  if (s.view_direction.norm() < 0.001) return "view: expected 0.001 or longer";
+  if (s.view_direction.norm() < 0.001) return "view: expected a vector of length 0.001 or more";
   if (s.persistence_frames > 0 && s.persistence_hits > s.persistence_frames)
     return "persistence_hits = " + std::to_string(s.persistence_hits) +
-           ": expected up to persistence_frames = " + std::to_string(s.persistence_frames);
+           ": expected at most persistence_frames = " + std::to_string(s.persistence_frames);
   return "";
 }
 

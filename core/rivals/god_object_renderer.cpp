@@ -34,7 +34,7 @@ std::string validate(const GodObjectParameters& p) {
   if (kMinRatio * p.surface_offset_m <= p.max_edge_length_m) return {};
   std::ostringstream text;
   text << "surface_offset_m = " << p.surface_offset_m
-       << ": expected up to a tenth of max_edge_length_m = " << p.max_edge_length_m;
+       << ": expected at most a tenth of max_edge_length_m = " << p.max_edge_length_m;
   return text.str();
 }
 

@@ -101,7 +101,7 @@ bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   const double R = p_.support_radius_m, distance = (hip_W - here.p_W).norm();
   const Vec3 direction = (hip_W - here.p_W) / distance;
   double path_length = kStride * R;
-  if (!here.sample.supported) path_length += near_.first_hit(here.p_W, direction, R, distance);
+  if (!here.sample.supported) path_length += near_.first_hit_of_points(here.p_W, direction, R, distance);
   const Vec3 goal = path_length < distance ? Vec3(here.p_W + path_length * direction) : hip_W;
   const Place next = place(goal, here.sample.normal());
   if (!is_inside(next.sample)) {

@@ -14,10 +14,10 @@ Parameters parameters(PenaltyParameters& p) {
   return {
       {"contact_radius_m", &p.contact_radius_m, 1e-6, 1,
        "radius r_c of the ball around the HIP; the force is at most k_s r_c"},
-      {"r3_m", &p.r3_m, 1e-6, 1, "radius of the points that are averaged to the normal (4.1)"},
+      {"r3_m", &p.r3_m, 1e-6, 1, "radius around the HIP in which points contribute to the normal (4.1)"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
-       "spring k_s, times the depth of the nearest point in the ball", kLive},
-      {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper along the normal, in contact"},
+       "stiffness k_s, multiplied by the depth of the nearest point in the ball", kLive},
+      {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damping of the motion along the normal in contact"},
   };
 }
 

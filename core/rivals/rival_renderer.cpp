@@ -37,7 +37,8 @@ RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {
       out.status = RenderStatus::no_frame;
     }
   }
-  out.proxy_W = out.slave_W = proxy_W_;
+  out.proxy_W = proxy_W_;
+  if (placed_) out.slave_W = proxy_W_;  // NaN before the first HIP
   out.normal_W = normal_W_;
   out.status = order_.status(out.status);
   return out;

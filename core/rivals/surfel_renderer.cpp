@@ -42,12 +42,13 @@ Parameters parameters(SurfelParameters& p) {
       {"weight", choice(p.weight, {"wyvill", "wendland"}), 0, 0,
        "weight w(q) at the distance q R; wyvill: 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2; wendland: (1 - q)^4 (4 q + 1)"},
       {"normal_neighbours", &p.normal_neighbours, 3, 100,
-       "number of neighbours, the point included, to whose thinnest axis the normal of a point is set"},
+       "number of nearest points, the point itself included, whose thinnest axis is the normal of a point"},
       {"previous_normal_fraction", &p.previous_normal_fraction, 0, 0.99,
-       "weight of the normal of the tick before in the normal of a tick; the new one has the rest"},
+       "weight of the previous tick's normal in the normal of a tick; the new normal has the remaining weight"},
       {"friction", &p.friction, 0, 2,
-       "coefficient of friction: the proxy slides by the tangential distance of the HIP less this times its depth"},
-      {"fused_frames", &p.fused_frames, 1, 4, "number of the newest frames that are joined to one cloud"},
+       "coefficient of friction: the proxy slides by the tangential distance of the HIP minus this coefficient times "
+       "the depth of the HIP"},
+      {"fused_frames", &p.fused_frames, 1, 4, "number of newest frames that are joined to one cloud"},
       {"view", &p.view_direction, -1, 1,
        "viewing direction of the sensor, to which normals are turned; for images the ray of each pixel is used instead"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy", kLive},
@@ -55,7 +56,7 @@ Parameters parameters(SurfelParameters& p) {
 }
 
 std::string validate(const SurfelParameters& p) {
-  return p.view_direction.norm() < 0.001 ? "view: expected 0.001 or longer" : "";
+  return p.view_direction.norm() < 0.001 ? "view: expected a vector of length 0.001 or more" : "";
 }
 
 SurfelRenderer::SurfelRenderer(const SurfelParameters& parameters, double, const Kernels& kernels)

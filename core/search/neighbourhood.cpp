@@ -66,11 +66,16 @@ const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {
   return tube_;
 }
 
-double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
+double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit,
+                                bool with_regions) {
+  const auto hit_in = [&](const GatheredPoints& gathered) {
+    PointsView points = gathered.view();
+    if (!with_regions) points.radius = nullptr;
+    return kernels_.proxy.first_hit(points, p.data(), u.data(), radius);
+  };
   const CachedList& here = cache_[current_];
   const bool covered = here.valid && (p - here.centre).norm() + limit + radius <= list_radius_;
-  if (covered)
-    return std::min(limit, kernels_.proxy.first_hit(here.points.view(), p.data(), u.data(), radius));
+  if (covered) return std::min(limit, hit_in(here.points));
 
   // A point whose region is met first between two hops lies within radius (plus r_f) of that part of the
   // axis, so it meets the ball of that hop. The root is computed from p itself for every hop, so the result
@@ -82,7 +87,7 @@ double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, dou
     tube_.clear();
     points_->gather({p + 0.5 * (start + end) * u, 0.5 * (end - start) + radius + rounding}, kernels_, tube_);
     tube_.finish();
-    const double hit = kernels_.proxy.first_hit(tube_.view(), p.data(), u.data(), radius);
+    const double hit = hit_in(tube_);
     if (hit <= end) return hit;
   }
   return limit;

@@ -30,7 +30,13 @@ class Neighbourhood {
   const GatheredPoints& within(const Vec3& p, double radius);
   // Returns the distance that a ball of the given radius can move from p along the unit vector u before it
   // meets a region, (4.9), (5.9), or limit if it meets none before. Tests the whole swept tube.
-  double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
+  double first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
+    return first_hit(p, u, radius, limit, true);
+  }
+  // Returns the same distance for points without their r_f.
+  double first_hit_of_points(const Vec3& p, const Vec3& u, double radius, double limit) {
+    return first_hit(p, u, radius, limit, false);
+  }
 
   bool has_regions() const { return points_->has_regions(); }
 
@@ -45,6 +51,7 @@ class Neighbourhood {
     GatheredPoints points = {};
   };
   void gather(CachedList& kept);
+  double first_hit(const Vec3& p, const Vec3& u, double radius, double limit, bool with_regions);
 
   double reach_;
   double pitch_;  // edge of the cubes

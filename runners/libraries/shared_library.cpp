@@ -63,8 +63,8 @@ void* SharedLibrary::address(const char* name) const {
   void* found = address_if_there(name);
   if (found == nullptr)
     throw InputError(file_, std::string("has no function ") + name +
-                                ", it is too old or another library; let " + variable_ +
-                                " name the right one");
+                                ": it is too old or another library; set " + variable_ +
+                                " to the file of the right one");
   return found;
 }
 

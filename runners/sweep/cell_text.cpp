@@ -50,28 +50,75 @@ std::string values_text(const Column& axis) {
   return text;
 }
 
-std::optional<std::size_t> row_of(const Column& axis, const std::string& value) {
+std::optional<double> number_of(const std::string& text) {
   double number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  const bool is_number = error == std::errc() && end == value.data() + value.size();
-  const std::string sought = is_number ? six_digits(number) : value;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+// Returns the row whose value is exactly this number, if the axis has numbers with a fraction.
+std::optional<std::size_t> exact_row_of(const Column& axis, double number) {
+  const auto* const numbers = std::get_if<std::vector<double>>(&axis.values);
+  if (!numbers) return {};
+  const auto same = std::find(numbers->begin(), numbers->end(), number);
+  if (same == numbers->end()) return {};
+  return static_cast<std::size_t>(same - numbers->begin());
+}
+
+// Returns the rows that have this text.
+std::vector<std::size_t> rows_with(const Column& axis, const std::string& text) {
+  std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < axis.length(); ++row)
-    if (const std::string text = value_text(axis, row); text == sought || text == value) return row;
-  return {};
+    if (value_text(axis, row) == text) rows.push_back(row);
+  return rows;
+}
+
+// Returns the rows that the text may name: one, unless no value or several values fit.
+std::vector<std::size_t> rows_of(const Column& axis, const std::string& value) {
+  const std::optional<double> number = number_of(value);
+  if (!number) return rows_with(axis, value);
+  if (const std::optional<std::size_t> row = exact_row_of(axis, *number)) return {*row};
+  const std::vector<std::size_t> same_text = rows_with(axis, value);
+  return same_text.empty() ? rows_with(axis, six_digits(*number)) : same_text;
+}
+
+std::size_t row_of(const NamedCell& cell, const Column& axis, const std::string& value) {
+  const std::vector<std::size_t> rows = rows_of(axis, value);
+  if (rows.empty()) refuse_cell(cell, "for " + axis.name + " one of " + values_text(axis));
+  if (rows.size() > 1)
+    refuse_cell(cell, "for " + axis.name + " a number with more digits, or the indices on the axes: " +
+                          std::to_string(rows.size()) + " values are " + value_text(axis, rows.front()) +
+                          " with six digits");
+  return rows.front();
+}
+
+// Splits "NAME=VALUE,NAME=VALUE" at the commas before the name of an axis. Other commas belong to a value:
+// that of an axis of objects is JSON.
+std::vector<std::string> assignments_of(const std::string& text, const std::vector<Column>& axes) {
+  std::vector<std::string> assignments;
+  for (const std::string& item : items_of(text)) {
+    const bool begins = std::any_of(axes.begin(), axes.end(),
+                                    [&](const Column& axis) { return item.starts_with(axis.name + "="); });
+    if (begins || assignments.empty())
+      assignments.push_back(item);
+    else
+      assignments.back() += "," + item;
+  }
+  return assignments;
 }
 
 // Returns the cell of a text with NAME=VALUE for each axis, in any order.
 std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
   std::vector<std::optional<std::size_t>> place(result.axes.size());
-  for (const std::string& item : items_of(cell.text)) {
+  for (const std::string& item : assignments_of(cell.text, result.axes)) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
     const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
                                    [&](const Column& each) { return each.name == name; });
     const auto i = static_cast<std::size_t>(axis - result.axes.begin());
     if (axis == result.axes.end() || place[i]) break;
-    place[i] = row_of(*axis, value);
-    if (!place[i]) refuse_cell(cell, "for " + name + " one of " + values_text(*axis));
+    place[i] = row_of(cell, *axis, value);
   }
   std::string names;
   std::vector<std::size_t> found;

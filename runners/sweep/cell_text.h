@@ -11,7 +11,8 @@ namespace remote_touch {
 std::string cell_text(const SweepResult& result, std::size_t cell);
 
 // text: the indices as cell_text() writes them, or a value of each axis, "noise_sigma_m=0.003,rule=none". A
-// number names the first value of the axis that has the same text with six digits.
+// number names the value that is equal to it or, if there is none, the only value of the axis that has the
+// same text with six digits.
 struct NamedCell {
   std::string option;  // option with which the user named it, for errors: "--cell"
   std::string text;

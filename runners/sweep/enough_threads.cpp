@@ -49,9 +49,10 @@ void use_threads(int wanted) {
   const std::string subject = (wanted > 0 ? "--threads = " : "OMP_NUM_THREADS = ") + std::to_string(threads);
   if (threads > kMaxThreads) throw InputError(subject, "expected 1 to " + std::to_string(kMaxThreads));
   if (threads > 1 && !can_start_threads())
-    throw InputError(subject,
-                     "so many threads cannot be started: expected fewer, or higher limits of processes "
-                     "and memory");
+    throw InputError(
+        subject,
+        "this number of threads cannot be started: expected fewer, or higher limits of processes "
+        "and memory");
 }
 
 }  // namespace remote_touch

@@ -129,7 +129,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(label + ": measures", what + ": expected a list of different names of " + known);
   };
-  if (!found->is_array() || found->empty()) refuse("no list");
+  if (!found->is_array() || found->empty()) refuse("not a list");
   for (const Json& name : *found) {
     const auto is_it = [&](const Measure& measure) { return name == measure.name; };
     const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
@@ -193,7 +193,7 @@ void Sweep::Definition::check_axes(const std::string& label) const {
     refuse_other_entry(axis, label);
     if (!names.insert(axis.name()).second)
       throw InputError(label + ": axis " + axis.parameter,
-                       "its name " + axis.name() + " is taken: expected once");
+                       "another axis or measure has the name " + axis.name() + ": expected different names");
     runs *= axis.values.size();
     if (runs > kMaxRuns)
       throw InputError(

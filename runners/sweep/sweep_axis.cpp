@@ -67,7 +67,7 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   if (axis.count > 1 && axis.from == axis.to)
     throw InputError(label + ".to = " + Json(axis.to).dump(), "expected a value different from \"from\"");
   if (axis.scale == Scale::log && !(axis.from > 0 && axis.to > 0))
-    throw InputError(label + ".scale = \"log\"", "expected for from and to above 0");
+    throw InputError(label + ".scale = \"log\"", "expected \"from\" and \"to\" above 0");
   SweepAxis result{axis.parameter, {}, std::size_t{1} << levels, {}};
   const std::size_t count = static_cast<std::size_t>(axis.count - 1) * result.stride + 1;
   if (count > kMaxValues)

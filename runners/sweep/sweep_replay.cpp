@@ -21,8 +21,9 @@ TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay&
     recipe->cell = stored.result.place(cell), recipe->replicate = replicate;
     return provenance(config, *recipe, isa, inputs);
   }
-  const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
-                              cell_text(stored.result, cell) + " --replicate " + std::to_string(replicate);
+  const std::string command = attribute(stored.attributes, "command") + "; " + program_text() +
+                              " replay --cell " + cell_text(stored.result, cell) + " --replicate " +
+                              std::to_string(replicate);
   return provenance(config, command, isa, inputs);
 }
 

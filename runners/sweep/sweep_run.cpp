@@ -4,6 +4,7 @@
 #include <exception>
 #include <mutex>
 #include <new>
+#include <string>
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
@@ -15,6 +16,14 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxError = 300;  // every run has room for the longest
+
+// Returns the message in one line of UTF-8, cut between characters where there is no room for more.
+std::string stored_error(const std::exception& error) {
+  const std::string text = printable(error.what());
+  std::size_t end = std::min(text.size(), kMaxError);
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end);
+}
 
 // Does one run and writes its values, or its error, into its own elements of the result. Throws
 // std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
@@ -34,8 +43,7 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    result.error[run] = std::string(error.what()).substr(0, kMaxError);
-    std::replace(result.error[run].begin(), result.error[run].end(), '\n', ' ');
+    result.error[run] = stored_error(error);
     result.state[run] = RunState::failed;
   }
 }

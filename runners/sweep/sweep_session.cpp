@@ -121,7 +121,7 @@ bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, co
       is_finished = false;
       do_round(kernels, stop, progress);
     }
-  } catch (const Interrupted&) {
+  } catch (...) {  // finished runs are in the file, whatever ended this call
     require_unchanged_inputs(before);
     throw;
   }
@@ -165,7 +165,8 @@ void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* sto
   storage.flush();
   if (without_memory > 0)
     throw InputError(file_.string(), "out of memory in " + std::to_string(without_memory) +
-                                         " runs: the others are kept in it, and the same command does these");
+                                         " runs: the other runs are stored in the file; the same command "
+                                         "continues with the rest");
 }
 
 }  // namespace remote_touch

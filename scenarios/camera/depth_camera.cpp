@@ -33,7 +33,7 @@ Parameters parameters(DepthCameraSettings& s) {
 
 std::string validate(const DepthCameraSettings& s) {
   const bool same = (s.target_position_m - s.camera_position_m).norm() < kSamePlace_m;
-  return same ? "camera_position_m and target_position_m: expected not to be equal" : "";
+  return same ? "camera_position_m and target_position_m: expected two different positions" : "";
 }
 
 RigidTransform look_at(const Vec3& from, const Vec3& to) {

@@ -5,12 +5,17 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <string>
+
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
 namespace {
 
 constexpr int kMaxAge = 16;
+// Limit for the nodes of a lattice: their numbers and their noise need about 600 MB.
+constexpr std::int64_t kMaxNodes = std::int64_t{1} << 24;
 
 // Returns a standard normal for each number (of a point or a node), correlated with those of the previous
 // frames.
@@ -44,6 +49,11 @@ struct Lattice {
     if (!(low_x <= high_x)) return;
     first_x = cell(low_x), first_z = cell(low_z);
     columns = cell(high_x) - first_x + 2, rows = cell(high_z) - first_z + 2;
+    if (std::int64_t{columns} * rows > kMaxNodes)
+      throw InputError("faults.ray_noise_correlation_m",
+                       "needs a lattice of " + std::to_string(columns) + " x " + std::to_string(rows) +
+                           " nodes over the points of a frame: expected a larger value, for at most " +
+                           std::to_string(kMaxNodes) + " nodes, or 0");
   }
   // Positions beyond 30000 pitches all count as the outermost cell, so that a node's number stays in range.
   int cell(double place) const {

@@ -22,7 +22,8 @@ struct RayNoise {
 //
 // Without correlation_m every point has independent noise. Otherwise the noise of the lattice's nodes is
 // interpolated bilinearly and scaled to standard deviation 1 everywhere. The noise of two points that are
-// farther apart than two pitches along x or z is independent.
+// farther apart than two pitches along x or z is independent. Throws InputError if correlation_m is so small
+// against the cloud that the lattice would have more than 2^24 nodes.
 //
 // With memory m, the noise of frame j is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
 // cut off at frame j - 16 and scaled to standard deviation 1.

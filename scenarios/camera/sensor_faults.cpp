@@ -80,7 +80,7 @@ Parameters parameters(SensorFaults& s) {
        "maximum distance of an outlier from its true position, uniformly distributed"},
       {"quantisation_m", &s.quantisation_m, 0, 1, "depth is rounded to multiples of this; 0: not rounded"},
       {"hole_fraction", &s.hole_fraction, 0, 1,
-       "fraction of the points that are lost in round holes, which are elsewhere in each frame"},
+       "fraction of the points that are lost in round holes, at new positions in each frame"},
       {"hole_radius_m", &s.hole_radius_m, 1e-4, 10,
        "radius of a hole, perpendicular to the viewing direction"},
       {"dropout_probability", &s.dropout_probability, 0, 1,
@@ -92,7 +92,7 @@ Parameters parameters(SensorFaults& s) {
 }
 
 std::string validate(const SensorFaults& s) {
-  return s.view_direction.norm() < 0.001 ? "view_direction: expected 0.001 or longer" : "";
+  return s.view_direction.norm() < 0.001 ? "view_direction: expected a vector of length 0.001 or more" : "";
 }
 
 bool use_view_direction(const SensorFaults& s) {

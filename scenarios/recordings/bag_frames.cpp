@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/parameters/input_error.h"
@@ -114,10 +115,14 @@ void BagFrames::choose_unit(double chosen_m) {
   const MessagePlace& first = bag_->places(unit).front();
   const std::string name = subject(unit, first), message = bag_->message(first);
   const double unit_m = read_float32({message, wire_format(bag_->topics()[unit]), name});
-  if (!(unit_m > 0 && unit_m <= 1))
-    throw InputError(name, "depth unit = " + std::to_string(unit_m) + " m: expected above 0 to 1");
   // The 32-bit float nearest to 0.001 would make 1000 units 1.00000005 m, so the unit is rounded to 1e-9 m.
-  units_.of_integers_m = std::round(unit_m * 1e9) / 1e9;
+  const double rounded_m = std::round(unit_m * 1e9) / 1e9;
+  if (!(rounded_m > 0 && unit_m <= 1)) {
+    char unit_text[40];
+    std::snprintf(unit_text, sizeof unit_text, "%g", unit_m);
+    throw InputError(name, std::string("depth unit = ") + unit_text + " m: expected 1e-9 to 1");
+  }
+  units_.of_integers_m = rounded_m;
   note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
 }
 
@@ -164,14 +169,15 @@ void BagFrames::choose_frame_id(const std::string& frame_id) {
     if (!is_tf_static(bag_->topics()[t])) continue;
     for (const MessagePlace& place : bag_->places(t)) {
       const std::string message = bag_->message(place);
-      transforms.add(read_transforms({message, wire_format(bag_->topics()[t]), subject(t, place)}));
+      const std::string name = subject(t, place);
+      transforms.add(read_transforms({message, wire_format(bag_->topics()[t]), name}), name);
     }
   }
   X_chosen_ = transforms.between(frame_id, frame_id_, path_);
 }
 
 void BagFrames::check_frame_id(const MessageHeader& header, const std::string& subject) const {
-  if (header.frame_id == frame_id_) return;
+  if (plain_frame(header.frame_id) == plain_frame(frame_id_)) return;
   throw InputError(
       subject, "frame_id = " + header.frame_id + ": expected " + frame_id_ + ", as the first message has");
 }

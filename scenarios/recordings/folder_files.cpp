@@ -35,7 +35,7 @@ std::vector<std::string> numbers_in(const fs::path& file) {
 
 [[noreturn]] void refuse_pair(const fs::path& colour, const fs::path& depth) {
   throw InputError(colour.string(),
-                   "may or may not belong to " + depth.string() +
+                   "it is not clear whether it belongs to " + depth.string() +
                        ": expected colour images with the names of the depth images, or with "
                        "the same numbers in their names");
 }

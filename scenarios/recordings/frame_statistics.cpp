@@ -113,8 +113,9 @@ void FrameStatistics::compare_with_last(std::size_t frame, const PointCloud& clo
   const bool follows = frames_ > 0 && (frame == last_ + 1 || frame + 1 == last_);
   if (follows && !cells.empty() && !cells_.empty()) {
     const double overlap = std::min(share_near(cells, cells_), share_near(cells_, cells));
-    if (overlap < kLeastOverlap && apart_++ == 0) first_apart_ = std::max(frame, last_);
-    least_overlap_ = std::min(least_overlap_, overlap);
+    const std::size_t later = std::max(frame, last_);
+    if (overlap < kLeastOverlap && (apart_++ == 0 || later < first_apart_))
+      first_apart_ = later, overlap_of_first_ = overlap;
   }
   cells_ = std::move(cells);
   last_ = frame;
@@ -149,9 +150,10 @@ std::vector<Note> FrameStatistics::notes(double max_depth_m) const {
                                            limit + " along the camera's axis"});
   }
   if (colourless_ > 0)
-    notes.push_back({"colours missing", percent(share(colourless_, measured_)) +
-                                            " of the measured points have no colour (NaN): no fixture takes "
-                                            "them by their hue"});
+    notes.push_back(
+        {"colours missing", percent(share(colourless_, measured_)) +
+                                " of the measured points have no colour (NaN): no fixture selects "
+                                "them by their hue"});
   if (coloured_frames_ > 0 && colourless_frames_ > 0)
     notes.push_back({"colours missing", std::to_string(colourless_frames_) + " of " +
                                             std::to_string(coloured_frames_ + colourless_frames_) +
@@ -161,7 +163,7 @@ std::vector<Note> FrameStatistics::notes(double max_depth_m) const {
     notes.push_back(
         {"frames apart", std::to_string(apart_) + " pair(s) of successive frames show different " +
                              "places, the first is frames " + std::to_string(first_apart_ - 1) + " and " +
-                             std::to_string(first_apart_) + ": only " + percent(least_overlap_) +
+                             std::to_string(first_apart_) + ": only " + percent(overlap_of_first_) +
                              " of the space that a frame shows is near what the other shows"});
   return notes;
 }
@@ -170,11 +172,11 @@ std::vector<Note> unused_frames(const std::vector<bool>& is_used) {
   const auto unused = std::count(is_used.begin(), is_used.end(), false);
   if (unused == 0) return {};
   const auto after = std::find(is_used.rbegin(), is_used.rend(), true) - is_used.rbegin();
-  const std::string reason = unused == after ? "the run ends before"
-                             : after == 0    ? "newer ones replaced them, or they were lost"
-                                             : "the run ends before " + std::to_string(after) +
-                                                " of them, newer ones replaced "
-                                                "the others, or these were lost";
+  const std::string reason = unused == after ? "the run ended before them"
+                             : after == 0    ? "newer frames replaced them, or they were lost"
+                                             : "the run ended before " + std::to_string(after) +
+                                                " of them; newer frames replaced "
+                                                "the others, or they were lost";
   return {{"frames unused", std::to_string(unused) + " of " + std::to_string(is_used.size()) +
                                 " frames were not used: " + reason}};
 }

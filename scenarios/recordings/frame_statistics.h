@@ -46,10 +46,10 @@ class FrameStatistics {
   std::size_t coloured_frames_ = 0, colourless_frames_ = 0, first_colourless_ = 0;
   std::size_t last_ = 0;              // the frame that was read last, if there is one
   std::vector<std::uint64_t> cells_;  // cells that its points occupy, sorted
-  // Pairs of successive frames with too little overlap: their number, the later frame of the pair that was
-  // found first, and the smallest overlap of all pairs.
+  // Pairs of successive frames with too little overlap: their number, and the later frame and the overlap of
+  // the pair that is first in the recording.
   std::size_t apart_ = 0, first_apart_ = 0;
-  double least_overlap_ = 1;
+  double overlap_of_first_ = 1;
 };
 
 // Returns the note "frames unused", with the reason, if a frame was not used. is_used has one element for

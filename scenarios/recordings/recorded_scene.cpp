@@ -22,7 +22,7 @@ Parameters parameters(RecordedScene::Settings& s) {
        "recording folder, TUM folder, folder of PCD files, one PCD file, or a bag of ROS: .bag, .mcap, .db3, "
        "or the folder of a bag; coordinates up to 1000 m from the origin along each axis"},
       {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
-      {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
+      {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last frame of the recording"},
       {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0,
        "after the last frame: hold it, loop from the first, or ping_pong back and forth"},
       {"frame_rate_hz", &s.frame_rate_hz, 0, kMaxFrameRate_hz,
@@ -46,8 +46,8 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"frame_id", &s.bag.frame_id, 0, 0,
        "of a bag: the coordinate frame, of tf_static, in which the points are; empty: that of the messages"},
       {"depth_unit_m", &s.bag.depth_unit_m, 0, 1,
-       "of a bag: metres in a unit of depth images; 0: 0.001 of integers (16UC1), or what a RealSense recorded, and 1 "
-       "of floats (32FC1)"},
+       "of a bag: metres per unit of depth images; 0: 1 for floats (32FC1), and for integers (16UC1) the unit "
+       "that a RealSense recorded, or else 0.001"},
   };
 }
 

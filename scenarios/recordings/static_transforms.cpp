@@ -3,20 +3,18 @@
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
-namespace {
 
-// Removes the leading / that older programs write.
-std::string plain(const std::string& frame) {
+std::string plain_frame(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
 
-}  // namespace
-
-void StaticTransforms::add(const std::vector<StampedTransform>& transforms) {
+void StaticTransforms::add(const std::vector<StampedTransform>& transforms, const std::string& subject) {
   constexpr std::size_t kMaxFrames = 10000;
   for (const StampedTransform& transform : transforms) {
-    if (parent_of_.size() == kMaxFrames) return;
-    parent_of_[plain(transform.child)] = {plain(transform.parent), transform.X};
+    parent_of_[plain_frame(transform.child)] = {plain_frame(transform.parent), transform.X};
+    if (parent_of_.size() > kMaxFrames)
+      throw InputError(subject,
+                       "has too many coordinate frames: expected at most " + std::to_string(kMaxFrames));
   }
 }
 
@@ -36,10 +34,10 @@ RigidTransform StaticTransforms::to_root(std::string frame, std::string& root,
 
 RigidTransform StaticTransforms::between(const std::string& to, const std::string& from,
                                          const std::string& subject) const {
-  if (plain(to) == plain(from)) return RigidTransform::Identity();
+  if (plain_frame(to) == plain_frame(from)) return RigidTransform::Identity();
   std::string root_of_to, root_of_from;
-  const RigidTransform X_root_to = to_root(plain(to), root_of_to, subject);
-  const RigidTransform X_root_from = to_root(plain(from), root_of_from, subject);
+  const RigidTransform X_root_to = to_root(plain_frame(to), root_of_to, subject);
+  const RigidTransform X_root_from = to_root(plain_frame(from), root_of_from, subject);
   if (root_of_to == root_of_from) return X_root_to.inverse() * X_root_from;
   std::string known;
   for (const auto& [child, parent] : parent_of_) {

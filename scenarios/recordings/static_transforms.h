@@ -10,11 +10,14 @@
 
 namespace remote_touch {
 
+// Removes the leading / that older programs write in front of the name of a frame.
+std::string plain_frame(const std::string& frame);
+
 class StaticTransforms {
  public:
-  // A frame that is added again gets its new parent and transform. Once there are 10000 frames, all further
-  // transforms are ignored.
-  void add(const std::vector<StampedTransform>& transforms);
+  // A frame that is added again gets its new parent and transform. Throws InputError about the subject for
+  // more than 10000 frames.
+  void add(const std::vector<StampedTransform>& transforms, const std::string& subject = "tf_static");
   // p_to = X * p_from. Throws InputError about the subject when the two are not connected, or a frame is its
   // own ancestor.
   RigidTransform between(const std::string& to, const std::string& from, const std::string& subject) const;

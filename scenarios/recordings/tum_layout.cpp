@@ -51,7 +51,7 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
     if (!std::filesystem::is_regular_file(file)) throw InputError(where, "no file " + file.string());
   }
   if (files.empty()) {
-    throw InputError(list.string(), "lists no file: needed are lines 'timestamp filename'");
+    throw InputError(list.string(), "lists no file: expected lines 'timestamp filename'");
   }
   return files;
 }

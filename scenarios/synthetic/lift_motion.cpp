@@ -20,14 +20,14 @@ Parameters parameters(LiftMotion::Settings& s) {
   return {
       {"wait_s", &s.wait_s, 0, 10000, "time at rest before the rise"},
       {"start_depth_m", &s.start_depth_m, -10, 10,
-       "the first frame lies this far below y = 0; above it where negative"},
+       "depth of the first frame below y = 0; negative: above y = 0"},
       {"start_velocity_m_per_s", &s.start_velocity_m_per_s, -10, 10,
        "velocity of the rise, v_0 of (4.20); the cloud recedes where negative"},
       {"rise_s", &s.rise_s, 0, 10000, "time at constant velocity before the acceleration"},
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, -1000, 1000, "acceleration a after the rise"},
       {"acceleration_s", &s.acceleration_s, 0, 100, "time with acceleration; the lift then rests"},
       {"update_rate_hz", &s.update_rate_hz, 1e-3, 10000,
-       "the motion passes through the heights of 4.3.2, so many per second; it does not depend on frame_rate_hz"},
+       "number of heights of 4.3.2 per second through which the motion passes; independent of frame_rate_hz"},
       {"between_updates", choice(s.between_updates, {"parabola", "line"}), 0, 0,
        "motion from one of these heights to the next; parabola: with the acceleration a; line: at constant velocity"},
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace remote_touch {
 
@@ -34,7 +35,9 @@ MovingPlane::MovingPlane(const Settings& settings, const NoiseKey& key, const Ke
   // The root of v t + a t^2 / 2 = rise, without cancellation and for a = 0 too.
   const double v = settings.speed_m_per_s, a = settings.acceleration_m_per_s2;
   rising_s_ = 2 * settings.rise_height_m / (v + std::sqrt(v * v + 2 * a * settings.rise_height_m));
-  frame_count_ += static_cast<int>(std::ceil((settings.wait_s + rising_s_) * settings.frame_rate_hz - 1e-6));
+  constexpr double kMaxFrames = std::numeric_limits<int>::max() - 1;
+  const double moving_frames = std::ceil((settings.wait_s + rising_s_) * settings.frame_rate_hz - 1e-6);
+  frame_count_ += static_cast<int>(std::min(moving_frames, kMaxFrames));
 }
 
 double MovingPlane::height(double time_s) const {

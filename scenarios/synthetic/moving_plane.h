@@ -25,7 +25,8 @@ class MovingPlane final : public Scenario {
   MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  // Number of frames up to and including the first one in which the plane has come to rest for good.
+  // Number of frames up to and including the first one in which the plane has come to rest for good, limited
+  // to the largest int.
   int frame_count() const override { return frame_count_; }
   std::vector<Phase> phases() const override {
     if (settings_.rise_height_m == 0) return {};

@@ -6,8 +6,9 @@ Parameters parameters(Sheet::Settings& s) {
   return {
       {"centre_m", &s.centre_m, -100, 100, "middle of the sheet"},
       {"normal", &s.normal, -1, 1, "towards the side that the sensor sees; any length"},
-      {"width_m", &s.width_m, 1e-3, 10, "along the horizontal direction of the sheet; x where it lies flat"},
-      {"height_m", &s.height_m, 1e-3, 10, "along the other"},
+      {"width_m", &s.width_m, 1e-3, 10,
+       "size along the horizontal direction of the sheet; x where it lies flat"},
+      {"height_m", &s.height_m, 1e-3, 10, "size along the other direction of the sheet"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
   };
 }

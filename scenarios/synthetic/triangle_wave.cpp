@@ -18,6 +18,11 @@ Parameters parameters(TriangleWave::Settings& s) {
   return list;
 }
 
+// A grid of one column has no length along x, so its wave has no flank.
+std::string validate(const TriangleWave::Settings& s) {
+  return s.grid.columns >= 2 ? "" : "columns = 1: expected 2 or more, because the wave runs along x";
+}
+
 TriangleWave::TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings), key_(key), kernels_(kernels) {}
 

@@ -38,8 +38,6 @@ class TriangleWave final : public Scenario {
 };
 
 Parameters parameters(TriangleWave::Settings& s);
-inline std::string validate(const TriangleWave::Settings&) {
-  return {};
-}
+std::string validate(const TriangleWave::Settings& s);
 
 }  // namespace remote_touch

@@ -30,7 +30,7 @@ std::string validate(const Wedge::Settings& s) {
   const double times[] = {s.close_start_s, s.close_end_s, s.open_start_s, s.open_end_s};
   return std::is_sorted(std::begin(times), std::end(times))
              ? ""
-             : "close_start_s, close_end_s, open_start_s, open_end_s: expected only in this order";
+             : "close_start_s, close_end_s, open_start_s, open_end_s: expected in ascending order";
 }
 
 Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)

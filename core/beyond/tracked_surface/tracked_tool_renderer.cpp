@@ -21,10 +21,10 @@ Parameters parameters(TrackedToolParameters& p) {
   list.insert(list.end(), more.begin(), more.end());
   list.push_back(
       {"sheet_unit_m", &p.sheet_unit_m, 1e-3, 0.05,
-       "unit of length of the sheets, as the contact radius is for tracked-sheet: a patch has a radius of 8"});
+       "unit of length of the sheets, like the contact radius in tracked-sheet; a patch has a radius of 8 units"});
   list.push_back(
       {"max_patches", &p.max_patches, 1, 16,
-       "maximum number of patches of sheet around the tool: for its parts, and for other surfaces in contact"});
+       "maximum number of sheet patches: one for each part of the tool, the others for further surfaces in contact"});
   return list;
 }
 

@@ -27,12 +27,12 @@ Parameters parameters(DepthPipelineSettings& s) {
        "r_w of 6.2.1: neighbours at this distance or more have weight 0 (4.2) in a normal"},
       {"normal_step", &s.normal_step, 1, 7,
        "a normal, 6.2.1, uses only every normal_step-th column and row of its window, from the centre; "
-       "divides half of normal_window - 1"},
+       "must divide (normal_window - 1) / 2"},
       {"normal_fit", choice(s.normal_fit, {"total-least-squares", "inverse-depth"}), 0, 0,
        "fit of a normal, 6.2.1; inverse-depth is faster and has weights (1 - q^2)^2 in place of (4.2)"},
       {"sharp_edges", &s.sharp_edges, 0, 1,
-       "a pixel whose window, 6.2.1, reaches over an edge takes the normal of a window beside it that fits the pixel "
-       "clearly better; needs normal_fit = inverse-depth"},
+       "true: a pixel near an edge may use the normal of a neighbouring window that fits it clearly better, 6.2.1; "
+       "needs normal_fit = inverse-depth"},
   };
 }
 
@@ -44,7 +44,7 @@ std::string validate(const DepthPipelineSettings& s) {
     return "sharp_edges = true: expected normal_fit = inverse-depth";
   if (s.normal_window / 2 % s.normal_step == 0) return {};
   return "normal_step = " + std::to_string(s.normal_step) + ": expected a divisor of " +
-         std::to_string(s.normal_window / 2) + ", half of normal_window - 1";
+         std::to_string(s.normal_window / 2) + " = (normal_window - 1) / 2";
 }
 
 DepthProcessor::DepthProcessor(const DepthPipelineSettings& settings) : settings_(settings) {
@@ -55,7 +55,7 @@ DepthProcessor::DepthProcessor(const DepthPipelineSettings& settings) : settings
 void check_sizes(const DepthImage& depth, const CameraIntrinsics& camera) {
   const std::size_t pixels = static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
   if (depth.width != camera.width || depth.height != camera.height || depth.z_m.size() != pixels)
-    throw std::invalid_argument("DepthProcessor: the depth image is not of the camera's size");
+    throw std::invalid_argument("DepthProcessor: the depth image does not have the camera's size");
 }
 
 void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const RigidTransform& X_WC) {
@@ -88,7 +88,7 @@ DepthFrame DepthProcessor::frame_of(const PointCloud& cloud) {
   const ImageLayout& image = *cloud.image;
   const DepthFrame size{nullptr, image.camera, image.X_WC};
   if (cloud.size() != size.pixels())
-    throw std::invalid_argument("DepthProcessor: the cloud is not of the camera's size");
+    throw std::invalid_argument("DepthProcessor: the cloud does not have the camera's size");
   const RigidTransform X_CW = image.X_WC.inverse();
   depth_m_.resize(cloud.size());
   const auto count = static_cast<std::ptrdiff_t>(cloud.size());

@@ -10,7 +10,7 @@ Parameters parameters(SequenceStep& s) {
   return {
       {"action", choice(s.action, {"lock", "unlock", "activate", "release", "wait"}), 0, 0,
        "lock: enable a forbidden region; unlock: disable it; activate: start a guidance fixture and stop any other; release: stop it; wait: do nothing"},
-      {"fixture", &s.fixture, 0, 0, "label of the fixture that the action is about"},
+      {"fixture", &s.fixture, 0, 0, "label of the fixture on which the step acts"},
       {"start", choice(s.start, {"previous", "button"}), 0, 0,
        "previous: start when the previous step has ended; button: then wait for the button"},
       {"not_before_s", &s.not_before_s, 0, 86400, "earliest start time"},
@@ -35,7 +35,7 @@ std::string validate(const SequenceStep& s) {
   if (!needs_fixture && !s.fixture.empty())
     return "fixture = \"" + s.fixture + "\": expected none for wait, unless done = reached";
   if (s.action != FixtureAction::activate && !s.offset_m.isZero(0))
-    return "offset_m: expected other than 0 for action = activate only";
+    return "offset_m: expected 0 unless action = activate";
   if (s.done == StepEnd::immediately && s.deadline_s > 0)
     return "deadline_s = " + std::to_string(s.deadline_s) + ": expected 0 for done = immediately";
   const bool guided = s.action == FixtureAction::activate || s.action == FixtureAction::wait;

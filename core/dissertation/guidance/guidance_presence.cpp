@@ -6,8 +6,11 @@
 namespace remote_touch {
 
 void GuidancePresence::on_frame(const GuidanceTarget& target, double arrives_s) {
-  const bool was_seen = std::exchange(is_seen_, target.points >= min_points_);
-  if (is_seen_)
+  const bool is_off = target.strength == 0;
+  const bool was_seen = std::exchange(is_seen_, !is_off && target.points >= min_points_);
+  if (is_off)
+    seen_ = {};
+  else if (is_seen_)
     seen_ = target;
   else if (was_seen)
     lost_s_ = arrives_s;

@@ -17,10 +17,10 @@ class GuidancePresence {
       : min_points_(min_points), hold_s_(hold_s), fade_s_(fade_s) {}
 
   // Adds the target of the newest frame, which arrives at arrives_s. A target of fewer than min_points points
-  // counts as lost.
+  // counts as lost. A target of strength 0 is switched off by its rule: it and the last target are not used.
   void on_frame(const GuidanceTarget& target, double arrives_s);
   // Returns the newest target with min_points points or more, as long as it is visible and for hold_s after
-  // it was lost; null after that, and before there was one.
+  // it was lost; null after that, before there was one, and when it is switched off.
   const GuidanceTarget* target(double time_s) const;
   // Returns the factor of the force, 0 to 1. Call it once a tick. wanted: the fixture is active and has a
   // target.

@@ -35,7 +35,8 @@ Parameters parameters(GuidanceSettings& s) {
       {"min_points", &s.min_points, 1, 1000000,
        "minimum number of points of a target; with fewer, the target is lost"},
       {"hold_s", &s.hold_s, 0, 10,
-       "how long guidance continues towards the last target after a frame in which it is lost; 0: the guidance force ends with that frame"},
+       "time for which guidance uses the last target after it was lost; 0: the guidance force ends with the frame in "
+       "which it is lost"},
       {"fade_s", &s.fade_s, 0, 10,
        "time over which the guidance force rises when it begins, and falls when it ends; 0: in one tick"},
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
@@ -50,7 +51,7 @@ Parameters parameters(GuidanceSettings& s) {
 }
 
 std::string validate(const GuidanceSettings& s) {
-  if (s.approach_axis.norm() < 1e-3) return "approach_axis: expected 0.001 or longer";
+  if (s.approach_axis.norm() < 1e-3) return "approach_axis: expected a vector of length 0.001 or more";
   return {};
 }
 

@@ -48,7 +48,7 @@ bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& 
 std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
   if (!steps.empty() && fixtures.size() > FixtureSwitches::kMaxCount)
     return "fixtures: " + std::to_string(fixtures.size()) + " rules: expected " +
-           std::to_string(FixtureSwitches::kMaxCount) + " with a sequence";
+           std::to_string(FixtureSwitches::kMaxCount) + " or fewer with a sequence";
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
@@ -185,8 +185,10 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
 }
 
 // Adds the guidance wrench to the output. While there is no valid device pose, no fixture pulls and the level
-// of the force falls. When the device is valid again, the level rises from there.
+// of the force falls. When the device is valid again, the level rises from there. The goal in the output is
+// that of the active fixture, or of a fixture whose force falls if none is active.
 void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
+  bool has_active_goal = false;
   for (Guide& guide : guides_) {
     const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;
     if (there) guide.goal = *there, guide.strength = guide.presence.target(time_s)->strength;
@@ -194,7 +196,9 @@ void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, 
     if (level == 0 || !device) continue;
     const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, guide.goal, *device);
     out.guidance->active = true;
-    out.guidance->goal_W = guide.goal.p_W, out.guidance->goal_orientation_W = guide.goal.q_WT;
+    if (there || !has_active_goal)
+      out.guidance->goal_W = guide.goal.p_W, out.guidance->goal_orientation_W = guide.goal.q_WT;
+    has_active_goal = has_active_goal || there.has_value();
     out.guidance->force_N += level * guide.strength * wrench.force_N;
     if (out.tool) out.guidance->torque_Nm += level * guide.strength * wrench.torque_Nm;
   }

@@ -124,7 +124,7 @@ bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_
 }
 
 // Uses the dual method: the most violated region is added to the barriers until no region is violated.
-Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2) {
+std::optional<Vec3> admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2) {
   const double slack = kRounding * u.norm();
   const Projection projection(u, slack);
   Barriers barriers;
@@ -135,7 +135,7 @@ Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u,
     s = projection.onto(barriers);
     if (s.isZero(0)) return s;  // held from all sides
   }
-  return Vec3::Zero();
+  return std::nullopt;
 }
 
 }  // namespace remote_touch

@@ -27,7 +27,8 @@ Parameters parameters(ProxyParameters& p) {
       {"max_prediction_s", &p.max_prediction_s, 0, 10,
        "maximum time after a frame for which (4.3) and (4.15) extrapolate its motion; at least one frame interval"},
       {"growth_is_motion", &p.growth_is_motion, 0, 1,
-       "true: a region that grows under the proxy is a surface that moves, for (4.13), as printed; false: the change of r_f between two frames does not count in the velocity estimate"},
+       "true: the growth of a region under the proxy counts as motion in (4.13), as printed; false: the change of r_f "
+       "between two frames does not count"},
       {"step_rule", choice(p.step_rule, {"variable", "fixed"}), 0, 0,
        "variable: step lengths of 4.2.4; fixed: small steps of one length as in the predecessor [1]"},
       {"fixed_step_m", &p.fixed_step_m, 1e-7, 0.01, "step length of step_rule = fixed"},

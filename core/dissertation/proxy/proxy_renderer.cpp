@@ -210,7 +210,7 @@ Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
       break;
   }
   if (!takes_regions(here)) return contact_step(normal_W_, u, p_);
-  const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m);
+  const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m).value_or(Vec3::Zero());
   return region_step(near_, proxy_W_, goal, u, p_);
 }
 

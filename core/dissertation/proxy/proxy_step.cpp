@@ -116,8 +116,8 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
   return step * (path_length / length);
 }
 
-bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p) {
-  return goal.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
+bool has_converged(const std::optional<Vec3>& goal, const Vec3& u, const ProxyParameters& p) {
+  return goal && goal->squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
 }
 
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {

@@ -1,6 +1,8 @@
 // One step of the proxy movement algorithm, 4.2.3 and 4.2.4 (chapter 5: the same with r_n and r_f).
 #pragma once
 
+#include <optional>
+
 #include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
@@ -40,7 +42,7 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
 // normal is below theta, (4.8). A free proxy has converged if P is the HIP. An entrenched proxy has not.
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p);
 // Returns the same for a goal from admissible_motion(): true if the angle between -u and the cone of the
-// touching regions' normals is below theta.
-bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p);
+// touching regions' normals is below theta. False if no goal was found.
+bool has_converged(const std::optional<Vec3>& goal, const Vec3& u, const ProxyParameters& p);
 
 }  // namespace remote_touch

@@ -37,10 +37,11 @@ double exit_along(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W, 
     return classify(nearest_m, p) != ContactState::entrenched;
   };
   double done_m = 0;
-  for (int exits = 0; exits < kMaxExits && done_m < max_m; ++exits) {
+  for (int exits = 0; done_m < max_m; ++exits) {
     const Vec3 q_W = p_W + done_m * direction;
     const PointsView points = near.around(q_W).view();
     if (outside(points, q_W)) return done_m;
+    if (exits == kMaxExits) break;
     done_m += kernels.proxy.exit_distance(points, q_W.data(), direction.data(), p.contact_radius_m(), p.r1_m);
   }
   return std::numeric_limits<double>::infinity();

@@ -96,7 +96,7 @@ RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
     out.tool->torque_Nm = wrench.torque_Nm;
   }
   out.proxy_W = pose_.p_W;
-  out.slave_W = slave_.command_W(pose_, target);
+  if (placed_) out.slave_W = slave_.command_W(pose_, target);
   out.tool->orientation_W = pose_.q_WT;
   out.normal_W = normal_W_;
   out.state = state_of(touch.nearest_distance_m);

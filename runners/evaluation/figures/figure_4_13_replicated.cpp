@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/isotonic_regression.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/figures.h"
@@ -42,7 +43,8 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
   return table;
 }
 
-// Returns the contour in the second implementation, and its distance from ours in standard errors.
+// Returns the contour in the second implementation, and its distance from ours in standard errors; NaN at a
+// noise strength that our map lacks, as a thinned one does.
 Table second_table(const Table& contour) {
   const auto column = [](const char* name) { return second_column("chapter_4", "/map/contour/rows", name); };
   const std::vector<double> noise = column("noise"), second = column("acceleration"),
@@ -50,9 +52,9 @@ Table second_table(const Table& contour) {
                             &ours = numbers(contour, "noise");
   std::vector<double> acceleration, apart;
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    const auto at = std::lower_bound(ours.begin(), ours.end(), noise[i] - 1e-9) - ours.begin();
-    const auto last = static_cast<std::ptrdiff_t>(ours.size()) - 1;  // a coarse map has fewer rows
-    acceleration.push_back(numbers(contour, "acceleration").at(static_cast<std::size_t>(std::min(at, last))));
+    const auto same = [&](double strength) { return std::abs(strength - noise[i]) < 1e-9; };
+    const auto at = static_cast<std::size_t>(std::find_if(ours.begin(), ours.end(), same) - ours.begin());
+    acceleration.push_back(at < ours.size() ? numbers(contour, "acceleration")[at] : kNoValue);
     apart.push_back((acceleration.back() - second[i]) / std::hypot(error[i], our_error[i]));
   }
   Table table{"contour_second", "the contour by the second implementation, six noise strengths"};

@@ -7,6 +7,7 @@
 
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/measures.h"
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/figures.h"
@@ -59,8 +60,9 @@ void add_seed(Lifts& lifts, const SweepResult& result, const Table& map) {
 // --- noise under a sliding proxy ---
 
 struct Slide {
-  double mean = 0, sd = 0, jump_N = 0;  // mean and sd of the height above r_c, in r_c; rms jump
-  double lateral = 0, lateral_95 = 0;   // ratio to the normal force: mean and 95th percentile
+  // Mean and sd of the height above r_c, in r_c; rms jump, NaN without an update between two forces.
+  double mean = 0, sd = 0, jump_N = 0;
+  double lateral = 0, lateral_95 = 0;  // ratio to the normal force: mean and 95th percentile
 };
 
 constexpr double kSettled_s = 0.5;
@@ -86,7 +88,8 @@ Slide slide_of(const Trace& trace) {
   const double mean_height = sum / n;
   const Trace judged = with_true_normals(trace);
   return {mean_height, std::sqrt(std::max(0.0, squares / n - mean_height * mean_height)),
-          updates > 0 ? std::sqrt(jumps / updates) : 0, mean_lateral_force(judged), lateral_force_95(judged)};
+          updates > 0 ? std::sqrt(jumps / updates) : kNoValue, mean_lateral_force(judged),
+          lateral_force_95(judged)};
 }
 
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
@@ -129,17 +132,15 @@ Table slide_table(const std::string& name, const std::vector<Slide>& slides) {
 
 double max_ratio(const std::vector<Slide>& ours, const std::vector<Slide>& paper, double from, double to,
                  double Slide::*what) {
-  double max = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    if (kSlideNoise[i] >= from && kSlideNoise[i] <= to)
-      max = max_or_nan(max, std::abs(ours[i].*what) / std::abs(paper[i].*what));
-  return max;
+  return max_where(
+      ours.size(), [&](std::size_t i) { return kSlideNoise[i] >= from && kSlideNoise[i] <= to; },
+      [&](std::size_t i) { return std::abs(ours[i].*what) / std::abs(paper[i].*what); });
 }
 
 double max_height(const std::vector<Slide>& slides) {
-  double max = 0;
-  for (const Slide& s : slides) max = max_or_nan(max, std::abs(s.mean));
-  return max;
+  std::vector<double> heights;
+  for (const Slide& s : slides) heights.push_back(std::abs(s.mean));
+  return max_of(heights);
 }
 
 const Slide& at_noise(const std::vector<Slide>& slides, double sigma) {
@@ -257,8 +258,8 @@ Figure figure_4_13_tracked(const FigureContext& context) {
       "Pop-through map of the tracked sheet",
       "The lifts of Fig 4.13 under the proxy of chapter 4 and under the tracked sheet, the same noise. A "
       "filled square is a lift that did not pop through. Parameters were fixed with seeds 1 to 40; shown is "
-      "seed 101, the claims are the least of 101, 102 and 103. Below: what noise does to a proxy that slides "
-      "on a flat cloud.",
+      "seed 101, the claims state the smallest value of the seeds 101, 102 and 103. Below: what noise does to "
+      "a proxy that slides on a flat cloud.",
       {map, survivors("survived", map), region_table("regions", map), paper_map,
        survivors("survived_paper", paper_map), bound_table(), slide_table("slide_tracked", ours),
        slide_table("slide_paper", paper)}};

@@ -33,26 +33,22 @@ double entrenched_ticks(const Trace& trace) {
                                         static_cast<std::int32_t>(ContactState::entrenched)));
 }
 
-// Returns the largest distance between proxy and HIP over the ticks in which the HIP is outside the region.
+// Returns the largest distance between proxy and HIP over the ticks in which the HIP is outside the region;
+// NaN if it never is.
 double max_gap_outside(const Trace& trace) {
-  double max = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (trace.hip_position_m[i].norm() > kBoundary_m)
-      max = max_or_nan(max, (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm());
-  return max;
+  return max_where(
+      trace.length(), [&](std::size_t i) { return trace.hip_position_m[i].norm() > kBoundary_m; },
+      [&](std::size_t i) { return (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm(); });
 }
 
 // Returns the largest difference between the force and k_s times the depth of the HIP in the region, over the
-// ticks in which the HIP is inside. The depth is the distance from the HIP to the contact point of a proxy
-// that rests where the region is nearest to the HIP.
+// ticks in which the HIP is inside; NaN if it never is. The depth is the distance from the HIP to the contact
+// point of a proxy that rests where the region is nearest to the HIP.
 double max_force_error(const Trace& trace) {
-  double max = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double depth = kFixtureRadius_m - trace.hip_position_m[i].norm();
-    if (depth <= 0) continue;
-    max = max_or_nan(max, std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth));
-  }
-  return max;
+  const auto depth_m = [&](std::size_t i) { return kFixtureRadius_m - trace.hip_position_m[i].norm(); };
+  return max_where(
+      trace.length(), [&](std::size_t i) { return !(depth_m(i) <= 0); },
+      [&](std::size_t i) { return std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth_m(i)); });
 }
 
 }  // namespace

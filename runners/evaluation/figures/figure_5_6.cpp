@@ -109,21 +109,20 @@ Table stiffness_table(const Crossing& c) {
   for (const double x : c.contact_x) assigned.push_back(assigned_N_per_m(x));
   table.add("contact_x", "m", "contact point along the plane", c.contact_x);
   table.add("felt", "N/m", "force over the stretch of the virtual coupling", c.stiffness);
-  table.add("assigned", "N/m", "of a point under the contact point", assigned);
+  table.add("assigned", "N/m", "stiffness of a point under the contact point", assigned);
   return table;
 }
 
 // Returns the largest relative error of the felt stiffness, over contact points that are farther from the
-// ends of the ramp and from the step than a ball of r_3 reaches.
+// ends of the ramp and from the step than a ball of r_3 reaches; NaN if there are none.
 double max_stiffness_error(const Crossing& c) {
-  double max = 0;
-  for (std::size_t i = 0; i < c.contact_x.size(); ++i) {
-    const double x = c.contact_x[i];
-    const auto far_from = [&](double place) { return std::abs(x - place) > 0.01; };
-    if (far_from(-0.03) && far_from(0) && far_from(0.02))
-      max = max_or_nan(max, std::abs(c.stiffness[i] / assigned_N_per_m(x) - 1));
-  }
-  return max;
+  const auto is_far = [&](std::size_t i) {
+    const auto far_from = [&](double place) { return std::abs(c.contact_x[i] - place) > 0.01; };
+    return far_from(-0.03) && far_from(0) && far_from(0.02);
+  };
+  return max_where(c.contact_x.size(), is_far, [&](std::size_t i) {
+    return std::abs(c.stiffness[i] / assigned_N_per_m(c.contact_x[i]) - 1);
+  });
 }
 
 // Both implementations make the same steps in double precision, so only rounding differs. A condition on the

@@ -55,18 +55,20 @@ struct Deviation {
 // Deviation over the ticks in touch for which counts() is true.
 template <class Of, class Counts>
 Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
-  double squares = 0, max = 0, count = 0;
+  double squares = 0;
+  std::vector<double> sizes;
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     if (!counts(i)) return;
     const double error = of(run, i);
-    squares += error * error, max = max_or_nan(max, std::abs(error)), ++count;
+    squares += error * error, sizes.push_back(std::abs(error));
   });
-  return {std::sqrt(squares / count), max};  // NaN if no tick counts; a claim on it fails
+  // Both are NaN if no tick counts; a claim on one of them fails.
+  return {std::sqrt(squares / static_cast<double>(sizes.size())), max_of(sizes)};
 }
 
 struct Summary {
   Deviation seen, at_update, moving;
-  double min_beyond_fixture_m = kEnd_s, min_slave_beyond_fixture_m = kEnd_s;
+  double min_beyond_fixture_m = 0, min_slave_beyond_fixture_m = 0;
   double touching_m = 0, held_m = 0, growth_m_per_s = 0;  // mean distances and slope of the phases
   double max_speed_m_per_s = 0;                           // speed of the surface at the proxy
 };
@@ -92,13 +94,13 @@ double surface_height_m(const FixtureRun& run, std::size_t i, double time_s) {
 
 double max_speed_m_per_s(const FixtureRun& run) {
   constexpr double kApart_s = 1e-3;
-  double max = 0;
+  std::vector<double> speeds_m_per_s;
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     const double time_s = run.trace.time_s[i];
     const double rise = surface_height_m(run, i, time_s + kApart_s) - surface_height_m(run, i, time_s);
-    max = max_or_nan(max, std::abs(rise) / kApart_s);
+    speeds_m_per_s.push_back(std::abs(rise) / kApart_s);
   });
-  return max;
+  return max_of(speeds_m_per_s);
 }
 
 Summary summary(const FixtureRun& run) {
@@ -107,12 +109,12 @@ Summary summary(const FixtureRun& run) {
   s.seen = deviation(run, from_seen_m, always);
   s.at_update = deviation(run, from_moving_m, [&](std::size_t i) { return run.trace.frame_update(i); });
   s.moving = deviation(run, from_moving_m, always);
+  std::vector<double> proxy_m, slave_m;  // distances beyond the fixture
   for (std::size_t i = 0; i < run.trace.length(); ++i) {
-    s.min_beyond_fixture_m =
-        min_or_nan(s.min_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
-    s.min_slave_beyond_fixture_m =
-        min_or_nan(s.min_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
+    proxy_m.push_back(run.trace.signed_distance_m[i] - run.radius_m[i]);
+    slave_m.push_back(run.trace.slave_distance_m[i] - run.radius_m[i]);
   }
+  s.min_beyond_fixture_m = min_of(proxy_m), s.min_slave_beyond_fixture_m = min_of(slave_m);
   s.touching_m = mean_distance_m(run, kInTouch_s, kGrows_s);
   s.held_m = mean_distance_m(run, kGrown_s + kSteady_s, kEnd_s);
   s.growth_m_per_s = growth_m_per_s(run);

@@ -75,10 +75,10 @@ double hidden_fraction(const RecordedRun& r) {
 }
 
 double min_beyond_fixture_m(const RecordedRun& r) {
-  double min = std::numeric_limits<double>::infinity();
+  std::vector<double> beyond_m;
   for (const FrameOutcome& frame : r.frames)
-    min = min_or_nan(min, frame.nearest_distance_m - r.run.radius_m[frame.tick]);
-  return min;
+    beyond_m.push_back(frame.nearest_distance_m - r.run.radius_m[frame.tick]);
+  return min_of(beyond_m);
 }
 
 double mean_deviation_m(const RecordedRun& r) {
@@ -90,15 +90,16 @@ double mean_deviation_m(const RecordedRun& r) {
 }
 
 double min_motion_m(const RecordedRun& r) {
-  double min = r.pops.empty() ? kUnknown : std::numeric_limits<double>::infinity();
-  for (const PopThrough& pop : r.pops) min = min_or_nan(min, pop.surface_motion_m);
-  return min;
+  std::vector<double> motions_m;
+  for (const PopThrough& pop : r.pops) motions_m.push_back(pop.surface_motion_m);
+  return min_of(motions_m);
 }
 
-double max_m(const RecordedRun& r, double FrameOutcome::*of) {
-  double max = 0;
-  for (const FrameOutcome& frame : r.frames) max = max_or_nan(max, std::abs(frame.*of));
-  return max;
+// Returns the largest motion in a frame that has a frame before it.
+double max_motion_m(const RecordedRun& r, double FrameOutcome::*of) {
+  return max_where(
+      r.frames.size(), [&](std::size_t i) { return r.run.trace.frame_index[r.frames[i].tick] > 0; },
+      [&](std::size_t i) { return std::abs(r.frames[i].*of); });
 }
 
 Table violation_table(const std::vector<RecordedRun>& runs) {
@@ -128,9 +129,10 @@ Table violation_table(const std::vector<RecordedRun>& runs) {
   });
   add("smallest distance to a measured point - r_f", "m", min_beyond_fixture_m);
   add("mean of distance - r_f - r_c from 10.1 s on", "m", mean_deviation_m);
-  add("largest camera motion in a frame", "m", [](R r) { return max_m(r, &FrameOutcome::camera_motion_m); });
+  add("largest camera motion in a frame", "m",
+      [](R r) { return max_motion_m(r, &FrameOutcome::camera_motion_m); });
   add("largest surface motion in a frame", "m",
-      [](R r) { return max_m(r, &FrameOutcome::surface_motion_m); });
+      [](R r) { return max_motion_m(r, &FrameOutcome::surface_motion_m); });
   return rows.table("violations", "how often and how far the fixture was violated");
 }
 

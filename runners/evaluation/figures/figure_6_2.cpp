@@ -155,10 +155,10 @@ Table profile_table(const StepMeasurement& wide, const StepMeasurement& narrow) 
 Table count_table(const NormalCount& counted) {
   Table table{"counts", "normals of the whole frame"};
   table.add("points", "1", "measured points", {counted.points});
-  table.add("with_neighbours", "1", "of those, with 10 others within the window and the radius",
+  table.add("with_neighbours", "1", "measured points with 10 others within the window and the radius",
             {counted.with_neighbours});
-  table.add("wrong", "1", "of those, without a unit normal towards the sensor", {counted.wrong});
-  table.add("without_normal", "1", "of all points, without a normal", {counted.without_normal});
+  table.add("wrong", "1", "of these, points without a unit normal towards the sensor", {counted.wrong});
+  table.add("without_normal", "1", "measured points without a normal", {counted.without_normal});
   return table;
 }
 

@@ -142,13 +142,12 @@ std::vector<BoxRun> box_runs(const FigureContext& context) {
   return runs;
 }
 
-// Largest gap between device and tool along y, over the ticks without a point that touches.
+// Largest gap between device and tool along y, over the ticks without a point that touches; NaN if there are
+// none.
 double max_gap_untouched_m(const Trace& t) {
-  double gap = 0;
-  for (std::size_t i = 0; i < t.length(); ++i)
-    if (t.contact_count[i] == 0)
-      gap = max_or_nan(gap, std::abs(t.hip_position_m[i].y() - t.proxy_position_m[i].y()));
-  return gap;
+  return max_where(
+      t.length(), [&](std::size_t i) { return t.contact_count[i] == 0; },
+      [&](std::size_t i) { return std::abs(t.hip_position_m[i].y() - t.proxy_position_m[i].y()); });
 }
 
 // Returns how far before and behind the walls a corner of the tool may stop, in mm, compared with the outline

@@ -2,7 +2,6 @@
 // points and the contact rule.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
@@ -25,13 +24,13 @@ struct Turning {
     return (rule == "voxels" ? "voxels_" : "look_ahead_") + std::to_string(std::lround(1e3 * spacing_m)) +
            "mm";
   }
-  // Returns the minimum and maximum rotation of the tool, over the angles from kBlockedDeg on.
+  // Returns the minimum and maximum rotation of the tool, over the angles from kBlockedDeg on; NaN if there
+  // are none.
   std::pair<double, double> stop_deg() const {
-    double min = std::numeric_limits<double>::infinity(), max = -min;
-    for (std::size_t i = 0; i < commanded_deg.size(); ++i)
-      if (commanded_deg[i] >= kBlockedDeg)
-        min = min_or_nan(min, turned_deg[i]), max = max_or_nan(max, turned_deg[i]);
-    return {min, max};
+    const auto blocked = [this](std::size_t i) { return commanded_deg[i] >= kBlockedDeg; };
+    const auto turned = [this](std::size_t i) { return turned_deg[i]; };
+    return {min_where(commanded_deg.size(), blocked, turned),
+            max_where(commanded_deg.size(), blocked, turned)};
   }
 };
 
@@ -79,22 +78,20 @@ Panel panel(const std::vector<Turning>& runs, const std::string& title, const st
   return made;
 }
 
-// Returns the largest value(run) over the runs of a rule, or over all runs if `rule` is empty.
+// Returns the largest value(run) over the runs of a rule, or over all runs if `rule` is empty; NaN if there
+// are none.
 template <class Value>
 double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Value&& value) {
-  double max = -std::numeric_limits<double>::infinity();
-  for (const Turning& run : runs)
-    if (rule.empty() || run.rule == rule) max = max_or_nan(max, value(run));
-  return max;
+  return max_where(
+      runs.size(), [&](std::size_t i) { return rule.empty() || runs[i].rule == rule; },
+      [&](std::size_t i) { return value(runs[i]); });
 }
 
 std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
   const auto free_lag = [](const Turning& run) {
-    double lag_deg = 0;
-    for (std::size_t i = 0; i < run.commanded_deg.size(); ++i)
-      if (run.commanded_deg[i] <= kFreeDeg)
-        lag_deg = max_or_nan(lag_deg, run.commanded_deg[i] - run.turned_deg[i]);
-    return lag_deg;
+    return max_where(
+        run.commanded_deg.size(), [&](std::size_t i) { return run.commanded_deg[i] <= kFreeDeg; },
+        [&](std::size_t i) { return run.commanded_deg[i] - run.turned_deg[i]; });
   };
   const auto history = [](const Turning& run) { return run.stop_deg().second - run.stop_deg().first; };
   const auto stop = [](const Turning& run) { return run.stop_deg().second; };

@@ -162,12 +162,11 @@ double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& ho
 }
 
 // Returns the largest penetration of the tool over the ticks without a new frame; NaN if one of them has no
-// value.
+// value or there are none.
 double deepest_m(const Trace& trace) {
-  double deepest = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (!trace.frame_update(i)) deepest = max_or_nan(deepest, trace.tool_penetration_m[i]);
-  return deepest;
+  return max_where(
+      trace.length(), [&](std::size_t i) { return !trace.frame_update(i); },
+      [&](std::size_t i) { return trace.tool_penetration_m[i]; });
 }
 
 // Counts the ticks whose log contradicts itself. No tick may make more detections than the budget, and a tick
@@ -184,9 +183,9 @@ double inconsistent_ticks(const TouchRun& run) {
 }
 
 double max_lag_m(const Trace& t) {
-  double max = 0;
-  for (std::size_t i = 0; i < t.length(); ++i) max = std::max(max, lag_m(t, i));
-  return max;
+  std::vector<double> lags_m;
+  for (std::size_t i = 0; i < t.length(); ++i) lags_m.push_back(lag_m(t, i));
+  return max_of(lags_m);
 }
 
 void add_claims(Figure& figure, const TouchRun& run) {

@@ -91,10 +91,9 @@ MaskNumbers measure_mask(const PointCloud& cloud, const std::vector<char>& picke
   }
   const Vec3 mean = mean_of(cloud, picked);
   numbers.mean_shift_m = (mean - mean_of(cloud, inside)).norm();
-  numbers.mean_to_point_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < picked.size(); ++i)
-    if (picked[i])
-      numbers.mean_to_point_m = min_or_nan(numbers.mean_to_point_m, (cloud.point(i) - mean).norm());
+  numbers.mean_to_point_m = min_where(
+      picked.size(), [&](std::size_t i) { return picked[i] != 0; },
+      [&](std::size_t i) { return (cloud.point(i) - mean).norm(); });
   return numbers;
 }
 

@@ -29,13 +29,12 @@ int pushes(const Trace& t) {
   return count;
 }
 
-// Returns the largest force over the ticks in which no leaf is within the look-ahead of a region.
+// Returns the largest force over the ticks in which no leaf is within the look-ahead of a region; NaN if
+// there are none.
 double max_free_force_N(const Trace& t) {
-  double max = 0;
-  for (std::size_t i = 0; i < t.length(); ++i)
-    if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0)
-      max = max_or_nan(max, t.force_N[i].norm());
-  return max;
+  return max_where(
+      t.length(), [&](std::size_t i) { return std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0; },
+      [&](std::size_t i) { return t.force_N[i].norm(); });
 }
 
 double max_torque_Nm(const Trace& t, double from_s, double until_s) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "runners/evaluation/figures/fixture_run.h"
@@ -41,7 +42,7 @@ class RegionFrames {
 };
 
 // Returns the smallest distance of the tool's vertices to the points with a region in the frame in use, over
-// every 20th tick, if the tool touches in it. Infinite if it touches in none of them.
+// every 20th tick, if the tool touches in it. NaN if it touches in none of them.
 double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   RegionFrames frames(task.experiment, kernels);
   const Trace& t = task.trace;
@@ -57,19 +58,17 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
       for (const Vec3& vertex : task.tool->mesh.vertices) min = min_or_nan(min, (vertex - p_T).norm());
     }
   }
-  return min;
+  return std::isinf(min) ? kNoValue : min;
 }
 
-// Returns the largest distance of a goal of guidance from the first one; 0 if guidance is never active.
+// Returns the largest distance of a goal of guidance from the first one; NaN if guidance is never active.
 double goal_wander_m(const Trace& t) {
-  double wander = 0;
-  Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < t.length(); ++i) {
-    if (!t.guidance_active[i]) continue;
-    if (!first.allFinite()) first = t.guidance_goal_m[i];
-    wander = max_or_nan(wander, (t.guidance_goal_m[i] - first).norm());
-  }
-  return wander;
+  std::vector<Vec3> goals;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    if (t.guidance_active[i]) goals.push_back(t.guidance_goal_m[i]);
+  std::vector<double> distances_m;
+  for (const Vec3& goal : goals) distances_m.push_back((goal - goals.front()).norm());
+  return max_of(distances_m);
 }
 
 void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {

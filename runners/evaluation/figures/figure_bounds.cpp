@@ -46,10 +46,10 @@ Table coefficient_table(const std::string& name, const PolynomialFit& fit, const
     error.push_back(std::sqrt(fit.covariance[k * fit.powers.size() + k]));
   }
   Table table{name, "coefficients of the fit"};
-  table.add("power", "1", "of sigma in metres", power);
+  table.add("power", "1", "power of sigma in metres", power);
   table.add("printed", "SI", "as printed", printed.coefficients);
   table.add("refitted", "SI", "refitted", fit.coefficients);
-  table.add("standard_error", "SI", "of the refitted coefficient", error);
+  table.add("standard_error", "SI", "standard error of the refitted coefficient", error);
   return table;
 }
 

@@ -36,19 +36,16 @@ struct Losses {
       differences.push_back(std::abs(lost[i] - lost_at_first_touch(touch, speed_m_per_s[i])));
     return max_of(differences);
   }
-  // The largest fraction lost at the speeds up to a limit (0 if there are none), and the smallest above it (1
-  // if there are none).
+  // The largest fraction lost at the speeds up to a limit, and the smallest above it; NaN if there are none.
   double max_lost_up_to(double limit_m_per_s) const {
-    double max = 0;
-    for (std::size_t i = 0; i < lost.size(); ++i)
-      if (speed_m_per_s[i] <= limit_m_per_s) max = max_or_nan(max, lost[i]);
-    return max;
+    return max_where(
+        lost.size(), [&](std::size_t i) { return speed_m_per_s[i] <= limit_m_per_s; },
+        [&](std::size_t i) { return lost[i]; });
   }
   double min_lost_above(double limit_m_per_s) const {
-    double min = 1;
-    for (std::size_t i = 0; i < lost.size(); ++i)
-      if (speed_m_per_s[i] > limit_m_per_s) min = min_or_nan(min, lost[i]);
-    return min;
+    return min_where(
+        lost.size(), [&](std::size_t i) { return speed_m_per_s[i] > limit_m_per_s; },
+        [&](std::size_t i) { return lost[i]; });
   }
   // Returns the number of speeds at which the formula lies between 0 and 1.
   int undecided_speeds() const {

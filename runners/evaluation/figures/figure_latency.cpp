@@ -2,7 +2,6 @@
 // question and does not measure it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
@@ -18,20 +17,18 @@ constexpr double kSpeed_m_per_s = 0.1, kLatency_s = 0.05;
 constexpr double kSettled_s = 1.5;
 
 // Largest depth of the slave's contact point inside the region of the surface as it is at that moment. The
-// slave is sent to the proxy, or ahead of it, see Measured.
+// slave is sent to the proxy, or ahead of it, see Measured. NaN if there is no such tick.
 struct Violation {
   double max_m = 0;      // maximum of the whole run
   double settled_m = 0;  // maximum from kSettled_s on
 };
 
 Violation violation(const Trace& trace) {
-  double min = std::numeric_limits<double>::infinity(), settled = min;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double distance = trace.slave_distance_m[i];
-    min = min_or_nan(min, distance);
-    if (trace.time_s[i] >= kSettled_s) settled = min_or_nan(settled, distance);
-  }
-  return {kLatencyRadius_m + kContactRadius_m - min, kLatencyRadius_m + kContactRadius_m - settled};
+  const double settled_m = min_where(
+      trace.length(), [&](std::size_t i) { return trace.time_s[i] >= kSettled_s; },
+      [&](std::size_t i) { return trace.slave_distance_m[i]; });
+  return {kLatencyRadius_m + kContactRadius_m - min_of(trace.slave_distance_m),
+          kLatencyRadius_m + kContactRadius_m - settled_m};
 }
 
 // Returns the predicted violation. A frame shows the surface as it was at its capture, latency_s before its
@@ -79,8 +76,8 @@ Table map_table(const Measured& m) {
     predicted.push_back(1e3 * predicted_m(speed[i], latency[i]));
   }
   Table table{"delay_and_speed", "violation of a fixture on a surface that rises evenly"};
-  table.add("latency", "ms", "from capture to arrival", times(latency, 1e3));
-  table.add("speed", "m/s", "of the surface", speed);
+  table.add("latency", "ms", "time from capture to arrival", times(latency, 1e3));
+  table.add("speed", "m/s", "speed of the surface", speed);
   table.add("violation", "mm", "largest depth of the slave in the region", max);
   table.add("predicted", "mm", "speed times (latency + one frame interval)", predicted);
   table.add("with_prediction", "mm", "depth with the slave sent ahead, from 1.5 s on", settled);
@@ -96,8 +93,8 @@ Table tissue_table() {
     latency.push_back(ms);
     speed.push_back(kLatencyRadius_m / (1e-3 * ms + 1 / kFrameRate_hz));
   }
-  table.add("latency", "ms", "from capture to arrival", latency);
-  table.add("speed", "m/s", "of the surface", speed);
+  table.add("latency", "ms", "time from capture to arrival", latency);
+  table.add("speed", "m/s", "speed of the surface", speed);
   return table;
 }
 
@@ -187,14 +184,13 @@ std::vector<Panel> panels() {
   return list;
 }
 
-// Largest error over the cells in which the predicted violation is below the limit.
+// Largest error, at least 0, over the cells in which the predicted violation is below the limit; NaN if there
+// are none.
 template <class Error>
 double max_error(const Table& map, double limit_mm, Error&& error) {
   const auto& predicted = numbers(map, "predicted");
-  double max = 0;
-  for (std::size_t i = 0; i < predicted.size(); ++i)
-    if (predicted[i] < limit_mm) max = max_or_nan(max, error(i));
-  return max;
+  return max_or_nan(0, max_where(
+                           predicted.size(), [&](std::size_t i) { return predicted[i] < limit_mm; }, error));
 }
 
 double fraction_known(const Table& map) {
@@ -206,13 +202,13 @@ double fraction_known(const Table& map) {
 }
 
 // Returns the largest amount by which a mean is below, or a maximum above, the bounds of the jittered runs; 0
-// if none is.
+// if none is, NaN if there are no means.
 double max_outside(const Table& jitter) {
-  double max = 0;
+  std::vector<double> outside;
   for (std::size_t i = 0; i < numbers(jitter, "max").size(); ++i)
-    max = max_or_nan(max, max_or_nan(numbers(jitter, "max")[i] - numbers(jitter, "all_late")[i],
-                                     numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]));
-  return max;
+    outside.push_back(max_or_nan(numbers(jitter, "max")[i] - numbers(jitter, "all_late")[i],
+                                 numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]));
+  return max_or_nan(0, max_of(outside));
 }
 
 }  // namespace
@@ -230,8 +226,8 @@ Figure figure_latency(const FigureContext& context) {
       "latency",
       "Fixtures from late frames",
       "A surface with r_f = 0.02 m rises evenly against a pressing HIP, and frames arrive late; "
-      "simulated. Depth: how far the slave's contact point, sent to the proxy, is inside the region "
-      "of the surface at its position at that moment. The depth is the distance that the surface moves "
+      "simulated. Depth: how deep the contact point of the slave, which is sent to the proxy, is inside the "
+      "region of the surface, both at the same moment. The depth is the distance that the surface moves "
       "in the delay and one frame interval; the correction (4.3) does not change that. At 20 mm the "
       "slave reaches the surface itself. Dashed, after the estimate has settled: the slave is sent ahead "
       "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation.",

@@ -222,7 +222,7 @@ Panel deviation_panel(const Table& table, const std::string& of, const std::stri
 
 Table slot_table(const PressResults& results) {
   Table table{"slot", "A bar turned between two walls: torque", {}};
-  table.add("angle", "deg", "of the device", results.front().front().angle_deg);
+  table.add("angle", "deg", "angle of the device", results.front().front().angle_deg);
   table.add("exact", "N m", "closed form", results.front().front().exact_torque_Nm);
   for (std::size_t m = 0; m < results.size(); ++m)
     table.add(kToolMethods[m].column, "N m", std::string("torque, ") + kToolMethods[m].label,
@@ -334,16 +334,16 @@ Figure figure_tool_forces(const FigureContext& context) {
   for (const double tilt_deg : {0.0, 5.0, 10.0, 20.0, 30.0, 40.0}) planes.push_back(on_plane(tilt_deg));
   for (const double turn_deg : {2.0, 4.0, 7.0, 10.0, 15.0, 20.0}) blocks.push_back(turned_block(turn_deg));
   for (const double slope_deg : {15.0, 30.0, 45.0}) grooves.push_back(in_groove(slope_deg));
-  figure.tables = {
-      deviation_table("planes", "A block on a tilted plane", "tilt", "of plane and block", planes,
-                      results_of(context, planes)),
-      deviation_table("blocks", "A tilted block on a level plane", "turn", "of the block, by the hand",
-                      blocks, results_of(context, blocks)),
-      deviation_table("grooves", "A ball in a valley", "slope", "of both sides", grooves,
-                      results_of(context, grooves)),
-      slot_table(results_of(context, {in_slot()})),
-      deviation_table("of_coupling", "A tilted block, M of the coupling", "turn", "of the block, by the hand",
-                      blocks, results_of(context, blocks, {&kOfCoupling, 1}))};
+  figure.tables = {deviation_table("planes", "A block on a tilted plane", "tilt", "tilt of plane and block",
+                                   planes, results_of(context, planes)),
+                   deviation_table("blocks", "A tilted block on a level plane", "turn",
+                                   "turn of the block, by the hand", blocks, results_of(context, blocks)),
+                   deviation_table("grooves", "A ball in a valley", "slope", "slope of both sides", grooves,
+                                   results_of(context, grooves)),
+                   slot_table(results_of(context, {in_slot()})),
+                   deviation_table("of_coupling", "A tilted block, M of the coupling", "turn",
+                                   "turn of the block, by the hand", blocks,
+                                   results_of(context, blocks, {&kOfCoupling, 1}))};
   const std::string off = " off by (fraction)", turned = "force turned by (deg)";
   figure.panels = {
       deviation_panel(figure.tables[0], "force", "tilt (deg)", "|force|" + off, {0, 0}),

@@ -46,16 +46,17 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
     }
     table.add(std::string(carrier.column) + "_carried", units, "all runs are carried up to this", carried);
     table.add(std::string(carrier.column) + "_lost", units, "the next value: a run is lost", lost);
-    table.add(std::string(carrier.column) + "_bound", units, "derived", derived);
+    table.add(std::string(carrier.column) + "_bound", units, "derived limit", derived);
   }
   return table;
 }
 
 Table lift_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-lifts")));
-  return limit_table("lifts", "Speed up to which a plate is carried", sweep,
-                     {"thickness", "m", "of the plate", std::vector<double>{0.005, 0.01, 0.02}, 1, {}}, "m/s",
-                     [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); });
+  return limit_table(
+      "lifts", "Speed up to which a plate is carried", sweep,
+      {"thickness", "m", "thickness of the plate", std::vector<double>{0.005, 0.01, 0.02}, 1, {}}, "m/s",
+      [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); });
 }
 
 // The plate lies flat on a tilted surface, which approaches along its normal by v cos(tilt) / f_c.
@@ -63,11 +64,11 @@ Table tilt_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
   std::vector<double> tilt;
   for (std::size_t i = 0; i < sweep.settings(); ++i) tilt.push_back(sweep.value(i, 0));
-  return limit_table("tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
-                     {"tilt", "deg", "of the surface", tilt, 1, {}}, "m/s", [](Carrier rule, double deg) {
-                       return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) /
-                              sin_cos(deg * kRadiansPerDegree).second;
-                     });
+  return limit_table(
+      "tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
+      {"tilt", "deg", "tilt of the surface", tilt, 1, {}}, "m/s", [](Carrier rule, double deg) {
+        return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) / sin_cos(deg * kRadiansPerDegree).second;
+      });
 }
 
 // The surface turns by A sin(2 pi f t): by about 2 pi f A / f_c in the first frame. The end of the plate that

@@ -68,7 +68,7 @@ class Pool {
       table.add(column + "_carried", "1", "fraction of runs that are carried", fraction);
       table.add(column + "_low", "1", "lower end of its 95 % Wilson interval", low);
       table.add(column + "_high", "1", "upper end of its 95 % Wilson interval", high);
-      table.add(column + "_runs", "1", "runs", runs);
+      table.add(column + "_runs", "1", "number of runs", runs);
     }
     return table;
   }
@@ -92,7 +92,7 @@ Table family_table(const Family& family, const CarrySweep& sweep, Pool* pool) {
     for (std::size_t i = 0; i < settings.size(); ++i) {
       const CarrySweep::Limit limit = sweep.limit(family.first + i, carrier.rule);
       const Jump jump = family.jump(carrier.rule, settings[i]);
-      carried.push_back(limit.carried > 0 ? scaled(limit.carried) : 0);
+      carried.push_back(scaled(limit.carried));
       lost.push_back(scaled(limit.lost)), all_lost.push_back(scaled(limit.all_lost));
       least.push_back(scale.per_jump * jump.least_m), bound.push_back(scale.per_jump * jump.bound_m);
       most.push_back(scale.per_jump * jump.most_m);
@@ -104,15 +104,15 @@ Table family_table(const Family& family, const CarrySweep& sweep, Pool* pool) {
     table.add(column + "_carried", units, "all runs are carried up to this", carried);
     table.add(column + "_lost", units, "the next value: a run is lost", lost);
     table.add(column + "_all_lost", units, "from here on all runs are lost", all_lost);
-    table.add(column + "_least", units, "derived, at least", least);
-    table.add(column + "_bound", units, "derived", bound);
-    table.add(column + "_most", units, "derived, at most", most);
+    table.add(column + "_least", units, "derived limit, at least", least);
+    table.add(column + "_bound", units, "derived limit", bound);
+    table.add(column + "_most", units, "derived limit, at most", most);
   }
   return table;
 }
 
 Column thickness() {
-  return {"thickness", "m", "of the plate", kThickness_m, 1, {}};
+  return {"thickness", "m", "thickness of the plate", kThickness_m, 1, {}};
 }
 Column angle(const std::string& name, const std::string& meaning, std::vector<double> deg) {
   return {name, "deg", meaning, std::move(deg), 1, {}};
@@ -138,14 +138,14 @@ std::vector<FamilySweep> shape_sweeps() {
            {{"wall_thickness", "Wall, by thickness", thickness(), h, 0, sideways(),
              [](Carrier rule, double m) { return on_plane(rule, m); }}}},
           {"tool-shape-slopes",
-           {{"edge_slope", "Edge, by slope", angle("slope", "of the flanks", slopes), "slope (deg)", 0,
+           {{"edge_slope", "Edge, by slope", angle("slope", "slope of the flanks", slopes), "slope (deg)", 0,
              kSpeed, [](Carrier rule, double deg) { return on_edge(rule, kPlate_m, deg); }},
-            {"corner_slope", "Corner, by slope", angle("slope", "of the faces", slopes), "slope (deg)", 4,
-             kSpeed, [](Carrier rule, double deg) { return on_corner(rule, kPlate_m, deg); }}}},
+            {"corner_slope", "Corner, by slope", angle("slope", "slope of the faces", slopes), "slope (deg)",
+             4, kSpeed, [](Carrier rule, double deg) { return on_corner(rule, kPlate_m, deg); }}}},
           {"tool-shape-radii",
            {{"ball_radius",
              "Ball, by radius",
-             {"radius", "m", "of the ball", std::vector<double>{0.01, 0.02, 0.03, 0.05, 0.1}, 1, {}},
+             {"radius", "m", "radius of the ball", std::vector<double>{0.01, 0.02, 0.03, 0.05, 0.1}, 1, {}},
              "radius (m)",
              0,
              kSpeed,
@@ -164,7 +164,7 @@ std::vector<FamilySweep> turn_sweeps() {
         {"edge_turn", "Edge that turns", angle("turn", "in the frame", turns), "turn in the frame (deg)", 3,
          kSpeed, [](Carrier rule, double deg) { return on_edge(rule, kPlate_m, kSlope_deg, deg); }}}},
       {"tool-shape-tilts",
-       {{"edge_tilt", "Tilted edge", angle("tilt", "of the edge", tilts), "tilt (deg)", 0, kSpeed,
+       {{"edge_tilt", "Tilted edge", angle("tilt", "tilt of the edge", tilts), "tilt (deg)", 0, kSpeed,
          [](Carrier rule, double deg) {
            Jump jump = on_edge(rule, kPlate_m, kSlope_deg, deg);
            jump.most_m = std::numeric_limits<double>::infinity();  // the plate slides to its gentler side

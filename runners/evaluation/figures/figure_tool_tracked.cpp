@@ -83,7 +83,7 @@ Table success_table(const std::vector<std::pair<std::string, Survived>>& methods
   table.add("survived", "1", "share of lifts that did not pop through", share);
   table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
   table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
-  table.add("runs", "1", "lifts", runs);
+  table.add("runs", "1", "number of lifts", runs);
   return table;
 }
 
@@ -220,7 +220,7 @@ std::vector<double> raised_by_noise(const FigureContext& context, const TrackedM
 }
 
 Table shape_table(const FigureContext& context) {
-  Column name{"shape", "1", "of the surface", std::vector<std::string>{}, 1, {}};
+  Column name{"shape", "1", "shape of the surface", std::vector<std::string>{}, 1, {}};
   std::vector<double> noise;
   for (const char* shape : kToolShapes)
     for (const double sigma : kShapeNoise)

@@ -138,11 +138,11 @@ double max_rise(const std::vector<Level>& levels, std::size_t k,
   return rise;
 }
 
+// Returns the smallest precision over the levels with enough picked pixels; NaN if there are none.
 double min_precision(const std::vector<Level>& levels, std::size_t k) {
-  double min = 1;
-  for (const Level& level : levels)
-    if (level.score[k].picked() >= kEnoughPicked) min = min_or_nan(min, level.score[k].precision());
-  return min;
+  return min_where(
+      levels.size(), [&](std::size_t i) { return levels[i].score[k].picked() >= kEnoughPicked; },
+      [&](std::size_t i) { return levels[i].score[k].precision(); });
 }
 
 // Returns the lowest level at which most of the valve is missed; infinite if there is none.
@@ -177,8 +177,8 @@ void add_claims(Figure& figure, const std::vector<Level>& levels) {
                          min_precision(levels, k), 0.95, "fraction"));
     claim(claim_at_most(n, valve + " valve at 3 per metre: recall", "-", at(3).recall(), 0.05, "fraction"));
   }
-  claim(claim_at_most(n, "level at which most of yellow is missed - the same of red", "-",
-                      lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m"));
+  claim(claim_at_most(n, "turbidity at which most of the yellow valve is missed, minus that of the red valve",
+                      "-", lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m"));
 }
 
 }  // namespace

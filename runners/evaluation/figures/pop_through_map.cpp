@@ -46,7 +46,7 @@ Table map_table(const std::string& name, const SweepResult& result, const std::s
   table.add("survived", "1", "share of lifts that did not pop through", survived);
   table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
   table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
-  table.add("runs", "1", "lifts", runs);
+  table.add("runs", "1", "number of lifts", runs);
   return table;
 }
 

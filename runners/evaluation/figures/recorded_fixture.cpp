@@ -39,7 +39,7 @@ double nearest_distance_m(const Vec3& p, const PointCloud& cloud) {
     const double d = (cloud.point(i) - p).squaredNorm();
     squared = d < squared ? d : squared;  // a NaN is not less, so it is skipped
   }
-  return std::sqrt(squared);
+  return std::isinf(squared) ? kUnknown : std::sqrt(squared);
 }
 
 double hidden_m(const Vec3& p, const PointCloud& cloud) {
@@ -106,7 +106,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
   }
   for (FrameOutcome& outcome : outcomes) {
     const int frame = trace.frame_index[outcome.tick];
-    if (frame == 0) continue;
+    if (frame <= 0) continue;
     const int now = place_of(frame, count), last = place_of(frame - 1, count);
     const Motion& step = to[static_cast<std::size_t>(std::max(now, last))];
     outcome.camera_motion_m = step.camera_position_m;

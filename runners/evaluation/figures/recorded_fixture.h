@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "analysis/measures/no_value.h"
 #include "runners/evaluation/figures/fixture_run.h"
 
 namespace remote_touch {
@@ -11,14 +12,15 @@ namespace remote_touch {
 // Outcome of a frame, in the last tick before the next frame arrived.
 struct FrameOutcome {
   std::size_t tick = 0;
-  double nearest_distance_m = 0;  // distance of the proxy to the nearest measured point
-  double hidden_m = 0;            // depth of the proxy behind that of its own pixel; NaN at a hole
-  double camera_motion_m = 0;     // motion of a pixel's point since the last frame, median over the image
-  double surface_motion_m = 0;    // the same towards the camera, around the pixel that the HIP presses
+  double nearest_distance_m = kNoValue;  // distance of the proxy to the nearest measured point; NaN: none
+  double hidden_m = kNoValue;            // depth of the proxy behind that of its own pixel; NaN at a hole
+  // Motion of a pixel's point since the last frame, median over the image, and the same towards the camera,
+  // around the pixel that the HIP presses. NaN if unknown.
+  double camera_motion_m = kNoValue, surface_motion_m = kNoValue;
 };
 
-// The first frame has no frame before it: its motions are 0. pre: the experiment plays a part of a recording
-// forwards and backwards (ping_pong), and every frame arrives.
+// The first frame has no frame before it: its motions are NaN. pre: the experiment plays a part of a
+// recording forwards and backwards (ping_pong), and every frame arrives.
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
 
 // A tick in which the proxy changed to the wrong side of the true surface.

@@ -95,7 +95,7 @@ std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick) {
   double min = std::numeric_limits<double>::infinity();
   const auto measure = [&](const Vec3& p_T) {
-    min = std::min(min, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
+    min = min_or_nan(min, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
   };
   const TriangleMesh& mesh = task.tool->mesh;
   for (const Vec3& vertex : mesh.vertices) measure(vertex);
@@ -112,7 +112,7 @@ double min_clearance_m(const ValveTask& task, Valve valve) {
     // No position on the tool can be nearer than this.
     const double bound_m =
         task.tank->distance_to_valve(valve, task.trace.proxy_position_m[i]) - task.tool->reach_m;
-    if (bound_m < min) min = std::min(min, clearance_m(task, valve, i));
+    if (!(bound_m >= min)) min = min_or_nan(min, clearance_m(task, valve, i));
   }
   return min;
 }
@@ -138,14 +138,14 @@ Table task_table(const ValveTask& task) {
       {"force", "N", "norm of the force"},
       {"torque", "N m", "norm of the torque"},
       {"torque_x", "N m", "torque about the handle's x, the roll axis"},
-      {"torque_y", "N m", "the device can exert a torque about y of the handle"},
-      {"torque_z", "N m", "the device can exert a torque about z of the handle"},
-      {"exerted_x", "N m", "what the device exerts of it about the roll axis"},
+      {"torque_y", "N m", "torque about the handle's y, which the device can exert"},
+      {"torque_z", "N m", "torque about the handle's z, which the device can exert"},
+      {"exerted_x", "N m", "torque that the device exerts about the roll axis"},
       {"exerted", "N", "norm of the force that the device exerts"},
-      {"lag", "m", "from the tool to the device"},
-      {"yielded", "m", "from where the operator wants the device to where it is"},
+      {"lag", "m", "distance from the tool to the device"},
+      {"yielded", "m", "distance from where the operator wants the device to where it is"},
       {"pairs", "1", "pairs of leaves that touch"},
-      {"leaves", "1", "leaves of the tool among them"},
+      {"leaves", "1", "leaves of the tool that touch"},
       {"active", "1", "constraints that hold the tool"},
       {"penetration", "m", "deepest leaf of the tool in a region at the end of the tick"},
       {"detections", "1", "collision detections in the tick"},

@@ -89,8 +89,7 @@ Baseline definition(const Blessing& blessing, const Manifest& manifest) {
     throw InputError("baseline " + blessing.name,
                      "does not exist: expected --run EXPERIMENT or --sweep SWEEP to create it");
   if (!is_new && !blessing.overrides.empty())
-    throw InputError("--set",
-                     "without --run or --sweep: expected with them, for a baseline of something else");
+    throw InputError("--set", "is given without --run or --sweep: expected one of them too");
   Baseline baseline = stored ? *stored : Baseline{blessing.name, "", ""};
   if (is_new) {
     baseline.command = blessing.run.empty() ? "sweep" : "run";

@@ -79,15 +79,20 @@ pid_t start(const std::string& program, std::vector<std::string> arguments,
 }
 
 // Waits for the child and returns its status. When stop is set, sends SIGTERM to the child, waits for its end
-// and throws Interrupted.
-int end_of(pid_t child, const std::atomic<bool>* stop) {
+// and throws Interrupted. Throws InputError if the status is not known, as when this process ignores SIGCHLD.
+int end_of(pid_t child, const std::string& program, const std::atomic<bool>* stop) {
   int status = 0;
   bool signalled = false;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
+  pid_t ended = 0;
+  while ((ended = ::waitpid(child, &status, WNOHANG)) == 0) {
     if (stop && *stop && !signalled) ::kill(child, SIGTERM), signalled = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+  const int error = errno;
   if (stop && *stop) throw Interrupted{};
+  if (ended < 0)
+    throw InputError(program, std::string("has an unknown end (") + std::strerror(error) +
+                                  "): expected a caller that does not ignore SIGCHLD");
   return status;
 }
 
@@ -110,7 +115,7 @@ void run_program(const std::string& program, const std::vector<std::string>& arg
                  const std::map<std::string, std::string>& environment, const std::filesystem::path& errors,
                  const std::atomic<bool>* stop) {
   const pid_t child = start(program, arguments, environment, errors);
-  const int status = end_of(child, stop);
+  const int status = end_of(child, program, stop);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   throw InputError(program, "failed with " +
                                 (WIFEXITED(status) ? "exit code " + std::to_string(WEXITSTATUS(status))

@@ -93,7 +93,7 @@ void judge_columns(ResultComparison& result) {
   if (const ColumnComparison& first = columns.front(); first.baseline_rows != first.candidate_rows)
     text += "; the baseline has " + std::to_string(first.baseline_rows) + " rows, the candidate " +
             std::to_string(first.candidate_rows) +
-            (result.columns->divergence ? "" : ", and they are the same as far as both go");
+            (result.columns->divergence ? "" : ", and the common rows are the same");
   if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
@@ -119,7 +119,8 @@ std::string exact_text(const SweepComparison& sweep) {
   for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
   return "up to " + std::to_string(outside) + " of " + std::to_string(sweep.done_in_both) +
          " runs differ in a measure, " +
-         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only" +
+         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) +
+         " are finished in only one of the two sweeps" +
          (sweep.newly_failed == 0
               ? ""
               : ", of which " + std::to_string(sweep.newly_failed) + " failed in the candidate");
@@ -200,7 +201,7 @@ std::string kind_of(const Hdf5Reader& result) {
   const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
-  throw InputError(result.file(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
+  throw InputError(result.file(), (schema.empty() ? "has no attribute schema" : "is of schema " + schema) +
                                       ": expected a trace, a sweep, a figure or hashes of this program");
 }
 

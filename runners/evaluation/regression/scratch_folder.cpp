@@ -71,6 +71,15 @@ void remove_abandoned(const std::filesystem::path& place) {
                    std::string("cannot be made (") + std::strerror(error) + "): expected a writable folder");
 }
 
+// Waits for the lock, also if signals arrive meanwhile. Returns false if the place has no locks; then no
+// other program can lock the folder either, so none removes it.
+bool take_lock(int folder) {
+  int result = 0;
+  do result = ::flock(folder, LOCK_EX);
+  while (result != 0 && errno == EINTR);
+  return result == 0;
+}
+
 bool has_links(int folder) {
   struct stat about = {};
   return ::fstat(folder, &about) == 0 && about.st_nlink > 0;
@@ -93,7 +102,7 @@ ScratchFolder::ScratchFolder() {
       ::rmdir(path_.c_str());
       refuse_scratch(path_, error);
     }
-  } while (::flock(descriptor_, LOCK_EX) == 0 && !has_links(descriptor_));
+  } while (take_lock(descriptor_) && !has_links(descriptor_));
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -55,8 +55,9 @@ void add(const std::string& variant, const std::vector<Column>& reference, const
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const ColumnComparison found = compare_columns(reference[i], other.at(i), {});
     if (!found.problem.empty() || found.not_numbers > 0 || (found.outside > 0 && found.max == 0))
-      throw InputError(reference[i].name, "differs with " + variant + " in what has no tolerance (row " +
-                                              std::to_string(found.first_outside.value_or(0)) + ")" +
+      throw InputError(reference[i].name, "differs with " + variant + " in row " +
+                                              std::to_string(found.first_outside.value_or(0)) +
+                                              ", in a value that has no tolerance" +
                                               (found.problem.empty() ? "" : ": " + found.problem));
     if (found.max > 0) spread[found.name].absolute = std::max(spread[found.name].absolute, found.max);
   }

@@ -58,7 +58,8 @@ Better better_of(const Json& word, const std::string& measure, const std::string
     if (word == name && (own == Better::neither || own == better)) return better;
   throw InputError(label + " = " + shown(word),
                    own == Better::neither ? "expected larger, smaller, near_zero, reported"
-                                          : std::string(text_of(own)) + ": expected judged, reported");
+                                          : "the measure has its own direction (" +
+                                                std::string(text_of(own)) + "): expected judged or reported");
 }
 
 Bound bound_of(const Json& json, const std::string& label) {
@@ -102,7 +103,11 @@ void read_held_rule(const Json& success, const std::string& rule, BenchmarkScene
                   rule);
   scene.meaning = held_meaning(tolerance_m);
   scene.success = held_bounds(tolerance_m);
-  if (!success.contains("bounds")) return;
+  if (!success.contains("bounds")) {
+    if (success.contains("meaning"))
+      throw InputError(rule + ".meaning", "is that of bounds, and there are none: expected bounds too");
+    return;
+  }
   scene.meaning += "; " + text_of(success, "meaning", rule);
   for (const Bound& bound : bounds_of(success, "bounds", rule)) scene.success.push_back(bound);
 }
@@ -115,6 +120,8 @@ void read_success(const Json& success, const std::string& rule, BenchmarkScene& 
     for (const char* name : {"max_sink", "max_float"}) add_measure(scene, name, Better::neither);
     return;
   }
+  if (success.contains("tolerance_m"))
+    throw InputError(rule + ".tolerance_m", "is that of a rule, and there is none: expected rule = held too");
   scene.meaning = text_of(success, "meaning", rule);
   scene.success = bounds_of(success, "bounds", rule);
   if (scene.success.empty())

@@ -44,10 +44,10 @@ void require_known_contact(const Benchmark& chosen) {
     if (is_for_tools(method) || has_known_contact(method)) continue;
     for (const BenchmarkScene& scene : chosen.scenes)
       if (judges_contact(scene))
-        throw InputError(
-            "method " + method.name,
-            "the rest distance of its renderer is not known, by which scene " + scene.name +
-                " judges: expected rendered_contact() of its settings, or rest_distance_m of a plug-in");
+        throw InputError("method " + method.name,
+                         "scene " + scene.name +
+                             " judges contact by the renderer's rest distance, which is not known: expected "
+                             "rendered_contact() of its settings, or rest_distance_m of a plug-in");
   }
 }
 

@@ -70,8 +70,10 @@ std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttrib
     if (!item.is_object() || !item.value("scene", Json()).is_string() ||
         !item.value("method", Json()).is_string())
       return {};
-    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(),
-                     seconds(item.value("tick_s", Json())), seconds(item.value("frame_s", Json()))});
+    const double tick_s = seconds(item.value("tick_s", Json()));
+    if (std::isnan(tick_s)) continue;  // the run ended with an error: it is measured again
+    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(), tick_s,
+                     seconds(item.value("frame_s", Json()))});
   }
   return costs;
 }

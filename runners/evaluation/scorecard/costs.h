@@ -27,8 +27,8 @@ Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const 
                    const Kernels& kernels, const std::atomic<bool>* stop);
 
 // The costs are stored in a JSON file beside the results, so that scorecard.json of a finished scorecard does
-// not change. origin: see cost_origin(); costs of another origin are not read. read_costs() returns none for
-// a file that does not exist or cannot be used.
+// not change. origin: see cost_origin(); costs of another origin are not read, nor are those of runs
+// that ended with an error. read_costs() returns none for a file that does not exist or cannot be used.
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
                  const TextAttributes& origin);
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin);

@@ -38,13 +38,24 @@ Scorecard empty_card(const std::vector<Method>& methods) {
   return card;
 }
 
+// Computes on one thread while it lives.
+class OneThread {
+ public:
+  OneThread() { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(threads_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  const int threads_ = omp_get_max_threads();
+};
+
 // Measures the costs that the file does not contain yet, and returns all. Writes the file after each scene.
 std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                            const std::filesystem::path& file) {
   const TextAttributes origin = cost_origin(kernels);
   std::vector<Cost> costs = read_costs(file, origin);
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
+  const OneThread one_thread;
   for (const ScenePlan& one : plan.scenes) {
     const std::size_t before = costs.size();
     for (std::size_t c = 0; c < one.sweeps.size(); ++c) {
@@ -54,7 +65,6 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
     }
     if (costs.size() > before) write_costs(file, costs, origin);
   }
-  omp_set_num_threads(threads);
   return costs;
 }
 

@@ -34,8 +34,8 @@ struct Changer {
     if (!(changed >= p.low && changed <= p.high)) {
       std::ostringstream subject, problem;
       subject << p.name << " = " << value;
-      problem << "a check multiplies it by " << factor << ": expected " << p.low << " to " << p.high
-              << " after that too";
+      problem << "a check multiplies it by " << factor << ": expected a product from " << p.low << " to "
+              << p.high;
       throw InputError(subject.str(), problem.str());
     }
     value = changed;

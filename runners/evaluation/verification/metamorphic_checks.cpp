@@ -19,7 +19,7 @@ using RendererFactory = Factory<Renderer, double, const Kernels&>;
 using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
-    "touch", "the renderer pushes back in most ticks, or at least in some if it is one that loses contact"};
+    "touch", "the renderer pushes back in most ticks, or in some if its contact model loses contact"};
 // Returns the smallest fraction of the ticks that must have a force. Three contact models push back in a few
 // ticks only. With `nothing` the HIP passes through the points, a moving mesh (`mesh`) leaves the HIP behind
 // it, and `oriented` ignores forbidden regions, so it meets only the points in their middle.

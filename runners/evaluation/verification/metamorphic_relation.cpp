@@ -21,13 +21,13 @@ constexpr OutputTolerance kRoundedForce{0, 1e-6, 0, 0, false};
 constexpr OutputTolerance kRestsEvenSo{1e-12, 1e-9, 1e-12, 1e-9, true};
 
 constexpr const char* kSameSum = "the same numbers in the same sums: equal bits";
-constexpr const char* kPowerOfTwo = "factors are powers of two, so no product rounds anew: equal bits";
+constexpr const char* kPowerOfTwo = "factors are powers of two, so multiplication does not round: equal bits";
 constexpr const char* kRounding =
     "coordinates round to 1e-16 m; differences may grow 1e8 times, to 1/2000 of the contact region";
 
 const MetamorphicRelation kRelations[] = {
-    {"repeat", "a second renderer answers the same", kExact, kSameSum, vary::repeat},
-    {"instruction-set", "the kernels of another x86-64 level answer the same", kExact, kSameSum,
+    {"repeat", "a second renderer gives the same output", kExact, kSameSum, vary::repeat},
+    {"instruction-set", "the kernels of another x86-64 level give the same output", kExact, kSameSum,
      vary::other_instructions},
     {"search-all", "a query of every point gives the same result as the search", kExact, kSameSum,
      vary::search_all_points},

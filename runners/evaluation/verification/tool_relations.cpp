@@ -33,13 +33,13 @@ constexpr OutputTolerance kSolvedTwice = poses_within(1e-3, 0.1, 0.1, 0.2, 0.1);
 constexpr OutputTolerance kSolvedHalf = poses_within(5e-4, 0.2, 0.2, 0.4);
 
 constexpr const char* kSameNumbers = "the same numbers in the same order: equal bits";
-constexpr const char* kFactors = "factors are powers of two, so no product rounds anew: equal bits";
+constexpr const char* kFactors = "factors are powers of two, so multiplication does not round: equal bits";
 constexpr const char* kVoxel = "a tick may end in any pose within half a voxel of the nearest";
 constexpr const char* kRest = "a tick may end in any pose within 0.1 mm of the nearest";
 
 const MetamorphicRelation kToolRelations[] = {
-    {"repeat", "a second renderer answers the same", kSameTool, kSameNumbers, vary::repeat},
-    {"instruction-set", "the kernels of another x86-64 level answer the same", kSameTool, kSameNumbers,
+    {"repeat", "a second renderer gives the same output", kSameTool, kSameNumbers, vary::repeat},
+    {"instruction-set", "the kernels of another x86-64 level give the same output", kSameTool, kSameNumbers,
      vary::other_instructions},
     {"search-all", "a query of every point gives the same result as the search", kSameTool, kSameNumbers,
      vary::search_all_points},

@@ -106,8 +106,8 @@ void check_view(const std::string& path, const Vec3& view, const Vec3& by_defaul
   if (view.normalized().dot(looks_W) < kMinCosine)
     throw InputError(
         path + " = " + text(view),
-        "the points of this recording are not an image: expected the direction in which its sensor "
-        "looks, " +
+        "the frames of this recording are not images, so the direction of the sensor must be given: "
+        "expected the direction in which it looks, " +
             text(looks_W) + " in the axes of a camera");
 }
 

@@ -98,7 +98,7 @@ void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
 void check_changes(ExperimentConfiguration& configuration) {
   after_changes(configuration, [](const auto& factory, const std::string& where) {
     const std::string problem = factory.validate();
-    if (!problem.empty()) throw InputError(where, "then renderer." + problem);
+    if (!problem.empty()) throw InputError(where, "after this change renderer." + problem);
   });
 }
 

@@ -39,7 +39,8 @@ std::vector<SectionEntry> one_entry() {
 
 template <class Settings>
 Settings read_settings(const Json& json, const std::string& path) {
-  if (!json.is_object()) throw InputError(path, "expected an object of parameters, or nothing");
+  if (!json.is_object())
+    throw InputError(path, "expected an object of parameters; leave the section out otherwise");
   Settings settings;
   read_parameters(json, parameters(settings), path);
   const std::string problem = validate(settings);

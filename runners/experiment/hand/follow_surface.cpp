@@ -12,6 +12,11 @@ namespace remote_touch {
 namespace {
 // Spacing of the samples of the surface. A vertical step becomes a slope of this width.
 constexpr double kSampling_m = 1e-4;
+
+// Returns the line from start to end, without its height.
+Vec3 level_line_m(const FollowSurface::Settings& s) {
+  return {s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z()};
+}
 }  // namespace
 
 Parameters parameters(FollowSurface::Settings& s) {
@@ -29,7 +34,7 @@ Parameters parameters(FollowSurface::Settings& s) {
 }
 
 std::string validate(const FollowSurface::Settings& s) {
-  return s.from_m == s.to_m ? "to_m: expected different from from_m" : "";
+  return level_line_m(s).norm() > 0 ? "" : "to_m: expected another x or z than that of from_m";
 }
 
 namespace {
@@ -68,7 +73,7 @@ std::vector<double> step_tops(const std::vector<double>& heights, double spacing
 }  // namespace
 
 FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path_(s.from_m) {
-  const Vec3 path(s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z());
+  const Vec3 path = level_line_m(s);
   const int pieces = static_cast<int>(std::ceil(path.norm() / kSampling_m));
   std::vector<double> heights;
   std::vector<Vec3> places;

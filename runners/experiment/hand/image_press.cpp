@@ -24,7 +24,8 @@ std::string pixel_text(int row, int column) {
 Parameters parameters(ImagePress::Settings& s) {
   return {
       {"row", &s.row, -1, 4095,
-       "image row; -1: of the nearest large object, the pixel nearest to its middle that can be touched"},
+       "image row; -1: row of the pixel nearest to the middle of the nearest large object, among those that can be "
+       "touched"},
       {"column", &s.column, -1, 4095, "image column; -1: as for row"},
       {"depth_m", &s.depth_m, -1, 1,
        "depth of the HIP behind the surface of the newest frame, along the viewing ray"},
@@ -117,8 +118,9 @@ void ImagePress::refuse_pixel(BridgeableImage& image) const {
     break;
   }
   throw InputError("trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
-                   "no surface without edges and with holes of at most " + millimetres(settings_.bridge_m) +
-                       " at this pixel of the first frame: expected " + expected);
+                   "the first frame has no surface that can be touched at this pixel (without edges, without "
+                   "holes above " +
+                       millimetres(settings_.bridge_m) + "): expected " + expected);
 }
 
 // Sets missed_object_ if a pixel that was chosen from the image presses something other than the nearest

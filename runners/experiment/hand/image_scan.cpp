@@ -23,7 +23,7 @@ ScanRowRequest request_of(const ImageScan::Settings& s) {
 Parameters parameters(ImageScan::Settings& s) {
   return {
       {"row", &s.row, -1, 4095,
-       "image row; -1: of the nearest large object, the row nearest to its middle that can be touched"},
+       "image row; -1: the row nearest to the middle of the nearest large object, among those that can be touched"},
       {"first_column", &s.first_column, -1, 4095,
        "first image column; -1: as far left as the depth stays within span_m"},
       {"last_column", &s.last_column, -1, 4095,
@@ -78,9 +78,10 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
                expected;
   }
   throw InputError("trajectory.row = " + std::to_string(scan_.row),
-                   "no surface without edges and with holes of at most " + millimetres(settings_.bridge_m) +
-                       " in this row" + (settings_.row < 0 ? " or another of the nearest object" : "") +
-                       ": expected " + expected);
+                   std::string("the first frame has no surface that can be touched in this row") +
+                       (settings_.row < 0 ? " or another of the nearest object" : "") +
+                       " (without edges, without holes above " + millimetres(settings_.bridge_m) +
+                       "): expected " + expected);
 }
 
 // Sets missed_object_ for a row that was chosen from the image, in two cases. The row touches other surfaces

@@ -36,7 +36,8 @@ std::string validate(const Poses::Settings& s) {
     if (i > 0 && row[6] > 0 &&
         rotation_to(pose(row - kColumns), pose(row)).norm() > kHalfRotation_deg * kRadiansPerDegree)
       return "poses: row " + std::to_string(i / kColumns) +
-             "  is rotated by 180 degrees from the previous one: expected less, the direction of rotation is ambiguous";
+             " is rotated by 180 degrees from the row before: expected less, because the direction of rotation is "
+             "ambiguous";
   }
   return "";
 }

@@ -1,5 +1,6 @@
 #include "runners/experiment/opencl/device_pipeline.h"
 
+#include <cstdio>
 #include <utility>
 
 #include "runners/experiment/opencl/device_frames.h"
@@ -20,6 +21,12 @@ void exchange(DeviceFrame& frame, PointCloud& cloud) {
   if (frame.colour.empty()) return;
   swap(DeviceFrame::fixture_radius, cloud.fixture_radius_m);
   if (frame.has_stiffness()) swap(DeviceFrame::stiffness, cloud.stiffness_N_per_m);
+}
+
+std::string seconds_text(std::chrono::milliseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", static_cast<double>(time.count()) / 1000);
+  return text;
 }
 
 }  // namespace
@@ -49,7 +56,7 @@ DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSe
         opened->frames->run(opened->first);
       },
       kBuildLimit);
-  if (!in_time) throw OpenClTimeout("the kernels were not ready in 120 s");
+  if (!in_time) throw OpenClTimeout("the kernels were not ready in " + seconds_text(kBuildLimit));
   frames_ = opened->frames;
 }
 
@@ -107,7 +114,7 @@ bool DevicePipeline::on_device() {
     give_up(error.what());
     return false;
   }
-  if (!in_time) give_up("no answer within " + std::to_string(frame_limit_.count() / 1000) + " s");
+  if (!in_time) give_up("no answer within " + seconds_text(frame_limit_));
   return in_time;
 }
 

@@ -87,8 +87,9 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
   Unpacker unpack(content.data() + line.size(), content.data() + content.size());
   std::string stored_key;
   unpack.text(stored_key);
+  if (stored_key != key) return false;
   take(unpack);
-  const bool good = unpack.done() && stored_key == key;
+  const bool good = unpack.done();
   const timespec used_now[] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};  // the oldest are removed first
   if (good) ::utimensat(AT_FDCWD, path.c_str(), used_now, 0);
   return good;
@@ -104,11 +105,17 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   const int file = ::mkstemp(temporary.data());
   if (file < 0) return false;
   CacheWriter pack(file);
-  const std::string line = first_line(kind);
-  pack.bytes(line.data(), line.size());
-  pack.text(key);
-  put(pack);
-  pack.end_with_hash();
+  try {
+    const std::string line = first_line(kind);
+    pack.bytes(line.data(), line.size());
+    pack.text(key);
+    put(pack);
+    pack.end_with_hash();
+  } catch (...) {
+    ::close(file);
+    ::unlink(temporary.c_str());
+    throw;
+  }
   // The file is not flushed to the disk: if a power cut leaves a part of it, the check of its hash fails.
   bool good = ::close(file) == 0 && pack.good();
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;

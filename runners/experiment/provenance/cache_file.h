@@ -37,14 +37,14 @@ struct CacheKind {
 };
 
 // Returns true if the folder has a complete file of that kind and key, and take() has read all its fields.
-// Then marks the file as used now.
+// Then marks the file as used now. Does not call take() for a file of another key.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                      const std::function<void(Unpacker&)>& take);
 
 // Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
 // Creates the folder. Then removes the files that make the folder too large, unless the kind has a maximum
 // size: such files are small. Returns false if the file cannot be written, which is not an error. Throws
-// InputError as max_cache_bytes() does.
+// InputError as max_cache_bytes() does. If put() throws, the temporary file is removed.
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

@@ -39,10 +39,11 @@ bool is_abandoned(const CachedFile& file) {
 std::vector<CachedFile> files_in(const fs::path& folder) {
   std::vector<CachedFile> files;
   std::error_code unreachable;
-  for (const auto& entry : fs::directory_iterator(folder, unreachable)) {
+  // An iterator that cannot be incremented becomes the end. A range-based for would throw.
+  for (fs::directory_iterator entry(folder, unreachable), end; entry != end; entry.increment(unreachable)) {
     struct stat about {};
-    if (::stat(entry.path().c_str(), &about) == 0 && S_ISREG(about.st_mode))
-      files.push_back({entry.path(), static_cast<std::uintmax_t>(about.st_size),
+    if (::stat(entry->path().c_str(), &about) == 0 && S_ISREG(about.st_mode))
+      files.push_back({entry->path(), static_cast<std::uintmax_t>(about.st_size),
                        kNs_per_s * about.st_atim.tv_sec + about.st_atim.tv_nsec});
   }
   return files;

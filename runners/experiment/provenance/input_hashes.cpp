@@ -107,7 +107,7 @@ void require_unchanged(const std::vector<RecordingPart>& parts, const std::strin
   if (changed.empty()) return;
   const ChangedInput& first = changed.front();
   throw InputError(first.path, "changed while it was read (" + first.before + "; now " + first.now +
-                                   "): expected files that nothing writes");
+                                   "): expected files that no program writes during the run");
 }
 
 }  // namespace remote_touch

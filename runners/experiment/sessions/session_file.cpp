@@ -83,19 +83,23 @@ SessionWriter::SessionWriter(const std::filesystem::path& target, const SessionL
   file_.attributes("/", attributes);
   file_.group("/ticks"), file_.group("/frames"), file_.group("/changes");
   file_.dataset({"/ticks/number", "1", "number of the tick: its time times the haptic rate", Number::u64});
-  file_.dataset({"/ticks/position", "m", "of the device, world frame", Number::f64, {3}});
-  file_.dataset({"/ticks/orientation", "1", "of the device, quaternion w x y z", Number::f64, {4}});
-  file_.dataset({"/ticks/buttons", "1", "that are down, a bit each", Number::u32});
-  file_.dataset({"/ticks/taken", "1", "frame taken before the tick, -1: none", Number::i32});
-  file_.dataset({"/ticks/written_force", "N", "written to the device, in its axes", Number::f64, {3}});
-  file_.dataset({"/ticks/written_torque", "N m", "written to the device, in its axes", Number::f64, {3}});
+  file_.dataset({"/ticks/position", "m", "position of the device, world frame", Number::f64, {3}});
+  file_.dataset(
+      {"/ticks/orientation", "1", "orientation of the device, quaternion w x y z", Number::f64, {4}});
+  file_.dataset({"/ticks/buttons", "1", "buttons that are down, one bit each", Number::u32});
+  file_.dataset(
+      {"/ticks/taken", "1", "frame that the renderer received before the tick; -1: none", Number::i32});
+  file_.dataset({"/ticks/written_force", "N", "force written to the device, in its axes", Number::f64, {3}});
+  file_.dataset(
+      {"/ticks/written_torque", "N m", "torque written to the device, in its axes", Number::f64, {3}});
   file_.dataset({"/ticks/gate", "1", "0 waiting, 1 ramping, 2 engaged, 3 latched", Number::i32});
-  file_.dataset({"/frames/number", "1", "as the sensor counts", Number::i32});
-  file_.dataset({"/frames/captured", "s", "since the start, by the sensor's time stamp", Number::f64});
-  file_.dataset({"/frames/fixtures_off", "1", "fixtures that were off, a bit each", Number::u64});
+  file_.dataset({"/frames/number", "1", "number of the frame, as the sensor counts", Number::i32});
+  file_.dataset({"/frames/captured", "s", "time since the start, by the sensor's time stamp", Number::f64});
+  file_.dataset({"/frames/fixtures_off", "1", "fixtures that were off, one bit each", Number::u64});
   file_.dataset({"/changes/tick", "1", "number of the first tick with the new value", Number::u64});
-  file_.dataset({"/changes/parameter", "1", "its place in live_parameters, from 0", Number::i32});
-  file_.dataset({"/changes/value", "1", "in the parameter's own unit; of a switch 0 or 1", Number::f64});
+  file_.dataset({"/changes/parameter", "1", "index in live_parameters, from 0", Number::i32});
+  file_.dataset(
+      {"/changes/value", "1", "value in the parameter's own unit; 0 or 1 for a switch", Number::f64});
   if (layout.has_clouds()) {
     add_cloud_datasets();
     return;
@@ -189,6 +193,7 @@ SessionReader::SessionReader(Hdf5Reader file) : file_(std::move(file)) {
       taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
     file_.damaged("its columns differ in length");
   require_order();
+  require_finite("/ticks/position", position_), require_finite("/ticks/orientation", orientation_);
   if (file_.has("/changes/tick")) read_changes();  // older recordings have none
 }
 
@@ -202,11 +207,11 @@ void SessionReader::read_changes() try {
   for (std::size_t i = 0; i < tick.size(); ++i) {
     if (tick[i] > kMaxTick || (i > 0 && tick[i] < tick[i - 1]) || parameter[i] < 0 ||
         static_cast<std::size_t>(parameter[i]) >= live_parameters_.size() || !std::isfinite(value[i]))
-      file_.damaged("its changes of parameters cannot be");
+      file_.damaged("its changes of parameters are not possible");
     changes_.push_back({tick[i], parameter[i], value[i]});
   }
 } catch (const nlohmann::json::exception&) {
-  file_.damaged("its attribute live_parameters");
+  file_.damaged("its attribute live_parameters cannot be read");
 }
 
 // Throws InputError for an impossible recording: numbers and times of frames and ticks must increase, and the
@@ -227,6 +232,12 @@ void SessionReader::require_order() const {
     if (!std::isfinite(captured_s_[i]) ||
         (i > 0 && (captured_s_[i] <= captured_s_[i - 1] || frame_number_[i] <= frame_number_[i - 1])))
       file_.damaged("its frames are out of order");
+}
+
+// The live loop stops before a state that is not finite reaches a recording.
+void SessionReader::require_finite(const char* dataset, const std::vector<double>& values) const {
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
+    file_.damaged(std::string(dataset) + " has values that are not finite");
 }
 
 void SessionReader::read_view() try {
@@ -259,7 +270,7 @@ void SessionReader::read_view() try {
       view_.X_WC.linear().determinant() < 0)
     file_.damaged("X_WC is not a pose");
 } catch (const nlohmann::json::exception&) {
-  file_.damaged("its attributes view and config");
+  file_.damaged("its attributes view and config cannot be read");
 }
 
 std::string SessionReader::config() const {
@@ -294,7 +305,7 @@ void SessionReader::read_point_counts() {
   std::size_t sum = 0;
   for (const double count : file_.values<double>("/frames/point_count")) {
     if (!(count >= 0 && count <= std::numeric_limits<std::uint32_t>::max()))
-      file_.damaged("a frame has a number of points that cannot be");
+      file_.damaged("the number of points of a frame is not possible");
     first_point_.push_back(sum);
     sum += static_cast<std::size_t>(count);
   }

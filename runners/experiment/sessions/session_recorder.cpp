@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/unfinished_session.h"
 
 namespace remote_touch {
@@ -66,8 +67,19 @@ void SessionRecorder::flush(std::size_t at_least) {
   changes_.erase(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(change_count));
 }
 
+// Throws InputError if ticks or changes are in memory that cannot be written. A recording without them would
+// count as complete.
+void SessionRecorder::require_nothing_left() const {
+  if (ticks_.empty() && changes_.empty()) return;
+  throw InputError(target_.string(), "lacks " + std::to_string(ticks_.size()) + " ticks and " +
+                                         std::to_string(changes_.size()) +
+                                         " changes: expected every frame that a tick took, and a tick after "
+                                         "every change");
+}
+
 void SessionRecorder::finish(const TextAttributes& attributes) {
   flush(1);
+  require_nothing_left();
   journal_.append(block(SessionBlock::end, packed_end(attributes)));
   journal_.sync();
   make_session(journal_.file(), target_);

@@ -39,7 +39,8 @@ class SessionRecorder {
   // Makes everything that was written until now survive a power cut. Another thread may call it.
   void sync() const { journal_.sync(); }
   // Makes the session file, with these attributes added, and then removes the journal. If it throws, the
-  // journal stays, with every block that was written. attributes: `ended`, why the run ended, and others that
+  // journal stays, with every block that was written. Throws InputError also if a tick took a frame that was
+  // not appended, or a change has no tick. attributes: `ended`, why the run ended, and others that
   // are known only at the end.
   void finish(const TextAttributes& attributes);
 
@@ -49,6 +50,7 @@ class SessionRecorder {
 
  private:
   void flush(std::size_t at_least);
+  void require_nothing_left() const;
   std::size_t ready_ticks() const;
 
   const std::filesystem::path target_;

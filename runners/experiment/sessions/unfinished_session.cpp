@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace remote_touch {
 namespace {
 
 constexpr std::uint32_t kMaxImageSide_px = 65535;
+constexpr std::int64_t kMaxTickNumber = std::numeric_limits<std::int32_t>::max();
 
 void pack(Packer& packer, const Vec3& v) {
   for (int i = 0; i < 3; ++i) packer.value(v[i]);
@@ -83,6 +85,10 @@ struct TickBlock {
   std::vector<SessionChange> changes;
 };
 
+bool is_finite(const DeviceState& device) {
+  return device.position_W.allFinite() && device.orientation_W.coeffs().allFinite();
+}
+
 std::optional<TickBlock> unpacked_ticks(const std::string& content) {
   Unpacker unpacker(content);
   TickBlock block;
@@ -123,6 +129,12 @@ bool holds_images(const StoredFrame& frame, const SessionLayout& layout) {
          (!layout.has_colour || is_deflated_row(frame.colour, layout.pixels() * sizeof(std::uint32_t)));
 }
 
+// Returns the number of live parameters; 0 if their list cannot be read.
+std::size_t parameter_count(const TextAttributes& attributes) {
+  const auto names = nlohmann::json::parse(attribute(attributes, "live_parameters"), nullptr, false);
+  return names.is_array() ? names.size() : 0;
+}
+
 // Reads a journal of a session from its first block to its last whole one.
 class SessionBlocks {
  public:
@@ -133,6 +145,7 @@ class SessionBlocks {
                        "damaged (its first block is not whole): expected an unfinished recording");
     if (const std::string schema = attribute(found_.attributes, "schema"); schema != schema_name("session"))
       throw InputError(journal.string(), "is of schema " + schema + ": expected " + schema_name("session"));
+    parameters_ = parameter_count(found_.attributes);
     found_.is_growing = reader_.is_growing();
   }
 
@@ -170,28 +183,45 @@ class SessionBlocks {
 
   bool take_ticks(const std::string& content, SessionWriter* writer) {
     const std::optional<TickBlock> block = unpacked_ticks(content);
-    if (!block || !are_possible(*block)) return false;
+    if (!block || !are_possible(block->ticks) || !are_possible(block->changes)) return false;
     for (const SessionTick& tick : block->ticks) {
       if (writer) writer->append(tick);
       found_.last_tick = tick.number;
       if (tick.taken >= 0) last_taken_ = tick.taken;
     }
-    for (const SessionChange& change : block->changes)
+    for (const SessionChange& change : block->changes) {
       if (writer) writer->append(change);
+      last_change_ = change.tick;
+    }
     found_.ticks += block->ticks.size(), found_.changes += block->changes.size();
     return true;
   }
 
-  // True if the tick numbers increase, and if each tick that received a frame names an earlier frame of the
-  // journal, newer than the one before.
-  bool are_possible(const TickBlock& block) const {
+  // True if the tick numbers increase, if the states of the device are finite, and if each tick that received
+  // a frame names an earlier frame of the journal, newer than the one before. SessionReader requires the
+  // same.
+  bool are_possible(const std::vector<SessionTick>& ticks) const {
     std::int64_t number = found_.last_tick, taken = last_taken_;
-    for (const SessionTick& tick : block.ticks) {
-      if (tick.number <= number || tick.number > std::numeric_limits<std::int32_t>::max()) return false;
+    for (const SessionTick& tick : ticks) {
+      if (tick.number <= number || tick.number > kMaxTickNumber) return false;
+      if (!is_finite(tick.device)) return false;
       number = tick.number;
       if (tick.taken == -1) continue;
       if (tick.taken <= taken || tick.taken >= static_cast<std::int64_t>(found_.frames)) return false;
       taken = tick.taken;
+    }
+    return true;
+  }
+
+  // True if the ticks of the changes do not decrease, and if each change has a finite value of a parameter of
+  // the list. SessionReader requires the same.
+  bool are_possible(const std::vector<SessionChange>& changes) const {
+    std::uint64_t last = last_change_;
+    for (const SessionChange& change : changes) {
+      if (change.tick < last || change.tick > static_cast<std::uint64_t>(kMaxTickNumber)) return false;
+      if (change.parameter < 0 || static_cast<std::size_t>(change.parameter) >= parameters_) return false;
+      if (!std::isfinite(change.value)) return false;
+      last = change.tick;
     }
     return true;
   }
@@ -218,7 +248,9 @@ class SessionBlocks {
   JournalReader reader_;
   SessionLayout layout_;
   UnfinishedSession found_;
+  std::size_t parameters_ = 0;  // number of live parameters
   std::int64_t last_taken_ = -1;
+  std::uint64_t last_change_ = 0;
   std::int64_t last_frame_number_ = std::numeric_limits<std::int64_t>::min();
   double last_captured_s_ = -std::numeric_limits<double>::infinity();
 };

@@ -42,13 +42,7 @@ std::string option_text(const Assignment& assignment) {
   return "--set " + assignment.path + "=" + shown(assignment.value);
 }
 
-// first_part() and last_part() return at most max bytes of the text, and "..." for the rest. They never cut a
-// UTF-8 character.
-std::string first_part(const std::string& text, std::size_t max) {
-  if (text.size() <= max) return text;
-  while (max > 0 && (static_cast<unsigned char>(text[max]) & 0xC0) == 0x80) --max;
-  return text.substr(0, max) + "...";
-}
+// Returns at most the last max bytes of the text, after "..." for the rest. Never cuts a UTF-8 character.
 std::string last_part(const std::string& text, std::size_t max) {
   if (text.size() <= max) return text;
   std::size_t begin = text.size() - max;
@@ -66,6 +60,12 @@ std::string short_text(const Json& value) {
 }
 
 }  // namespace
+
+std::string first_part(const std::string& text, std::size_t max) {
+  if (text.size() <= max) return text;
+  while (max > 0 && (static_cast<unsigned char>(text[max]) & 0xC0) == 0x80) --max;
+  return text.substr(0, max) + "...";
+}
 
 std::vector<std::string> place_keys(const std::string& path) {
   Keys keys = path_keys(path);

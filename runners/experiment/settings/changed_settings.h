@@ -1,6 +1,7 @@
 // Settings on top of a configuration: those of --set, of a sweep's `set`, and of a cell.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,9 @@ namespace remote_touch {
 
 // Path and value.
 using ChangedSetting = std::pair<std::string, Json>;
+
+// Returns at most the first max bytes of the text, and "..." for the rest. Never cuts a UTF-8 character.
+std::string first_part(const std::string& text, std::size_t max);
 
 // Returns the keys of a path. Indices in lists have no leading zeros, so that equal keys are the same
 // setting.

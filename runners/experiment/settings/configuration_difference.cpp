@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
@@ -11,7 +12,7 @@ namespace {
 std::string text(const Json* value) {
   constexpr std::size_t kMaxLength = 60;
   const std::string all = value ? value->dump() : "absent";
-  return all.size() <= kMaxLength ? all : all.substr(0, kMaxLength - 3) + "...";
+  return all.size() <= kMaxLength ? all : first_part(all, kMaxLength - 3);
 }
 
 void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {

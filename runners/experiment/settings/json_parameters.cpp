@@ -286,12 +286,12 @@ void set_value(Json& configuration, const std::string& path, const Json& value, 
     if (place->is_array() && !place->empty()) {
       const auto i = place_in(*place, key);
       if (!i)
-        throw InputError(subject,
-                         "expected 0 to " + std::to_string(place->size() - 1) + " for its place in a list");
+        throw InputError(subject, "expected an index of the list, 0 to " + std::to_string(place->size() - 1));
       place = &(*place)[*i];
       continue;
     }
-    if (!place->is_object()) throw InputError(subject, "the path leads through a value");
+    if (!place->is_object())
+      throw InputError(subject, "the path continues below a plain value or an empty list");
     place = &(*place)[key];
   }
   *place = value;

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/parameters/input_error.h"
 #include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
@@ -9,8 +10,9 @@ namespace remote_touch {
 namespace {
 
 nlohmann::json table_named(const std::string& name) {
-  return nlohmann::json::parse(
-      embedded_or_file(embedded_second_implementation(), name, "a second implementation's"));
+  for (const EmbeddedText& table : embedded_second_implementation())
+    if (name == table.name) return nlohmann::json::parse(table.json);
+  throw InputError(name, "no table of this name: expected one of data/second_implementation");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ std::size_t number_of_kind(const std::string& name) {
 
 const std::vector<NoteKind>& note_kinds() {
   static const std::vector<NoteKind> kinds = {
-      {"other", "a note of a program or plug-in of one's own; replay prints its text"},
+      {"other", "a note of your own program or plug-in; replay prints its text"},
       {"phase not reached",
        "the run ends before a press, a motion or a change begins, or before the trajectory ends"},
       {"after the motion", "the press begins after the motion of the scene has ended"},
@@ -25,7 +25,7 @@ const std::vector<NoteKind>& note_kinds() {
       {"wide spacing", "a ball of the contact radius passes between the points"},
       {"points dropped", "many measured points are beyond scenario.max_depth_m"},
       {"frames unused", "not all frames of the recording were used"},
-      {"frames apart", "successive frames show different places"},
+      {"frames apart", "successive frames show different parts of the scene"},
       {"unusual rate", "the stamps of the recording may not be in seconds"},
       {"recording incomplete",
        "a bag was cut short, or its stamps are missing or out of order; a live session was interrupted"},

@@ -88,7 +88,7 @@ std::vector<Note> SurfaceWatch::notes() const {
   if (behind_ > 0) {
     std::snprintf(text, sizeof text,
                   "the hand was behind the surface that the camera sees in %.3g %% of the ticks, first at "
-                  "%.6g s, by up to %.3g mm; planned were %.3g mm at most",
+                  "%.6g s, by up to %.3g mm; at most %.3g mm were planned",
                   percent(behind_), first_behind_s_, 1e3 * deepest_m_, 1e3 * allowed_m_);
     notes.push_back({"behind the surface", text});
   }
@@ -102,7 +102,7 @@ std::vector<Note> SurfaceWatch::notes() const {
   }
   if (jumps_ > 0) {
     std::snprintf(text, sizeof text,
-                  "the hand jumped by %.3g mm at %.6g s, because its pixel then showed another place",
+                  "the hand jumped by %.3g mm at %.6g s, because its pixel then showed another surface",
                   1e3 * first_jump_m_, first_jump_s_);
     notes.push_back({"hand jumped", text});
     if (jumps_ > 1) {

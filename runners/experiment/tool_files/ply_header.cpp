@@ -83,7 +83,7 @@ std::string ply_problem(const std::filesystem::path& file) {
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   const PlyHeader header = ply_header_in(bytes);
   if (!header.ends) return "its header has no end";
-  if (header.bad_count) return "its header counts " + *header.bad_count;
+  if (header.bad_count) return "its header has a count that is not a number: " + *header.bad_count;
   const std::uint64_t rest = whole - header.size;
   std::uint64_t claimed = 0, elements = 0;
   for (const PlyElement& element : header.elements) {

@@ -51,9 +51,11 @@ Recipe recipe(const CompareRequest& request) {
 void require_traces_to_draw(const CompareRequest& request, const ResultComparison& comparison) {
   if (comparison.kind == "trace") return;
   if (!request.plot.empty())
-    throw InputError("--plot " + request.plot, "of " + comparison.kind + ": expected with two traces");
+    throw InputError("--plot " + request.plot,
+                     "the results are of kind " + comparison.kind + ": expected two traces");
   if (!request.view.empty())
-    throw InputError("--view " + request.view, "of " + comparison.kind + ": expected with two traces");
+    throw InputError("--view " + request.view,
+                     "the results are of kind " + comparison.kind + ": expected two traces");
 }
 
 void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {

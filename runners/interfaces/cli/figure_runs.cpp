@@ -70,7 +70,7 @@ std::string words(const std::vector<FigureRun>& runs, const FigureProgress& prog
   for (std::size_t i = 0; i < runs.size(); ++i) {
     made += progress.runs[i].state == JobState::done ? 1 : 0;
     if (progress.runs[i].state == JobState::running)
-      at_work += (at_work.empty() ? ", at work on " : ", ") + std::string(runs[i].entry->name);
+      at_work += (at_work.empty() ? ", making " : ", ") + std::string(runs[i].entry->name);
   }
   return std::to_string(made) + " of " + std::to_string(runs.size()) + at_work + "; about " +
          std::to_string(std::lround(progress.left.all_s)) + " s left";

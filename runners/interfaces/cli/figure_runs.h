@@ -38,7 +38,7 @@ void make_figures(
     const std::function<void(std::size_t run, const FigureContext& context, Figure figure)>& finish,
     const std::function<void(const FigureProgress& progress)>& report);
 
-// Returns the progress as text: "12 of 23, at work on 4.13, bounds; about 85 s left".
+// Returns the progress as text: "12 of 23, making 4.13, bounds; about 85 s left".
 std::string words(const std::vector<FigureRun>& runs, const FigureProgress& progress);
 
 }  // namespace remote_touch

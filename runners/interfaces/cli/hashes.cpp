@@ -16,8 +16,9 @@ int command_hashes(const CommandLine& line, const HashesRequest& request) {
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);
   write_hashes(request.output, hashes, provenance_of(trace.attributes()));
-  std::printf("%s: %zu hashes, the last of tick %d\n", printable(request.output).c_str(), hashes.tick.size(),
-              hashes.tick.empty() ? -1 : hashes.tick.back());
+  std::printf("%s: %zu hashes", printable(request.output).c_str(), hashes.tick.size());
+  if (!hashes.tick.empty()) std::printf(", the last of tick %d", hashes.tick.back());
+  std::printf("\n");
   return kDone;
 }
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -77,20 +78,28 @@ std::string page_that_leads_to(const std::string& address) {
   return written ? file : std::string();
 }
 
+void report_no_browser(const std::string& why) {
+  report_line("no browser was opened (" + why + "): open the address above in one");
+}
+
 // Opens the address in the browser of the desktop; Ctrl-C does not end that browser. Without a desktop
 // nothing is opened, and the user reads the printed address. Returns a file that is to be removed at the end,
-// or an empty name.
+// or an empty name. Reports why no browser could be started.
 std::string show_in_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
   std::string program = "xdg-open", place = page_that_leads_to(address);
-  if (place.empty()) return {};
+  if (place.empty()) {
+    report_no_browser("its page cannot be written");
+    return {};
+  }
   char* const arguments[] = {program.data(), place.data(), nullptr};
   posix_spawnattr_t own_session;
   posix_spawnattr_init(&own_session);
   posix_spawnattr_setflags(&own_session, POSIX_SPAWN_SETSID);
   pid_t child = 0;
-  posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
+  const int error = posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
   posix_spawnattr_destroy(&own_session);
+  if (error != 0) report_no_browser(program + ": " + std::strerror(error));
   return place;
 }
 
@@ -216,7 +225,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   add_report(options.provenance, result.report);
   if (!result.refused.empty()) add_refusal(options.provenance, result);
 
-  std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
+  std::printf("%s and %s: %s; ended: %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());
   const LiveReport report = live_report(result.log, result.counts);
   if (result.force_scale < 1)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/sweeps/sweep_file.h"
@@ -28,7 +29,7 @@ ShardFile read_part(const std::string& file) {
   const auto shard =
       std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
   if (shard == attributes.end())
-    throw InputError(file, "the result of a whole sweep: expected shards of one");
+    throw InputError(file, "is the result of a whole sweep: expected the shards of a sweep");
   part.shard = parse_shard(shard->second);
   attributes.erase(shard);
   const std::size_t pending = part.stored.result.runs_in(RunState::pending).size();
@@ -92,21 +93,35 @@ void add(const ShardFile& part, SweepResult& whole) {
 
 namespace {
 
-// Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
-// continued. Such a file is not replaced.
-void require_nothing_more(const std::string& file, const SweepResult& whole) {
+// Returns the sweep in the file; nothing if the file is absent or empty, or if --force lets another file be
+// replaced. Throws InputError for another file.
+std::optional<StoredSweep> sweep_in(const std::string& file, bool force) {
   std::error_code unreachable;
-  if (!std::filesystem::is_regular_file(file, unreachable)) return;
-  const StoredSweep there = read_sweep(file);
-  for (std::size_t run = 0; run < there.result.run_count(); ++run)
-    if (there.result.state[run] == RunState::done &&
+  if (!std::filesystem::is_regular_file(file, unreachable) ||
+      std::filesystem::file_size(file, unreachable) == 0)
+    return std::nullopt;
+  try {
+    return read_sweep(file);
+  } catch (const InputError&) {
+    if (!force) throw;
+    return std::nullopt;
+  }
+}
+
+// Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
+// continued. Such a file is not replaced, not even with --force.
+void require_nothing_more(const std::string& file, const SweepResult& whole, bool force) {
+  const std::optional<StoredSweep> there = sweep_in(file, force);
+  if (!there) return;
+  for (std::size_t run = 0; run < there->result.run_count(); ++run)
+    if (there->result.state[run] == RunState::done &&
         (run >= whole.run_count() || whole.state[run] != RunState::done))
       throw InputError(file, "holds runs that the shards do not: expected another file");
 }
 
 }  // namespace
 
-int command_merge(const CommandLine&, const MergeRequest& request) {
+int command_merge(const CommandLine& line, const MergeRequest& request) {
   std::vector<ShardFile> parts;
   for (const std::string& file : request.shards) {
     std::error_code absent;
@@ -125,9 +140,8 @@ int command_merge(const CommandLine&, const MergeRequest& request) {
   }
   if (!whole.runs_in(RunState::elsewhere).empty())
     throw InputError(parts.front().file, "damaged (runs are missing)");
-  const FileLock lock(request.output);
-  require_nothing_more(request.output, whole);
-  replace_only_results(request.output);
+  const FileLock lock = lock_output(line, request.output, request.shards);
+  require_nothing_more(request.output, whole, line.force);
   write_sweep(request.output, whole, parts.front().stored.attributes);
   return print_summary(request.output, whole);
 }

@@ -59,10 +59,6 @@ void require_export(const CommandLine& line, const std::string& output,
   require(line, output, inputs, begins_with(opening), "an export of such a result");
 }
 
-void replace_only_results(const std::string& output) {
-  set_replacement_rule(output, {.is_ours = has_result_header});
-}
-
 void require_distinct(const std::vector<OutputOption>& outputs) {
   for (auto a = outputs.begin(); a != outputs.end(); ++a)
     for (auto b = a + 1; b != outputs.end(); ++b)

@@ -31,10 +31,6 @@ void require_report(const CommandLine& line, const std::string& output,
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
-// Forbids later writes to this path to overwrite a file that is no result of this program. Used by a command
-// that has checked its output in another way.
-void replace_only_results(const std::string& output);
-
 // An option of one command and the file that it names; the file is empty if the option was not given.
 // require_distinct() throws InputError if two options name one file, however its path is written, because one
 // result would be lost. /dev/null may be named twice.

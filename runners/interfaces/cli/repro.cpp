@@ -64,7 +64,8 @@ class Repro {
 
   void write_config(const std::string& target) const {
     if (kind_ == "figure")
-      throw InputError("--config", "of a figure: expected with a trace, a sweep or hashes");
+      throw InputError("--config",
+                       "a figure has no single configuration: expected a trace, a sweep or hashes");
     require_report(line_, target, {file_}, kConfiguration);
     const std::string text = config() + "\n";
     write_file_atomically(target, text.data(), text.size());
@@ -137,7 +138,7 @@ class Repro {
   // Prints commands that make the result again from its configuration alone, and the reason for this detour.
   void print_detour() const {
     if (of("command").find(" scorecard ") != std::string::npos)
-      comment("it is of a scorecard, " + of("command") + " -o FOLDER; alone:");
+      comment("it belongs to a scorecard, made by " + of("command") + " -o FOLDER; to make it alone:");
     else
       comment("its command no longer makes this configuration (another file, or another default)");
     std::vector<std::string> words = program_words(), config = words;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/trace/trace.h"
@@ -44,7 +45,7 @@ TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, co
 
 // A few runs spread over the sweep, for at most about two seconds.
 struct Sample {
-  double seconds_per_run = 0;
+  std::optional<double> seconds_per_run = {};  // empty: no run was tried
   int failed = 0;
   SweepResult tried;  // only these runs are done in it
 };
@@ -58,7 +59,7 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   const auto start = Clock::now();
   constexpr std::size_t kSamples = 16;
   std::size_t done = 0;
-  Sample sample{0, 0, sweep.plan()};
+  Sample sample{std::nullopt, 0, sweep.plan()};
   for (; done < std::min(kSamples, runs.size()) && seconds_since(start) < 2; ++done) {
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
     const std::size_t run = runs[(7 * done % kSamples) * runs.size() / kSamples];
@@ -81,9 +82,12 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, 
   if (plan.is_there) std::printf("; %zu are done", plan.result.runs_in(RunState::done).size());
   if (const auto rule = sweep.refinement())
     std::printf("\n  refinement: up to %llu runs in all", static_cast<unsigned long long>(rule->budget));
-  std::printf("\n  about %.3g s on %d threads (%.3g ms a run, some tried)",
-              sample.seconds_per_run * static_cast<double>(runs) / omp_get_max_threads(),
-              omp_get_max_threads(), 1e3 * sample.seconds_per_run);
+  if (sample.seconds_per_run)
+    std::printf("\n  about %.3g s on %d threads (%.3g ms a run, some tried)",
+                *sample.seconds_per_run * static_cast<double>(runs) / omp_get_max_threads(),
+                omp_get_max_threads(), 1e3 * *sample.seconds_per_run);
+  else
+    std::printf("\n  no time to estimate: no run was tried");
   if (sample.failed > 0) std::printf("; %d of those tried failed", sample.failed);
   std::printf("\n  file: %.3g MB while it runs, less when it is finished\n",
               1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));

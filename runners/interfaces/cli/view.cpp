@@ -28,13 +28,13 @@ ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
   for (const std::string& file : request.results) is_sweep |= is_sweep_file(file);
   if (is_sweep && request.results.size() > 1)
     throw InputError(request.results.back(),
-                     "beside another result: expected one sweep alone, or two traces");
+                     "a sweep cannot be shown with another result: expected one sweep alone, or two traces");
   if (!is_sweep && !request.cells.empty())
     throw InputError("--cells " + request.cells.front(),
-                     "of " + request.results.front() + ": expected with a sweep");
+                     "only for a sweep, but " + request.results.front() + " is a trace: expected a sweep");
   if (is_sweep && !request.claims.empty())
     throw InputError("--claims " + request.claims,
-                     "of " + request.results.front() + ": expected with traces");
+                     "only for traces, but " + request.results.front() + " is a sweep: expected a trace");
   if (is_sweep) return sweep_page(request.results.front(), request.cells, options);
   return trace_page({request.results.begin(), request.results.end()}, options);
 }

@@ -58,7 +58,8 @@ void check(const remote_touch_renderer& r, const std::string& file) {
       require("create", r.create != nullptr);
   require("destroy", r.destroy != nullptr), require("on_frame", r.on_frame != nullptr),
       require("step", r.step != nullptr);
-  if (!r.prepare != !r.release) refuse("has only one of prepare and release");
+  if (!r.prepare != !r.release)
+    refuse("has only one of the functions prepare and release: expected both or neither");
   if (r.setting_count > kMaxSettings || (r.setting_count > 0 && !r.settings))
     refuse("settings: expected at most " + std::to_string(kMaxSettings));
   bool any_live = false;
@@ -91,6 +92,10 @@ std::vector<RendererEntry> load_plugin(const std::string& file) {
     entry.contact_model = static_cast<ContactModel>(functions->contact_model);
     entries.push_back(std::move(entry));
   }
+  if (entries.size() == kMaxRenderers &&
+      get(REMOTE_TOUCH_PLUGIN_VERSION, sizeof(remote_touch_renderer), kMaxRenderers) != nullptr)
+    throw InputError("--plugin " + file,
+                     "has too many renderers: expected at most " + std::to_string(kMaxRenderers));
   if (entries.empty())
     throw InputError("--plugin " + file, "has no renderer for version " +
                                              std::to_string(REMOTE_TOUCH_PLUGIN_VERSION) +

@@ -50,6 +50,16 @@ auto guarded(const remote_touch_renderer& functions, const char* name, Call&& ca
   }
 }
 
+// Makes a call of the library that frees something. Its exceptions are ignored: the caller may be a
+// destructor.
+template <class Call>
+void freed(Call&& call) noexcept {
+  try {
+    call();
+  } catch (...) {
+  }
+}
+
 const double* start_of(const std::vector<double>& column) {
   return column.empty() ? nullptr : column.data();
 }
@@ -57,7 +67,9 @@ const double* start_of(const std::vector<double>& column) {
 // The result of the library's prepare() for a frame.
 struct Prepared final : FramePreparation {
   Prepared(const remote_touch_renderer& of, void* made) : functions(of), handle(made) {}
-  ~Prepared() override { functions.release(handle); }
+  ~Prepared() override {
+    freed([this] { functions.release(handle); });
+  }
   Prepared(const Prepared&) = delete;
   Prepared& operator=(const Prepared&) = delete;
   const remote_touch_renderer& functions;
@@ -159,7 +171,7 @@ class PluginFactory final : public RendererFactory {
       return functions_.create(values_.data(), 1000, problem.text(), problem.size());
     });
     if (made == nullptr) return problem.reason();
-    functions_.destroy(made);
+    freed([&] { functions_.destroy(made); });
     return {};
   }
   std::vector<RecordingPart> inputs() const override { return {}; }
@@ -190,7 +202,7 @@ PluginRenderer::PluginRenderer(const remote_touch_renderer& functions, const std
 }
 
 PluginRenderer::~PluginRenderer() {
-  functions_.destroy(renderer_);
+  freed([this] { functions_.destroy(renderer_); });
 }
 
 void PluginRenderer::reserve(std::size_t points) {

@@ -12,8 +12,8 @@
 
 namespace remote_touch {
 
-// All methods except the destructor throw InputError if the library throws. prepare(), on_frame() and step()
-// also throw it if the library reports a problem.
+// All methods except the destructor throw InputError if the library throws; the destructor ignores that.
+// prepare(), on_frame() and step() also throw it if the library reports a problem.
 class PluginRenderer final : public Renderer {
  public:
   // functions must outlive this object. Throws InputError if the library makes no renderer of these values.

@@ -110,7 +110,7 @@ typedef struct {
   /* Makes a renderer. Returns null if the values make no sense together, or if there is no memory. It then
    * writes the reason into `problem` (of `size` bytes), in one line. A reason about values is written like
    * "reach_m = 2: expected below 1". haptic_rate_hz: calls of step per second. create is also called to check
-   * values; that renderer is destroyed at once. */
+   * values, with haptic_rate_hz = 1000 for every experiment; that renderer is destroyed at once. */
   void* (*create)(const double* values, double haptic_rate_hz, char* problem, size_t size);
   void (*destroy)(void* renderer);
   /* Announces that frames will have up to this number of points; may be null. */

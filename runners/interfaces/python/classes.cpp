@@ -116,11 +116,12 @@ PythonOutput make_output(const py::object& proxy_m, const py::object& force_N, c
 }
 
 constexpr const char* kOutput =
-    R"(What a tick gives; metres, newtons, world frame.
+    R"(The output of one tick; metres, newtons, world frame.
 
-proxy_m: of the proxy, or of the tool's centre of mass; None: the HIP. force_N: on the hand; None: none.
+proxy_m: position of the proxy, or of the tool's centre of mass; None: the HIP. force_N: force on the hand;
+None: none.
 slave_m: command to a slave robot; None: none yet. state: free, contact or entrenched. normal: unit, out of
-the surface. nearest_distance_m: of the proxy to the nearest point. The others are the columns of a trace of
+the surface. nearest_distance_m: from the proxy to the nearest point. The others are the columns of a trace of
 these names: rt.describe("trace"). torque_Nm, about the HIP, and tool_orientation, w x y z, are for classes
 with degrees_of_freedom = 6.)";
 

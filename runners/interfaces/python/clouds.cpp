@@ -22,10 +22,8 @@ namespace py = pybind11;
 namespace {
 
 // Returns a read-only array that shares the memory of a column of the cloud and keeps the cloud alive.
-// Returns None if the column is empty.
 template <class Number>
 py::object view(const std::vector<Number>& column, const py::object& owner) {
-  if (column.empty()) return py::none();
   py::array_t<Number> array(static_cast<py::ssize_t>(column.size()), column.data(), owner);
   array.attr("setflags")(py::arg("write") = false);
   return array;
@@ -34,6 +32,13 @@ py::object view(const std::vector<Number>& column, const py::object& owner) {
 template <auto kColumn>
 py::object column_view(const py::object& self) {
   return view(self.cast<const PythonCloud&>().shown->*kColumn, self);
+}
+
+// Returns None if the cloud has no such column. A cloud without points has none of them.
+template <auto kColumn>
+py::object optional_column_view(const py::object& self) {
+  if ((self.cast<const PythonCloud&>().shown->*kColumn).empty()) return py::none();
+  return column_view<kColumn>(self);
 }
 
 py::array_t<double> rows_of(const std::vector<double>& x, const std::vector<double>& y,
@@ -90,13 +95,13 @@ void bind_cloud(py::module_& module) {
       .def_property_readonly("x", &column_view<&PC::x>, "m, world frame; not copied")
       .def_property_readonly("y", &column_view<&PC::y>)
       .def_property_readonly("z", &column_view<&PC::z>)
-      .def_property_readonly("nx", &column_view<&PC::nx>, "unit normals, or None")
-      .def_property_readonly("ny", &column_view<&PC::ny>)
-      .def_property_readonly("nz", &column_view<&PC::nz>)
-      .def_property_readonly("colour", &column_view<&PC::colour>,
+      .def_property_readonly("nx", &optional_column_view<&PC::nx>, "unit normals, or None")
+      .def_property_readonly("ny", &optional_column_view<&PC::ny>)
+      .def_property_readonly("nz", &optional_column_view<&PC::nz>)
+      .def_property_readonly("colour", &optional_column_view<&PC::colour>,
                              "0xRRGGBB, 0xFF000000 where it is not known; or None")
-      .def_property_readonly("fixture_radius_m", &column_view<&PC::fixture_radius_m>)
-      .def_property_readonly("stiffness_N_per_m", &column_view<&PC::stiffness_N_per_m>)
+      .def_property_readonly("fixture_radius_m", &optional_column_view<&PC::fixture_radius_m>)
+      .def_property_readonly("stiffness_N_per_m", &optional_column_view<&PC::stiffness_N_per_m>)
       .def_property_readonly("columns", [](const PythonCloud& cloud) { return cloud.shown->columns(); })
       .def_property_readonly(
           "points", [](const PythonCloud& c) { return rows_of(c.shown->x, c.shown->y, c.shown->z); },

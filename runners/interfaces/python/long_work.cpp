@@ -116,7 +116,7 @@ void do_long_work(const py::object& report, int threads, const std::function<voi
 
 void require_no_long_work(const char* subject) {
   if (works_going_on > 0)
-    throw InputError(subject, "a run or a sweep is going on: expected the call before or after it");
+    throw InputError(subject, "a run or a sweep is in progress: expected the call before or after it");
 }
 
 void choose_python_kernels(const std::string& forced) {

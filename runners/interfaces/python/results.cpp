@@ -57,7 +57,7 @@ py::dict open_result(const std::string& file) {
     if (kind == "trace") columns = all_columns(StoredTrace(reader));
     if (kind == "figure") columns = all_columns(StoredFigure(reader));
   }
-  if (kind == "hashes") throw InputError(file, "is of hashes: expected a trace, a sweep or a figure");
+  if (kind == "hashes") throw InputError(file, "is a file of hashes: expected a trace, a sweep or a figure");
   if (kind != "sweep") return as_dict(kind.c_str(), std::move(columns), attributes);
   py::dict all = to_python(std::move(sweep));
   all["kind"] = "sweep";
@@ -151,7 +151,7 @@ void bind_results(py::module_& module) {
       [](const std::string& name) { return printed([&](std::FILE* out) { describe(name, out); }); },
       py::arg("name"), "All that has the name, as text.");
   module.def("list", &list_names, "Names and summaries by kind.");
-  module.def("version", &version, "Of the program that the module is.");
+  module.def("version", &version, "Returns the version of the program.");
 }
 
 }  // namespace remote_touch

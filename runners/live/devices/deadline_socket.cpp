@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -84,8 +85,14 @@ std::string DeadlineSocket::connect_to_path(const std::string& path, double dead
 }
 
 int DeadlineSocket::connect_within(const void* address, unsigned size, double deadline_s) noexcept {
-  if (::connect(handle_, static_cast<const sockaddr*>(address), size) == 0) return 0;
-  if (errno != EINPROGRESS) return errno;
+  while (::connect(handle_, static_cast<const sockaddr*>(address), size) != 0) {
+    if (errno == EINPROGRESS) break;
+    if (errno != EAGAIN) return errno;
+    // The queue of a UNIX socket is full. The system does not tell when there is room in it.
+    if (clock_->now_s() >= deadline_s) return ETIMEDOUT;
+    constexpr timespec kPause{0, 1'000'000};
+    ::nanosleep(&kPause, nullptr);
+  }
   if (const int error = wait(POLLOUT, deadline_s)) return error;
   int error = 0;
   socklen_t length = sizeof error;

@@ -36,7 +36,7 @@ class Script final : public Trajectory {
 // The hand starts at the first pose of the experiment's trajectory.
 std::unique_ptr<HapticDevice> open_browser(const std::string& address, const DeviceContext& context) {
   if (!address.empty()) throw InputError("--device browser:" + address, "expected browser:");
-  if (!context.poses) throw InputError("--device browser:", "needs a page: expected with --view");
+  if (!context.poses) throw InputError("--device browser:", "needs a page: expected the option --view too");
   const Experiment& experiment = context.experiment;
   return std::make_unique<BrowserDevice>(context.poses, Script(context).at(0),
                                          DevicePlacement(experiment.live()),

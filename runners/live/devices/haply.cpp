@@ -122,7 +122,8 @@ class Haply final : public HapticDevice {
     traits_.tick_rate_hz = address.number("rate", 1000, 100, 8000);
     opened_ = open_service(address, clock, kOpenWithin_s, open_link);
     if (!command_.set_device(opened_.device_id, key_))
-      throw address.refusal("the name of the device cannot be sent back; name another with device=ID");
+      throw address.refusal(
+          "the ID of the device cannot be part of a command; choose another device with device=ID");
     traits_.name = "Haply Inverse3 " + opened_.device_id;
     traits_.sensed_axes = opened_.handle_id.empty() ? 3 : 6;
     // A service that does not follow the protocol is reported here and not in the first tick. After this read

@@ -127,14 +127,13 @@ DeviceFault fault_of(const error_code& ec) {
 
 class BeastLink final : public HaplyLink {
  public:
-  BeastLink(const std::string& host, const std::string& port, const std::string& target, const Clock& clock,
-            double deadline_s)
+  BeastLink(const HaplyPlace& place, const Clock& clock, double deadline_s)
       : clock_(clock), web_(context_, clock) {
     DeadlineStream& stream = web_.next_layer();
     stream.begin(deadline_s);
-    const std::string problem = stream.socket.connect_to_host(host, port, deadline_s);
+    const std::string problem = stream.socket.connect_to_host(place.host, place.port, deadline_s);
     if (!problem.empty()) throw std::runtime_error(problem);
-    web_.handshake(host + ":" + port, target);
+    web_.handshake(place.authority(), place.target);
     web_.text(true);
     web_.auto_fragment(false);
     web_.read_message_max(kMaxMessage);
@@ -198,9 +197,9 @@ std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, const C
                                            double deadline_s) {
   const HaplyPlace place = haply_place(address);
   try {
-    return std::make_unique<BeastLink>(place.host, place.port, place.target, clock, deadline_s);
+    return std::make_unique<BeastLink>(place, clock, deadline_s);
   } catch (const std::exception& error) {
-    throw address.refusal("no Haply service at ws://" + place.host + ":" + place.port + place.target + " (" +
+    throw address.refusal("no Haply service at ws://" + place.authority() + place.target + " (" +
                           error.what() + "); start the Inverse service, or name where it runs");
   }
 }

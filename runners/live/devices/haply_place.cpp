@@ -4,6 +4,11 @@
 
 namespace remote_touch {
 
+std::string HaplyPlace::authority() const {
+  const bool is_ipv6 = host.find(':') != std::string::npos;
+  return (is_ipv6 ? "[" + host + "]" : host) + ":" + port;
+}
+
 HaplyPlace haply_place(const DeviceAddress& address) {
   HaplyPlace place;
   std::string rest = address.place();

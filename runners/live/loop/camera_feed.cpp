@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/sensor_cloud.h"
 
 namespace remote_touch {
+
+namespace {
+
+// Memory for the reason of the end, reserved at the start: the reason may be that there is no more memory.
+constexpr std::size_t kReservedForReason = 256;
+
+}  // namespace
 
 CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing,
                        const Renderer& renderer, const RigidTransform& registration, const Clock& clock,
@@ -22,14 +30,22 @@ CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing proc
       out_(out),
       sink_(std::move(sink)),
       on_frame_(std::move(on_frame)),
-      newest_s_(start_s_) {}
+      newest_s_(start_s_) {
+  why_.reserve(kReservedForReason);
+}
 
 std::string CameraFeed::ended() const {
   return ended_.load(std::memory_order_acquire) ? why_ : std::string();
 }
 
-bool CameraFeed::end(std::string why) {
-  why_ = std::move(why);
+// A reason that needs more memory than there is is cut off: an exception would end the program before the
+// loop has released the device.
+bool CameraFeed::end(std::string_view why) noexcept {
+  try {
+    why_ = why;
+  } catch (const std::bad_alloc&) {
+    why_ = why.substr(0, why_.capacity());
+  }
   ended_.store(true, std::memory_order_release);
   return false;
 }

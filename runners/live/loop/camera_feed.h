@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/sessions/sensed_points.h"
@@ -61,7 +62,7 @@ class CameraFeed {
   void handle(SensorFrame& sensed);
   bool is_newer(const SensorFrame& sensed);
   void send(Frame frame, double sensed_s);
-  bool end(std::string why);  // returns false
+  bool end(std::string_view why) noexcept;  // returns false
 
   const std::unique_ptr<DepthSource> source_;
   const FrameProcessing processing_;

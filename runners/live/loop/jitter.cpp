@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <thread>
 
@@ -25,33 +26,41 @@ class NoDevice final : public HapticDevice {
   DeviceTraits traits_;
 };
 
-// Measures lateness against a time grid that starts with the first tick. The loop itself uses another grid.
+// Measures lateness against the grid of the loop: it starts when the loop does, and its period is a whole
+// number of nanoseconds, see HapticDevice::run(). On another grid a punctual tick could get the number of the
+// tick before.
 class Watch final : public DeviceCycle {
  public:
   Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop, const Clock& clock)
-      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), clock_(clock), max_(duration_s * rate_hz) {
+      : jitter_(jitter),
+        period_ns_(std::llround(1e9 / rate_hz)),
+        stop_(stop),
+        clock_(clock),
+        max_(duration_s * rate_hz) {
     jitter_.late_s.reserve(static_cast<std::size_t>(max_) + 1);
   }
 
+  // Call it immediately before the loop begins.
+  void start() { start_ns_ = clock_.now_ns(); }
+
   bool tick() noexcept override {
-    const double now_s = clock_.now_s();
-    if (number_ < 0) start_s_ = now_s;
-    const auto number = static_cast<long long>((now_s - start_s_) * rate_hz_);
+    const std::int64_t since_ns = clock_.now_ns() - start_ns_;
+    const long long number = since_ns / period_ns_;
     if (static_cast<double>(number) >= max_ || (stop_ && *stop_)) return false;
     jitter_.missed += std::max(0LL, number - number_ - 1);
     number_ = number;
-    jitter_.late_s.push_back(now_s - start_s_ - static_cast<double>(number) / rate_hz_);
+    jitter_.late_s.push_back(1e-9 * static_cast<double>(since_ns - number * period_ns_));
     return true;
   }
 
  private:
   Jitter& jitter_;
-  const double rate_hz_;
+  const std::int64_t period_ns_;
   const std::atomic<bool>* const stop_;
   const Clock& clock_;
   const double max_;
   long long number_ = -1;
-  double start_s_ = 0;
+  std::int64_t start_ns_ = 0;
 };
 
 }  // namespace
@@ -62,6 +71,7 @@ Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>
   Watch watch(jitter, duration_s, rate_hz, stop, clock);
   std::thread loop([&] {
     jitter.real_time = become_real_time();
+    watch.start();
     device.run(watch);
   });
   loop.join();

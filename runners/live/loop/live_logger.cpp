@@ -43,10 +43,11 @@ void LiveLogger::append_to_log(const LiveTick& row) {
   if (log_failed_) return;
   try {
     log_.append(row, haptic_rate_hz_);
-  } catch (const std::exception&) {
+  } catch (const std::exception& error) {
     log_failed_ = true;
     log_ = LiveLog();  // its columns may differ in length: half a row would be worse than none
-    fail("the log failed: no memory for more ticks");
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    fail(std::string("the log failed: ") + (no_memory ? "no memory for more ticks" : error.what()));
   }
 }
 

@@ -249,7 +249,7 @@ void LiveParts::report_changes() {
   if (const LiveTrouble now = trouble(); now != reported_) {
     if (now.camera != reported_.camera) report_line(now.camera.empty() ? "frames arrive" : now.camera);
     if (now.force != reported_.force)
-      report_line(now.force.empty() ? "re-armed: the force begins when the hand is free"
+      report_line(now.force.empty() ? "re-armed: the force starts again when the hand is in free space"
                                     : "force is off: " + now.force);
     reported_ = now;
     if (options_.on_trouble) options_.on_trouble(now);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/measures/no_value.h"
+
 namespace remote_touch {
 
 namespace {
@@ -24,7 +26,25 @@ double quantile_of(const LiveReport::Times& times, double fraction) {
 
 double missed_percent(const LiveLog& log, double ticks) {
   const auto missed = static_cast<double>(log.missed_ticks);
-  return ticks > 0 ? 100 * missed / (ticks + missed) : 0;
+  return ticks > 0 ? 100 * missed / (ticks + missed) : kNoValue;
+}
+
+double mean_processing_us(const CameraCounts& camera) {
+  const int handled = camera.received - camera.reversed - camera.incomplete - camera.unrecorded;
+  return handled > 0 ? 1e6 * camera.processing_s / handled : kNoValue;
+}
+
+double longest_pause_ms(const CameraCounts& camera) {
+  return camera.received - camera.reversed > 1 ? 1e3 * camera.max_pause_s : kNoValue;
+}
+
+// Returns the number, or "none" for NaN, at the right of a column of this width.
+std::string cell(std::size_t width, const char* format, double value) {
+  char number[400];  // a double may have 309 digits before its point
+  std::snprintf(number, sizeof number, format, value);
+  std::string text = std::isnan(value) ? "none" : number;
+  text.insert(0, width - std::min(width, text.size()), ' ');
+  return text;
 }
 
 // Returns at most kSamples + 1 points of a curve: the share of times that were as long or longer, over the
@@ -91,8 +111,6 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
   const CameraCounts& camera = counts.camera;
   const auto number = [](auto count) { return static_cast<double>(count); };
   const double ticks = number(log.ticks);
-  const double handled =
-      std::max(1, camera.received - camera.reversed - camera.incomplete - camera.unrecorded);
   LiveReport report;
   report.times = {times_of("step, including the new frame", "step", log.step_s),
                   times_of("from tick to tick", "interval", log.interval_s),
@@ -107,15 +125,15 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"stalls, device released", number(counts.stalls)},
                    {"rows lost", number(counts.rows_lost)},
                    {"frames received", number(camera.received)},
-                   {"processing of a frame, mean us", 1e6 * camera.processing_s / handled},
-                   {"longest pause between frames, ms", 1e3 * camera.max_pause_s},
+                   {"processing of a frame, mean us", mean_processing_us(camera)},
+                   {"longest pause between frames, ms", longest_pause_ms(camera)},
                    {"frames skipped: not sent, or replaced unprocessed", number(camera.passed_over)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
                    {"frames replaced before the haptic loop used them", number(camera.overtaken)},
                    {"frames dropped for the recorder", number(camera.unrecorded)},
                    {"frames used in the wrong order", number(log.reversed_frames)},
-                   {"largest force written, N", log.max_force_N}};
+                   {"largest force written, N", log.ticks > 0 ? log.max_force_N : kNoValue}};
   report.piece_s = log.pieces.begin_s(), report.max_interval_s = log.pieces.greatest();
   return report;
 }
@@ -125,15 +143,16 @@ std::string text(const LiveReport& report) {
   std::string all =
       "  times in us                            count     least       p50       p99     p99.9   largest\n";
   for (const auto& times : report.times) {
-    const auto us = [&](double fraction) { return 1e6 * quantile_of(times, fraction); };
-    std::snprintf(row, sizeof row, "  %-34s %9zu %9.1f %9.1f %9.1f %9.1f %9.1f\n", times.name, times.count,
-                  us(0), us(0.5), us(0.99), us(0.999), us(1));
+    std::snprintf(row, sizeof row, "  %-34s %9zu", times.name, times.count);
     all += row;
+    for (const double fraction : {0.0, 0.5, 0.99, 0.999, 1.0})
+      all += " " + cell(9, "%.1f", 1e6 * quantile_of(times, fraction));
+    all += "\n";
   }
   for (const auto& count : report.counts) {
     const bool whole = count.value == std::floor(count.value);
-    std::snprintf(row, sizeof row, whole ? "  %-50s %12.0f\n" : "  %-50s %12.3g\n", count.name, count.value);
-    all += row;
+    std::snprintf(row, sizeof row, "  %-50s ", count.name);
+    all += row + cell(12, whole ? "%.0f" : "%.3g", count.value) + "\n";
   }
   return all;
 }
@@ -144,7 +163,7 @@ Figure live_figure(const LiveReport& report) {
       "Above: the share of ticks or frames that took as long or longer. Below: the longest time from "
       "one tick to the next, over the run."};
   figure.tables = {times_table(report), counts_table(report)};
-  Panel fractions{"How often", "log10 of the time / us", "log10 of the share that took longer"};
+  Panel fractions{"How often", "log10 of the time / us", "log10 of the share that took as long or longer"};
   for (const auto& times : report.times) {
     if (times.sorted.empty()) continue;
     figure.tables.push_back(longer_than(times));

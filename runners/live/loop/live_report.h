@@ -19,7 +19,7 @@ struct LiveReport {
   };
   struct Count {
     const char* name;
-    double value;
+    double value;  // NaN if there was nothing to measure
   };
   std::vector<Times> times;
   std::vector<Count> counts;
@@ -29,7 +29,8 @@ struct LiveReport {
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts);
 
-// Returns a text table: least time, p50, p99, p99.9 and greatest time in each row, then the counts.
+// Returns a text table: least time, p50, p99, p99.9 and greatest time in each row, then the counts. A
+// number that could not be measured is "none".
 std::string text(const LiveReport& report);
 
 // Returns the tables `times` and `counts` with the same numbers, the distributions of the times, and a curve

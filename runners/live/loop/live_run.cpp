@@ -59,11 +59,13 @@ class LiveThreads {
     });
   }
   // Ends the loop if an exception leaves the main thread's part. The destructor of a thread that was not
-  // joined would end the program.
+  // joined would end the program. If the loop does not end either, the program ends as in finish(), and the
+  // text of the exception is lost: without that it would wait for ever.
   ~LiveThreads() {
     if (!loop_.joinable()) return;
     parts_.stop();
     parts_.release();
+    if (is_done_.wait_for(kMaxStop) != std::future_status::ready) give_up();
     loop_.join();
   }
 

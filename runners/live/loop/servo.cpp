@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <limits>
 #include <string_view>
 
@@ -96,8 +98,19 @@ bool Servo::tick() noexcept try {
   return false;
 } catch (const std::bad_alloc&) {  // a frame that was not prepared
   return end_for({kNoMemory});
-} catch (...) {  // a renderer breaks its contract
+} catch (const std::exception& error) {  // a renderer breaks its contract, or a plug-in reports a problem
+  return end_for({text_of(error.what())});
+} catch (...) {
   return end_for({"an exception in the haptic loop"});
+}
+
+// Keeps the text of the exception without an allocation: what does not fit into the buffer is cut off. The
+// first text stays, because other threads may be reading it.
+const char* Servo::text_of(const char* reason) noexcept {
+  if (exception_text_[0] == '\0')
+    std::snprintf(exception_text_.data(), exception_text_.size(), "an exception in the haptic loop: %s",
+                  reason);
+  return exception_text_.data();
 }
 
 bool Servo::end_for(const DeviceFault& trouble) noexcept {

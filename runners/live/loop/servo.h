@@ -2,6 +2,7 @@
 // device.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -85,6 +86,7 @@ class Servo final : public DeviceCycle {
  private:
   void one_tick();
   bool end_for(const DeviceFault& trouble) noexcept;  // returns false
+  const char* text_of(const char* reason) noexcept;
   bool is_over() const noexcept;
   std::int64_t next_number(std::int64_t now_ns);
   void move_on_to(double time_s, LiveTick& row);
@@ -105,6 +107,7 @@ class Servo final : public DeviceCycle {
   DeviceReading last_reading_;
   LiveTick row_;
   std::atomic<std::int64_t> rows_lost_ = 0;
+  std::array<char, 512> exception_text_{};  // text of the exception that ended the loop; written once
   std::atomic<const char*> trouble_ = nullptr;
   std::atomic<bool> failed_ = false, latched_ = false;
 };

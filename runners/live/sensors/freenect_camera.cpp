@@ -154,9 +154,10 @@ void FreenectCamera::open_device(const std::string& address) {
   context_ = start_library();
   const int count = freenect_num_devices(context_.get());
   if (number >= count)
-    throw InputError(name_, (count <= 0 ? std::string("no Kinect is plugged in")
-                                        : std::to_string(count) + " Kinects are plugged in, from 0 on") +
-                                ": expected one that this user may open (lsusb, udev rules)");
+    throw InputError(name_,
+                     (count <= 0 ? std::string("no Kinect is plugged in")
+                                 : std::to_string(count) + " Kinects are plugged in, numbered from 0") +
+                         ": expected one that this user may open (lsusb, udev rules)");
   freenect_device* device = nullptr;
   const int code = freenect_open_device(context_.get(), &device, number);
   if (code < 0)
@@ -226,8 +227,8 @@ void FreenectCamera::process_events(const std::stop_token& stop) {
   }
   if (code >= 0) return;
   const std::lock_guard lock(mutex_);
-  failure_ = name_ + ": no more frames, the library says " + std::to_string(code) +
-             ": the camera was lost, or a recording of fakenect is at its end";
+  failure_ = name_ + ": no more frames (error " + std::to_string(code) +
+             " of the library): the camera was disconnected, or a recording of fakenect has ended";
   changed_.notify_one();
 }
 

@@ -121,8 +121,9 @@ class BeastServer final : public ViewServer {
     if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
     if (!failure) keep_from_children(acceptor_);
     if (failure)
-      throw InputError("--view-port " + std::to_string(port),
-                       "cannot be had (" + failure.message() + "): expected a free port, or 0 for any");
+      throw InputError(
+          "--view-port " + std::to_string(port),
+          "cannot be opened (" + failure.message() + "): expected a free port, or 0 for any free port");
   }
 
   asio::awaitable<void> accept_all() {

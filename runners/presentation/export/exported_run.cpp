@@ -23,12 +23,17 @@ void require_length(const Hdf5Reader& trace, const std::string& column, std::siz
 }
 
 std::vector<Vec3> vectors(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
-  if (!trace.has(kTrace + column)) return std::vector<Vec3>(ticks, Vec3::Zero());
+  if (!trace.has(kTrace + column)) trace.damaged("it has no " + kTrace + column);
   const auto flat = trace.values<double>(kTrace + column, 3);
   require_length(trace, column, flat.size() / 3, ticks);
   std::vector<Vec3> list;
   for (std::size_t i = 0; i + 2 < flat.size(); i += 3) list.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
   return list;
+}
+
+// Returns zeros if the trace does not have the column, as without a tool.
+std::vector<Vec3> vectors_or_zeros(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
+  return trace.has(kTrace + column) ? vectors(trace, column, ticks) : std::vector<Vec3>(ticks, Vec3::Zero());
 }
 
 std::vector<Eigen::Quaterniond> orientations(const Hdf5Reader& trace, const std::string& column,
@@ -80,10 +85,12 @@ ExportedRun exported_run(const ExportJob& job) {
   run.time_s = trace.values<double>("/trace/time");
   constexpr double kMaxTime_s = 2e9;  // seconds of a message have 32 bits
   for (const double time_s : run.time_s)
-    if (!(time_s >= 0 && time_s < kMaxTime_s)) trace.damaged("/trace/time has a time that cannot be");
+    if (!(time_s >= 0 && time_s < kMaxTime_s))
+      trace.damaged("/trace/time has a time that is not a number, negative, or 2e9 s or more");
   const std::size_t ticks = run.ticks();
   run.hip_W = vectors(trace, "hip_position", ticks), run.proxy_W = vectors(trace, "proxy_position", ticks);
-  run.force_N = vectors(trace, "force", ticks), run.torque_Nm = vectors(trace, "torque", ticks);
+  run.force_N = vectors(trace, "force", ticks);
+  run.torque_Nm = vectors_or_zeros(trace, "torque", ticks);
   run.hip_orientation_W = orientations(trace, "hip_orientation", ticks);
   run.tool_orientation_W = orientations(trace, "tool_orientation", ticks);
   run.frame = numbers<std::int32_t>(trace, "frame_index", ticks);

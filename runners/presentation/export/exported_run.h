@@ -18,7 +18,8 @@ namespace remote_touch {
 struct ExportedRun {
   Experiment experiment;
   std::vector<double> time_s = {};  // finite, 0 or more
-  std::vector<Vec3> hip_W = {}, proxy_W = {}, force_N = {}, torque_Nm = {};
+  std::vector<Vec3> hip_W = {}, proxy_W = {}, force_N = {};
+  std::vector<Vec3> torque_Nm = {};  // zeros if the trace does not have the column, as without a tool
   // Identity if the trace does not have the column, as without a tool.
   std::vector<Eigen::Quaterniond> hip_orientation_W = {}, tool_orientation_W = {};
   std::vector<std::int32_t> frame = {};        // newest in use

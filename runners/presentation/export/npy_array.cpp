@@ -33,6 +33,14 @@ std::size_t length_of_character(unsigned char first) {
   return first >= 0xf0 && first < 0xf5 ? 4 : 0;
 }
 
+// true: a character of this value has this many bytes in UTF-8. Halves of pairs of UTF-16 and numbers above
+// U+10FFFF are no characters.
+bool is_character(char32_t character, std::size_t length) {
+  if (character >= 0xd800 && character < 0xe000) return false;
+  const char32_t least = length == 4 ? 0x10000 : length == 3 ? 0x800 : length == 2 ? 0x80 : 0;
+  return character >= least && character <= 0x10ffff;
+}
+
 // Decodes UTF-8. Each byte that is not part of a valid character becomes U+FFFD.
 std::u32string characters(const std::string& text) {
   std::u32string all;
@@ -46,6 +54,7 @@ std::u32string characters(const std::string& text) {
       is_good = (next & 0xc0) == 0x80;
       character = character << 6 | (next & 0x3fu);
     }
+    is_good = is_good && is_character(character, length);
     all += is_good ? character : U'\xfffd';
     at += is_good ? length : 1;
   }

@@ -45,8 +45,8 @@ void write_npz(const ExportJob& job) try {
       archive.add(member_of(tables, table, column) + ".npy", npy_array(column));
     }
   archive.finish();
-} catch (const std::length_error&) {
-  throw InputError(job.output.string(), "would be larger than 4 GiB: expected .csv for so large a result");
+} catch (const std::length_error& limit) {
+  throw InputError(job.output.string(), std::string(limit.what()) + ": expected .csv for so large a result");
 }
 
 }  // namespace remote_touch

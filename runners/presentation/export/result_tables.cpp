@@ -66,7 +66,7 @@ Table table_of_sweep(const Hdf5Reader& file) {
   }
   table.columns.push_back({"state",
                            "1",
-                           "what became of the run",
+                           "state of the run",
                            states_of(result),
                            1,
                            {"not_sampled", "pending", "done", "failed", "elsewhere"}});
@@ -108,7 +108,7 @@ std::string exported_kind(const Hdf5Reader& result) {
   const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
-  std::string what = schema.empty() ? "names no schema" : "is of schema ";
+  std::string what = schema.empty() ? "has no attribute schema" : "is of schema ";
   throw InputError(result.file(),
                    what.append(schema).append(": expected a trace, a sweep, or a figure of this program"));
 }

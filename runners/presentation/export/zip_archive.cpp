@@ -47,8 +47,9 @@ std::string ZipArchive::opening(const std::string& name, const std::string& cont
 void ZipArchive::add(const std::string& name, const std::string& content) {
   constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
   constexpr std::size_t kMaxMembers = 65534, kHeader = 30;
-  if (size_ + kHeader + name.size() + content.size() > kMax || members_.size() >= kMaxMembers)
-    throw std::length_error("an archive has at most 4 GiB");
+  if (members_.size() >= kMaxMembers) throw std::length_error("would have more than 65534 members");
+  if (size_ + kHeader + name.size() + content.size() > kMax)
+    throw std::length_error("would be larger than 4 GiB");
   const Member member{name, crc_of(content), static_cast<std::uint32_t>(content.size()),
                       static_cast<std::uint32_t>(size_)};
   const std::string header = local_header(name, member.crc, member.size);

@@ -14,6 +14,7 @@ class ZipArchive {
  public:
   explicit ZipArchive(std::function<void(const std::string& bytes)> write) : write_(std::move(write)) {}
   // Throws std::length_error beyond 4 GiB or 65534 members, the limits of a ZIP archive without extensions.
+  // Its text says which: "would be larger than 4 GiB".
   void add(const std::string& name, const std::string& content);
   void finish();
 

@@ -3,6 +3,8 @@
 #include <openssl/evp.h>
 #include <zlib.h>
 
+#include <algorithm>
+
 #include "core/parameters/input_error.h"
 #include "runners/presentation/view/viewer_files.h"
 
@@ -10,29 +12,44 @@ namespace remote_touch {
 
 namespace {
 
+// Compresses in pieces, because zlib counts the bytes of a call in 32 bits.
 std::string gzip(const std::string& bytes) {
+  constexpr std::size_t kPiece = 1 << 20;
   constexpr int kGzip = 16, kLevel = 6, kMemory = 8;
   z_stream stream{};
   if (deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
   std::string packed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int code = deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
+  std::size_t read = 0, written = 0;
+  int code = Z_OK;
+  while (code == Z_OK) {
+    const std::size_t in = std::min(bytes.size() - read, kPiece),
+                      out = std::min(packed.size() - written, kPiece);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + read));
+    stream.avail_in = static_cast<uInt>(in);
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data() + written);
+    stream.avail_out = static_cast<uInt>(out);
+    code = deflate(&stream, read + in == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    read += in - stream.avail_in, written += out - stream.avail_out;
+  }
+  packed.resize(written);
   deflateEnd(&stream);
   if (code != Z_STREAM_END) throw std::bad_alloc();
   return packed;
 }
 
+// Encodes in pieces, because OpenSSL counts the bytes of a call in 31 bits. Three bytes give four characters,
+// so only the last piece is padded. Each call writes a zero behind its characters.
 std::string base64(const std::string& bytes) {
+  constexpr std::size_t kPiece = 3 << 20;
   std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
+  std::size_t written = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += kPiece)
+    written +=
+        static_cast<std::size_t>(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data() + written),
+                                                 reinterpret_cast<const unsigned char*>(bytes.data() + at),
+                                                 static_cast<int>(std::min(bytes.size() - at, kPiece))));
+  text.resize(written);
   return text;
 }
 

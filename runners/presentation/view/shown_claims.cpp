@@ -40,7 +40,7 @@ Json shown_claims(const std::filesystem::path& claims, const TextAttributes& run
   Json list = Json::array();
   if (claims.empty()) return list;
   const Json all =
-      parse_json(read_text_file(claims, "the claims.json of remote-touch figure"), claims.string());
+      parse_json(read_text_file(claims, "expected the claims.json of remote-touch figure"), claims.string());
   if (!all.is_array()) refuse(claims);
   const std::string figure = figure_of(run);
   for (const Json& claim : all) {

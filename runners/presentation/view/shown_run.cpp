@@ -84,10 +84,10 @@ std::string text_of(const std::vector<ShownFrame>& frames) {
   for (const ShownFrame& frame : frames)
     measured += frame.measured, in_box += frame.in_box, shown += frame.positions.size() / 3;
   const std::size_t count = std::max<std::size_t>(frames.size(), 1);
-  return std::to_string(frames.size()) + (frames.size() == 1 ? " frame; of " : " frames; of ") +
-         std::to_string(measured / count) + " points a frame " + std::to_string(in_box / count) +
-         " are around the action, " + std::to_string(shown / count) + " are shown" +
-         (shown == in_box ? "" : ": all near the proxy, of the others some");
+  return std::to_string(frames.size()) + (frames.size() == 1 ? " frame with " : " frames with ") +
+         std::to_string(measured / count) + (frames.size() == 1 ? " points; " : " points each on average; ") +
+         std::to_string(in_box / count) + " of them are around the action, " + std::to_string(shown / count) +
+         " are shown" + (shown == in_box ? "" : ": all points near the proxy and some of the others");
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ struct ShownRun::State {
         experiment(experiment_of_run(source.attributes, source.name)),
         r2_m(length_m(configuration["renderer"], "r2_m")),
         contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
-    if (note.empty() && changes_radii()) note = kOtherRadii;
+    if (changes_radii()) add_note(kOtherRadii);
     add_stored_notes();
     read_path();
     if (source.columns->has("tool_orientation")) read_tool();
@@ -110,10 +110,14 @@ struct ShownRun::State {
 
   std::string of(const char* name) const { return attribute(source.attributes, name); }
 
+  void add_note(const std::string& text) {
+    if (!text.empty()) note += (note.empty() ? "" : "; ") + text;
+  }
   // Adds the notes that the run stored, see RunReport.
   void add_stored_notes() {
-    for (const char c : of("notes")) note_of_run += c == '\n' ? std::string("; ") : std::string(1, c);
-    if (!note_of_run.empty()) note += (note.empty() ? "" : "; ") + note_of_run;
+    std::string notes;
+    for (const char c : of("notes")) notes += c == '\n' ? std::string("; ") : std::string(1, c);
+    add_note(notes);
   }
   bool changes_radii() const {
     const auto& changes = experiment.changes();
@@ -183,14 +187,14 @@ struct ShownRun::State {
     if (made.frames.empty()) {
       const ShownPointsRule rule{shown_box_W, std::max(r2_m, 1.5 * contact_radius_m), wanted_others};
       made = shown_frames(experiment, path, rule, kernels, stop);
+      if (!made.are_those_of_the_run) note = kOtherFrames + (note.empty() ? "" : "; " + note);
     }
     std::vector<ShownFrame> some;
     for (const ShownFrame& frame : made.frames) some.push_back(thinned(frame, wanted_others));
     Json list = Json::array();
     for (const ShownFrame& frame : some) list.push_back(frame_json(frame, numbers));
     run["frames"] = std::move(list);
-    if (!made.are_those_of_the_run)
-      run["note"] = note = kOtherFrames + (note_of_run.empty() ? "" : "; " + note_of_run);
+    run["note"] = note;
     run["shown"] = shown = text_of(some);
     if (made.X_WC) run["sensor"] = sensor_json(*made.X_WC);
   }
@@ -217,7 +221,7 @@ struct ShownRun::State {
   ShownFrames made;  // frames with as many points as the first json() requested
   BoundingBox shown_box_W;
   std::optional<TraceEvent> divergence;
-  std::string shown, note_of_run, note = source.note;
+  std::string shown, note = source.note;
 };
 
 ShownRun::ShownRun(RunSource source, const Kernels& kernels, const std::atomic<bool>* stop)

@@ -25,7 +25,7 @@ namespace {
 StoredSweep finished_sweep(const std::filesystem::path& file) {
   StoredSweep stored = read_sweep(file);
   if (stored.in_progress)
-    throw InputError(file.string(), "is not finished: expected the same `remote-touch sweep` to end first");
+    throw InputError(file.string(), "is not finished: run the same `remote-touch sweep` again until it ends");
   return stored;
 }
 

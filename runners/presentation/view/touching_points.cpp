@@ -17,11 +17,13 @@ double distance_m(const VoxelTool& tool, const ToolPose& pose, const Vec3& p_W) 
 }
 
 // Returns the points that can touch in any of the poses. The distance of a point changes by no more than the
-// tool moves. Returns none if no pose from the middle one on is finite.
+// tool moves. Returns none if no pose is finite.
 std::vector<std::uint32_t> candidates(const VoxelTool& tool, std::span<const ToolPose> poses,
                                       const PointCloud& cloud) {
-  const auto middle =
+  // The pose from which the tool moves least: near the middle.
+  auto middle =
       std::find_if(poses.begin() + static_cast<std::ptrdiff_t>(poses.size() / 2), poses.end(), is_known);
+  if (middle == poses.end()) middle = std::find_if(poses.begin(), poses.end(), is_known);
   std::vector<std::uint32_t> found;
   if (middle == poses.end()) return found;
   double motion_m = 0;

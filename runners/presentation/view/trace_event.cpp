@@ -26,7 +26,7 @@ void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vect
   SurfaceSide side(held_depth_m);
   for (std::size_t i = 0; i < distance_m.size(); ++i)
     if (side.add(distance_m[i]))
-      events.push_back({i, "pop-through", "The proxy's centre gets behind the true surface."});
+      events.push_back({i, "pop-through", "The proxy's centre passes behind the true surface."});
 }
 
 void find_force_jump(const ColumnSource& trace, std::vector<TraceEvent>& events) {
@@ -86,15 +86,18 @@ void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& 
   auto angle_rad = values_or_none<double>(trace, "sequence_angle");
   missed.resize(step.size()), running.resize(step.size());
   distance_m.resize(step.size(), NAN), angle_rad.resize(step.size(), NAN);
-  for (std::size_t i = 1; i < step.size(); ++i) {
-    for (std::int32_t ended = step[i - 1]; ended < step[i]; ++ended) {
-      const bool is_late = ended == step[i - 1] && missed[i] > missed[i - 1];
+  // Before tick 0 the task is in its step 0, which has not begun.
+  std::int32_t step_before = 0, missed_before = 0, running_before = 0;
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    for (std::int32_t ended = step_before; ended < step[i]; ++ended) {
+      const bool is_late = ended == step_before && missed[i] > missed_before;
       events.push_back({i, "task",
                         name_of_step(ended, steps) + (is_late ? " is missed" : " is done") +
                             from_goal(distance_m[i], angle_rad[i]) + "."});
     }
-    if (running[i] != 0 && (running[i - 1] == 0 || step[i] != step[i - 1]))
+    if (running[i] != 0 && (running_before == 0 || step[i] != step_before))
       events.push_back({i, "task", name_of_step(step[i], steps) + " begins."});
+    step_before = step[i], missed_before = missed[i], running_before = running[i];
   }
 }
 

@@ -24,7 +24,8 @@ BagChunk::BagChunk(const ByteFile& file, const ChunkPlace& place) : file_(file),
   decompressor_ = make_decompressor(place.compression, file.name());
   if (!decompressor_ && !place.compression.empty() && place.compression != "none")
     refuse("compression = \"" + place.compression.substr(0, 32) + "\": expected lz4, zstd, bz2 or none");
-  if (!decompressor_ && place.size != place.stored_size) refuse("is not compressed, but has two sizes");
+  if (!decompressor_ && place.size != place.stored_size)
+    refuse("is not compressed, but its stored size and its decoded size differ");
   if (decompressor_ && place.size > kMaxBytes)
     refuse("claims " + std::to_string(place.size) + " bytes when decompressed: expected up to " +
            std::to_string(kMaxBytes));

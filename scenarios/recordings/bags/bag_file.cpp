@@ -87,9 +87,13 @@ std::vector<fs::path> files_of_bag(const fs::path& path) {
 std::unique_ptr<BagFile> open_bag(const fs::path& path, const WantedTopic& wanted) {
   if (!fs::is_directory(path)) return open_file(path, wanted);
   std::vector<std::unique_ptr<BagFile>> parts;
-  for (const fs::path& part : parts_of(path)) parts.push_back(open_file(part, wanted));
+  std::vector<std::string> names;
+  for (const fs::path& part : parts_of(path)) {
+    parts.push_back(open_file(part, wanted));
+    names.push_back(part.filename().string());
+  }
   if (parts.size() == 1) return std::move(parts.front());
-  return std::make_unique<JoinedBags>(path.string(), std::move(parts), wanted);
+  return std::make_unique<JoinedBags>(path.string(), std::move(parts), names, wanted);
 }
 
 }  // namespace remote_touch

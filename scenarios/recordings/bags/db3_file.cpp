@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <new>
 
 #include "core/parameters/input_error.h"
@@ -137,23 +136,26 @@ void Db3File::list_topics(const WantedTopic& wanted) {
     BagTopic topic;
     topic.name = text_in(query.get(), 1), topic.type = ros1_type(text_in(query.get(), 2));
     topic.encoding = text_in(query.get(), 3);
-    ids_.push_back(sqlite3_column_int64(query.get(), 0));
-    is_wanted_.push_back(wanted(topic));
-    add_topic(name_, std::move(topic));
+    const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
+      return other.name == topic.name && other.type == topic.type && other.encoding == topic.encoding;
+    });
+    const bool is_new = same == topics_.end();
+    const std::size_t index =
+        is_new ? add_topic(name_, topic) : static_cast<std::size_t>(same - topics_.begin());
+    if (is_new) is_wanted_.push_back(wanted(topic));
+    topic_of_id_.emplace(sqlite3_column_int64(query.get(), 0), index);
   }
   if (step != SQLITE_DONE) refuse();
 }
 
 // Lists the messages without reading their data, which SQLite stores in separate pages.
 void Db3File::list_messages() {
-  std::map<std::int64_t, std::size_t> topic_of;
-  for (std::size_t t = 0; t < ids_.size(); ++t) topic_of.emplace(ids_[t], t);
   const Query query = prepared(database_, "SELECT rowid, topic_id, timestamp FROM messages ORDER BY rowid");
   if (!query) refuse();
   int step = SQLITE_ROW;
   while ((step = sqlite3_step(query.get())) == SQLITE_ROW) {
-    const auto topic = topic_of.find(sqlite3_column_int64(query.get(), 1));
-    if (topic == topic_of.end()) continue;
+    const auto topic = topic_of_id_.find(sqlite3_column_int64(query.get(), 1));
+    if (topic == topic_of_id_.end()) continue;
     if (!is_wanted_[topic->second]) {
       ++topics_[topic->second].messages;
       continue;

@@ -1,9 +1,13 @@
 // Bags of ROS 2 in databases of SQLite (.db3).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "scenarios/recordings/bags/bag_file.h"
 
@@ -28,7 +32,7 @@ class Db3File final : public BagFile {
 
   std::string name_;
   sqlite3* database_ = nullptr;
-  std::vector<std::int64_t> ids_;  // id of each topic in the database
+  std::map<std::int64_t, std::size_t> topic_of_id_;  // topic of each id in the database
   std::vector<bool> is_wanted_;
   mutable std::mutex mutex_;  // guards the database
 };

@@ -160,8 +160,8 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
     require_pinhole(K.data(), 3, "K", subject);
   if (rectified && info.region.do_rectify)
     throw InputError(subject,
-                     "roi.do_rectify = true: expected false, for the region of the rectified image is "
-                     "not told");
+                     "roi.do_rectify = true: expected false, because the region of the rectified image "
+                     "is not stated");
   camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
   const auto& d = info.distortion;
   if (rectified) return;

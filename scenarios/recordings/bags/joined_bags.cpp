@@ -5,10 +5,11 @@
 namespace remote_touch {
 
 JoinedBags::JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
-                       const WantedTopic& wanted)
+                       const std::vector<std::string>& part_names, const WantedTopic& wanted)
     : parts_(std::move(parts)) {
-  for (const auto& part : parts_) {
-    if (remark_.empty()) remark_ = part->remark();
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const auto& part = parts_[p];
+    add_remark(part_names[p], part->remark());
     for (std::size_t t = 0; t < part->topics().size(); ++t) {
       BagTopic topic = part->topics()[t];
       const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
@@ -26,6 +27,11 @@ JoinedBags::JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagF
     }
   }
   sort_places();
+}
+
+void JoinedBags::add_remark(const std::string& part_name, const std::string& remark) {
+  if (remark.empty()) return;
+  remark_ += (remark_.empty() ? "" : "; ") + part_name + " " + remark;
 }
 
 std::string JoinedBags::start(const MessagePlace& place, std::uint64_t max_bytes) const {

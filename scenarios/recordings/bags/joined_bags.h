@@ -11,11 +11,15 @@ namespace remote_touch {
 
 class JoinedBags final : public BagFile {
  public:
-  // name: path of the whole bag, for an InputError.
-  JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts, const WantedTopic& wanted);
+  // name: path of the whole bag, for an InputError. part_names: names of the parts' files, for the remark.
+  JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
+             const std::vector<std::string>& part_names, const WantedTopic& wanted);
   std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
 
  private:
+  // Adds what is wrong with a part to the remark of the whole bag.
+  void add_remark(const std::string& part_name, const std::string& remark);
+
   // MessagePlace::part of this bag is an index into all_.
   struct PlaceInFile {
     const BagFile* file;

@@ -154,7 +154,7 @@ void McapFile::scan() {
     at = record.end();
   }
   if (!ended) {
-    remark_ = "was cut short after " + std::to_string(at) + " bytes of whole records: what is before is used";
+    remark_ = "was cut short after " + std::to_string(at) + " bytes of whole records: only these are used";
   } else if (chunks > 0 && remark_.empty()) {
     remark_ = "has no index of all messages: it was read from end to end";
   }

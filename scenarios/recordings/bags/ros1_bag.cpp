@@ -68,7 +68,7 @@ std::uint32_t Ros1Record::number(const std::string& name, const std::string& sub
 int Ros1Record::opcode(const std::string& subject) const {
   const auto found = values.find("op");
   if (found == values.end() || found->second.size() != 1)
-    throw InputError(subject, "has a record of no kind");
+    throw InputError(subject, "has a record without a valid opcode");
   return static_cast<unsigned char>(found->second[0]);
 }
 
@@ -89,7 +89,7 @@ Ros1Bag::Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted)
     for (const Listed& entry : listed_)
       if (entry.index_at == 0) scan_chunk(entry.chunk_at);
     remark_ = is_whole ? "was not closed: it was read from end to end"
-                       : "was cut short: what is before, in whole chunks, is used";
+                       : "was cut short: only its whole chunks are used";
   }
   sort_places();
 }
@@ -168,7 +168,7 @@ void Ros1Bag::add_index(std::uint64_t chunk_at, const Ros1Record& record) {
   constexpr std::uint64_t kEntry = 12;
   const std::uint32_t connection = record.number("conn", file_.name());
   if (record.number("ver", file_.name()) != 1 || record.data_size > kMaxPlaces * kEntry)
-    throw InputError(file_.name(), "has a list of messages of another version or of too many");
+    throw InputError(file_.name(), "has a list of messages of another version, or with too many messages");
   const auto topic = topic_of_.find(connection);
   if (topic != topic_of_.end() && !is_wanted_[topic->second]) {
     topics_[topic->second].messages += record.data_size / kEntry;

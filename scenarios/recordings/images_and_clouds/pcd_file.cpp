@@ -66,8 +66,9 @@ void check_claimed_size(const std::string& file, const PcdHeader& header, std::s
 double real_number(const std::string& where, std::string_view word) {
   double value = 0;
   const char* end = word.data() + word.size();
+  const bool has_two_signs = word.starts_with("+-");
   const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
-  if (error != std::errc() || stop != end)
+  if (has_two_signs || error != std::errc() || stop != end)
     throw InputError(where, shown(word) + ": expected a number or nan");
   return value;
 }

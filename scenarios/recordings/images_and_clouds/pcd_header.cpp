@@ -94,7 +94,7 @@ PcdField coordinate(const std::string& file, const PcdHeader& header, const std:
   const auto named = [&](const PcdField& field) { return field.name == name; };
   const auto found = std::find_if(header.fields.begin(), header.fields.end(), named);
   if (found == header.fields.end()) {
-    throw InputError(file, "FIELDS has no " + name + ": needed are x, y and z");
+    throw InputError(file, "FIELDS has no " + name + ": expected x, y and z");
   }
   if (found->type != 'F' || found->size < 4 || found->count != 1) {
     throw InputError(file, "field " + name + " = " + found->text() + ": expected TYPE F SIZE 4 or 8 COUNT 1");

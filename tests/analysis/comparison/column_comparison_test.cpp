@@ -125,7 +125,7 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({1, 2})), "3 rows of 1 against 2 rows of 1");
   EXPECT_EQ(problem(numbers({1, 2, 3}, 3)), "3 rows of 1 against 1 rows of 3");
   EXPECT_EQ(problem(numbers({1, 2, 3}, 1, "mm")), "units m against mm");
-  EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "another kind of values");
+  EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "different type of values");
   EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
   // The rows that both have are compared nevertheless.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
@@ -146,7 +146,7 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   EXPECT_EQ(c.outside, 1u);
   EXPECT_EQ(c.max, 0);
   EXPECT_EQ(compare_columns(state({0}), state({0}, {"free", "touching"}), {}).problem,
-            "other names of values");
+            "different names of the values");
   const Column hash = {"h", "1", "", std::vector<std::uint64_t>{1, 2}, 1, {}};
   Column other = hash;
   other.values = std::vector<std::uint64_t>{1, 3};

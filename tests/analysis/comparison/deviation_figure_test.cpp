@@ -61,6 +61,23 @@ TEST(DeviationFigure, UpTo2000RowsAreDrawnOneByOne) {
   EXPECT_EQ(numbers(figure.tables[1], "deviation"), Numbers{0});
 }
 
+TEST(DeviationFigure, CaptionTellsWhetherColumnsDiffer) {
+  const std::vector<Column> a = zeros(5, {"x", "y"});
+  std::vector<Column> b = a;
+  EXPECT_EQ(figure_of(a, b).caption, "No column differs.");
+  value(b, 1, 3) = 0.5;
+  EXPECT_EQ(figure_of(a, b, {{"x", {1, 0}}}).caption, "1 column(s) differ, within the tolerances.");
+  value(b, 2, 3) = 0.5;
+  EXPECT_EQ(figure_of(a, b, {{"x", {1, 0}}}).caption, "2 column(s) differ.");
+  const auto without_time = [](std::vector<Column> columns) {
+    columns.erase(columns.begin());
+    return columns;
+  };
+  EXPECT_EQ(figure_of(without_time(a), without_time(b)).caption,
+            "2 column(s) differ. Nothing is drawn, because the baseline has no column time.");
+  EXPECT_EQ(figure_of(without_time(a), without_time(a)).caption, "No column differs.");
+}
+
 TEST(DeviationFigure, HasAtMostEightPanelsInTheTracesOrder) {
   const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
   const std::vector<Column> a = zeros(5, names);

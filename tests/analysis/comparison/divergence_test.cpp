@@ -83,7 +83,7 @@ TEST(Causes, EveryInput) {
       proxy_x(c, tick) += 1;  // a consequence of the change
     }));
     EXPECT_EQ(found.cause, Cause::input) << name;
-    EXPECT_EQ(found.explanation, std::string(name) + " differs; the renderers had different input");
+    EXPECT_EQ(found.explanation, std::string("different inputs of the renderers: ") + name);
   }
   const Divergence all = divergence(after([&](Columns& c) {
     for (const auto& [name, change] : inputs) change(c);
@@ -183,6 +183,15 @@ TEST(Causes, DriftIsTheCauseIfFramesAndStatesAreMissing) {
   EXPECT_EQ(found.frame, "unknown: the traces have no frame_index here");
 }
 
+TEST(Divergence, HasNoTimeWithoutAColumnTime) {
+  const Columns bare{find(lift(), "proxy_position")};
+  Columns other = bare;
+  proxy_x(other, 300) += 1;
+  const auto found = compare_traces(ColumnsInMemory(bare), ColumnsInMemory(other), {}, {}).divergence;
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(std::isnan(found->time_s));
+}
+
 TEST(Causes, HaveNames) {
   std::set<std::string> names;
   for (const Cause cause :
@@ -251,8 +260,8 @@ TEST(FrameText, NamesTheFrameAndTheNextOne) {
     proxy_x(changed, tick) += 1;
     return divergence(compare(columns, changed)).frame;
   };
-  EXPECT_EQ(at(0), "none had arrived yet");
-  EXPECT_EQ(at(9), "none had arrived yet");
+  EXPECT_EQ(at(0), "no frame had arrived yet");
+  EXPECT_EQ(at(9), "no frame had arrived yet");
   EXPECT_EQ(at(10), "frame 0 since tick 10, frame 4 with tick 50");
   EXPECT_EQ(at(49), "frame 0 since tick 10, frame 4 with tick 50");
   EXPECT_EQ(at(50), "frame 4 since tick 50, frame 5 with tick 90");

@@ -153,9 +153,10 @@ TEST(TickHashes, ColumnsThatAreNotHashesAreRefused) {
   EXPECT_HAS(refused(Ticks{0}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks and hashes differ in number)");
   EXPECT_HAS(refused(Ticks{0, 2, 2}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
   EXPECT_HAS(refused(Ticks{-1, 2, 3}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
-  EXPECT_HAS(refused(Ticks{0}, Ticks{1}), "h.h5: damaged (/hashes/tick_hash has values of another kind)");
+  EXPECT_HAS(refused(Ticks{0}, Ticks{1}),
+             "h.h5: damaged (/hashes/tick_hash has values of another type or width)");
   EXPECT_HAS(refused(std::vector<double>{0}, Hashes{1}),
-             "h.h5: damaged (/hashes/tick has values of another kind)");
+             "h.h5: damaged (/hashes/tick has values of another type or width)");
   const fs::path one = with_columns(folder, {{"tick", "1", "", Ticks{0}, 1, {}}});
   EXPECT_HAS(refusal([&] { read_hashes(one); }), "h.h5: damaged (/hashes/tick_hash is missing)");
 }
@@ -166,7 +167,7 @@ TEST(TickHashes, ATraceWithoutARunningHashIsRefused) {
   columns.back().values = std::vector<double>(10);
   const fs::path numbers = stored(folder, "numbers.h5", columns);
   EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(numbers), 1); }),
-             "tick_hash has values of another kind");
+             "tick_hash has values of another type or width");
   columns.pop_back();
   const fs::path none = stored(folder, "none.h5", columns);
   EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(none), 1); }),

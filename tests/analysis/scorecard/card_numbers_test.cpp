@@ -87,6 +87,12 @@ TEST(CardNumbers, EachNumberOutsideHasItsLine) {
             "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10 (0 to 0.28)");
 }
 
+TEST(CardNumbers, AMeasureOfAnotherUnitIsADifference) {
+  CardNumbers now = numbers();
+  now.means[1].units = "mN";
+  EXPECT_EQ(only(differences(numbers(), now)), "flat, proxy, noise 3 mm: max_force is in mN, stored in N");
+}
+
 TEST(CardNumbers, NewNumbersAreDifferencesAndMissingOnesAreNot) {
   CardNumbers now = numbers();
   now.counts[1].place.method = "newcomer", now.means[1].place.method = "newcomer";

@@ -43,6 +43,14 @@ TEST(SuccessRule, ARunThatFailedIsNoSuccess) {
   EXPECT_FALSE(won[4]);
 }
 
+TEST(SuccessRule, OnlyFinishedRunsSucceedWithoutBounds) {
+  SweepResult sweep = sweep_of(std::vector<double>(10, 0), std::vector<double>(10, 2.5));
+  sweep.state[4] = RunState::failed;
+  const std::vector<bool> won = successes(sweep, {});
+  EXPECT_EQ(std::count(won.begin(), won.end(), true), 9);
+  EXPECT_FALSE(won[4]);
+}
+
 TEST(SuccessRule, TheTypicalFailureIsTheOneInTheMiddle) {
   const SweepResult sweep = sweep_of({0, 0, 0, 0, 0, -4, -2, 0, -3, kNan}, std::vector<double>(10, 2.5));
   EXPECT_EQ(typical_failure(sweep, kBounds, 0), -1);

@@ -26,5 +26,23 @@ TEST(Extremes, AreNanIfAValueIsNanOrMissing) {
   EXPECT_TRUE(std::isnan(min_or_nan(1, kNan)) && std::isnan(min_or_nan(kNan, 1)));
 }
 
+TEST(Extremes, AreOverTheValuesThatQualify) {
+  const std::vector<double> values = {4, kNan, -3, 2};
+  const auto value = [&](std::size_t i) { return values[i]; };
+  const auto is_even = [](std::size_t i) { return i % 2 == 0; };
+  EXPECT_EQ(max_where(values.size(), is_even, value), 4);
+  EXPECT_EQ(min_where(values.size(), is_even, value), -3);
+}
+
+TEST(Extremes, AreNanIfNoValueQualifiesOrOneThatDoesIsNan) {
+  const std::vector<double> values = {4, kNan};
+  const auto value = [&](std::size_t i) { return values[i]; };
+  for (const bool all : {false, true}) {
+    const auto qualifies = [&](std::size_t) { return all; };
+    EXPECT_TRUE(std::isnan(max_where(values.size(), qualifies, value)));
+    EXPECT_TRUE(std::isnan(min_where(values.size(), qualifies, value)));
+  }
+}
+
 }  // namespace
 }  // namespace remote_touch::extremes_test

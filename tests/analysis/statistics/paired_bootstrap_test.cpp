@@ -67,5 +67,13 @@ TEST(PairedBootstrap, SkipsNan) {
   EXPECT_TRUE(std::isnan(bootstrap_mean({{5}}, 1).low));
 }
 
+TEST(PairedBootstrap, HasNoIntervalWithoutDraws) {
+  for (const int draws : {0, -1}) {
+    const MeanDifference mean = bootstrap_mean({{1, 3}}, 1, draws);
+    EXPECT_EQ(mean.mean, 2);
+    EXPECT_TRUE(std::isnan(mean.low) && std::isnan(mean.high));
+  }
+}
+
 }  // namespace
 }  // namespace remote_touch::paired_bootstrap_test

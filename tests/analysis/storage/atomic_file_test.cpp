@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 void expect_unwritable(const fs::path& file) {
   const std::string message = refusal([&] { write_trace(file, awkward_trace(2000), kProvenance, {}); });
   EXPECT_HAS(message, file.string() + ": cannot be written (");
-  EXPECT_HAS(message, ": expected a writable place");
+  EXPECT_HAS(message, ": expected a writable folder");
 }
 
 TEST(WriteTrace, PlacesThatCannotBeWritten) {
@@ -161,6 +161,40 @@ TEST(WriteFilesTogether, ReplacesAllOrNone) {
   EXPECT_EQ(bytes_of(folder / "new"), "");
   EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"a", "b", "new", "there"}));
   EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
+}
+
+// The second rename fails, and then the one that puts the first file back.
+TEST(WriteFilesTogether, KeepsAnOldFileThatCannotBePutBack) {
+  const TestFolder folder("atomic_file_test");
+  folder.write("a", "old a"), folder.write("b", "old b");
+  const std::string kept = temporary_of(folder / "a").string() + "-old";
+  const FailedRename failed(1, EDQUOT, 2);
+  const std::string why = refusal([&] {
+    write_files_together({{folder / "a", "new a"}, {folder / "b", "new b"}});
+  });
+  EXPECT_HAS(why, "b: cannot be written (Disk quota exceeded)");
+  EXPECT_HAS(why, "; the old " + (folder / "a").string() + " is now " + kept);
+  EXPECT_EQ(bytes_of(kept), "old a");
+  EXPECT_EQ(bytes_of(folder / "b"), "old b");
+  EXPECT_EQ(files_in(folder.path()).size(), 3u);
+}
+
+fs::perms permissions_of(const fs::path& file) {
+  return fs::status(file).permissions();
+}
+
+TEST(WriteWholeFile, KeepsThePermissionsOfTheFileThatItReplaces) {
+  const TestFolder folder("atomic_file_test");
+  for (const unsigned mode : {0600u, 0640u, 0755u}) {
+    fs::permissions(folder.write("file", "old"), static_cast<fs::perms>(mode));
+    write_file_atomically(folder / "file", "new", 3);
+    EXPECT_EQ(permissions_of(folder / "file"), static_cast<fs::perms>(mode));
+    const fs::path temporary = temporary_of(folder / "file");
+    folder.write(temporary.filename(), "whole");
+    move_into_place(temporary, folder / "file");
+    EXPECT_EQ(bytes_of(folder / "file"), "whole");
+    EXPECT_EQ(permissions_of(folder / "file"), static_cast<fs::perms>(mode));
+  }
 }
 
 TEST(MoveIntoPlace, RemovesAFileThatCannotBeMoved) {

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <vector>
 
+#include "tests/analysis/storage/system_answers.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::block_journal_test {
@@ -128,14 +129,18 @@ TEST(BlockJournal, RefusesToOverwriteAnExistingFile) {
   write(folder);
   const std::string bytes = bytes_of(folder / "x.unfinished");
   const std::string why = refusal([&] { JournalWriter(folder / "x", {0, "first"}); });
-  EXPECT_HAS(why, "x.unfinished: is there already");
+  EXPECT_HAS(why, "x.unfinished: exists, an earlier recording");
   EXPECT_HAS(why, "remote-touch recover");
-  EXPECT_HAS(refusal([&] { require_no_journal_beside(folder / "x"); }), "x.unfinished: is there already");
+  EXPECT_HAS(refusal([&] { require_no_journal_beside(folder / "x"); }),
+             "x.unfinished: exists, an earlier recording");
   EXPECT_EQ(bytes_of(folder / "x.unfinished"), bytes);
   EXPECT_EQ(files_in(folder.path()).size(), 1u);
   // A file that is no journal is not overwritten either.
   folder.write("y.unfinished", "mine");
-  EXPECT_HAS(refusal([&] { JournalWriter(folder / "y", {0, "first"}); }), "y.unfinished: is there already");
+  EXPECT_HAS(refusal([&] {
+               JournalWriter(folder / "y", {0, "first"});
+             }),
+             "y.unfinished: exists, an earlier recording");
   EXPECT_EQ(bytes_of(folder / "y.unfinished"), "mine");
 }
 
@@ -190,6 +195,22 @@ TEST(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
   JournalReader reader(writer.file());
   EXPECT_EQ(reader.next()->content, "first");
   EXPECT_EQ(reader.next()->content, "later");
+}
+
+// A later block would be behind the written part of this one, where no reader finds it.
+TEST(BlockJournal, RefusesBlocksBehindAPartThatCannotBeRemoved) {
+  const TestFolder folder("block_journal");
+  JournalWriter writer(folder / "x", {0, "first"});
+  const auto append = [&] { return refusal([&] { writer.append({1, std::string(100, 'x')}); }); };
+  {
+    const NoRoom limit(fs::file_size(writer.file()) + 50);
+    const FailedTruncation failed;
+    EXPECT_HAS(append(), "x: cannot be written (File too large)");
+  }
+  EXPECT_HAS(append(), "x: cannot be written (File too large)");
+  JournalReader reader(writer.file());
+  EXPECT_EQ(reader.next()->content, "first");
+  EXPECT_FALSE(reader.next());
 }
 
 TEST(BlockJournal, LeavesNoFileIfTheFirstBlockHasNoRoom) {

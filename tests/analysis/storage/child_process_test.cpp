@@ -2,6 +2,7 @@
 #include "analysis/storage/child_process.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -50,6 +51,11 @@ TEST(ChildProcess, IsEndedIfItTakesTooLong) {
               for (std::atomic<unsigned> i = 0;;) ++i;
             }),
             "it takes more than 1 s");
+}
+
+TEST(ChildProcess, FailsIfItEndsWithAnExitCode) {
+  EXPECT_EQ(failure_of([]() -> std::string { ::_exit(3); }),
+            "the process that reads it ended with exit code 3, before its answer");
 }
 
 TEST(ChildProcess, ReportsTheSignalOfACrash) {

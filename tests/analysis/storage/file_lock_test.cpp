@@ -18,10 +18,10 @@ TEST(FileLock, OneHolderAtATime) {
   {
     const FileLock first(file);
     EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.partial-123"));
-    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing it");
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing this file");
     EXPECT_NO_THROW(FileLock(folder / "y.h5"));
     write_file_atomically(file, "text", 4);  // the file may be replaced under the lock
-    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing it");
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing this file");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.lock"));
   folder.write("x.h5.lock", "");  // of a killed process

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/storage/hdf5_handle.h"
@@ -115,6 +116,35 @@ TEST(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
   const TextAttributes found = Hdf5Reader(folder / "x.h5").attributes();
   EXPECT_EQ(found.size(), 3u);
   for (const auto& [name, text] : found) EXPECT_EQ(text, "") << name;
+}
+
+TEST(ForeignAttributes, KeepLongNames) {
+  const TestFolder folder("hdf5_foreign_test");
+  const std::string name(1000, 'n');
+  write_texts(new_file(folder / "x.h5"), name.c_str(), "text", 4, H5T_STR_NULLPAD);
+  EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), name), "text");
+}
+
+// Adds a dataset of 16-bit integers with these names.
+void add_enumeration(const fs::path& path, const std::vector<std::pair<const char*, std::int16_t>>& members) {
+  const Handle type(H5Tenum_create(H5T_STD_I16BE), H5Tclose);
+  for (const auto& [name, value] : members) {
+    std::int16_t stored = value;
+    check(H5Tconvert(H5T_NATIVE_INT16, H5T_STD_I16BE, 1, &stored, nullptr, H5P_DEFAULT));
+    check(H5Tenum_insert(type, name, &stored));
+  }
+  add_dataset(new_file(path), "data", type, {{3}});
+}
+
+TEST(ForeignDatasets, NamesBelongToTheirValues) {
+  const TestFolder folder("hdf5_foreign_test");
+  add_enumeration(folder / "x.h5", {{"two", 2}, {"zero", 0}, {"one", 1}});
+  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.value_names,
+            (std::vector<std::string>{"zero", "one", "two"}));
+  for (const int value : {-1, 3, 700}) {
+    add_enumeration(folder / "x.h5", {{"zero", 0}, {"one", 1}, {"other", static_cast<std::int16_t>(value)}});
+    EXPECT_HAS(refusal_of(folder / "x.h5"), "data names the value " + std::to_string(value));
+  }
 }
 
 TEST(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {

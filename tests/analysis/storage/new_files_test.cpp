@@ -28,6 +28,17 @@ TEST(NewFiles, AppearTogether) {
   EXPECT_EQ(files_in(folder.path()), (Names{"a", "b"}));
 }
 
+TEST(NewFiles, KeepThePermissionsOfTheFilesThatTheyReplace) {
+  const TestFolder folder("new_files");
+  std::filesystem::permissions(folder.write("a", "old"), static_cast<std::filesystem::perms>(0600));
+  NewFiles files;
+  files.begin(folder / "a");
+  files.append("new");
+  files.finish();
+  EXPECT_EQ(bytes_of(folder / "a"), "new");
+  EXPECT_EQ(std::filesystem::status(folder / "a").permissions(), static_cast<std::filesystem::perms>(0600));
+}
+
 TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
   const TestFolder folder("new_files");
   folder.write("b", "old");

@@ -1,4 +1,4 @@
-// Results of write() and rename() in this program, which a test can set.
+// Results of write(), rename() and ftruncate() in this program, which a test can set.
 #pragma once
 
 #include <initializer_list>
@@ -22,14 +22,23 @@ class AnswersOfWrite {
   std::vector<Answer> answers_;
 };
 
-// One call of rename() fails with this errno, after calls_before calls that are executed. The effect ends
-// with the object.
+// This number of calls of rename() fail with this errno, after calls_before calls that are executed. The
+// effect ends with the object.
 class FailedRename {
  public:
-  FailedRename(int calls_before, int error);
+  FailedRename(int calls_before, int error, int failures = 1);
   ~FailedRename();
   FailedRename(const FailedRename&) = delete;
   FailedRename& operator=(const FailedRename&) = delete;
+};
+
+// Every call of ftruncate() fails with EIO as long as the object exists.
+class FailedTruncation {
+ public:
+  FailedTruncation();
+  ~FailedTruncation();
+  FailedTruncation(const FailedTruncation&) = delete;
+  FailedTruncation& operator=(const FailedTruncation&) = delete;
 };
 
 }  // namespace remote_touch

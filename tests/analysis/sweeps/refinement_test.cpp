@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace remote_touch::refinement_test {
@@ -47,6 +48,15 @@ Runs all_of(const SweepResult& result, std::initializer_list<std::size_t> cells,
   for (const std::size_t cell : cells)
     for (int i = from; i < to; ++i) runs.push_back(result.run(cell, i));
   return runs;
+}
+
+TEST(Tally, CountsOnlyRunsWithAKnownOutcome) {
+  SweepResult result = empty_grid({1}, 4);
+  sample(result, 0, 1, 2);
+  set(result, 2, RunState::done, std::numeric_limits<double>::quiet_NaN());
+  const Tally counted = tally(result, result.measure("popped_through"), 0);
+  EXPECT_EQ(counted.events, 1);
+  EXPECT_EQ(counted.runs, 2);
 }
 
 TEST(NextRound, AsksForNothingWhereAllIsCertainAndAgrees) {

@@ -261,8 +261,10 @@ TEST(SweepInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
   for (int at = 0; at < kQuestions; ++at) {
     write_sweep_in_progress(file, awkward(), kAttributes);
     int asked = 0;
-    EXPECT_EQ(refusal([&] { read_sweep(Hdf5Reader(file, replacing(file, at, asked))); }),
-              file.string() + ": was replaced while it was read: expected once its writer has ended");
+    EXPECT_EQ(
+        refusal([&] { read_sweep(Hdf5Reader(file, replacing(file, at, asked))); }),
+        file.string() +
+            ": was replaced by another program while it was read: expected a file that no program writes");
     EXPECT_EQ(asked, at + 1);  // and it is noticed at once
   }
 }
@@ -288,7 +290,7 @@ TEST(SweepInProgress, IsRefusedIfItIsReplacedAllTheTime) {
     write_sweep_in_progress(file, awkward(), kAttributes);
     return in_own_child(limits, reader, question);
   };
-  EXPECT_HAS(refusal([&] { read_sweep(file, run); }), "was replaced while it was read");
+  EXPECT_HAS(refusal([&] { read_sweep(file, run); }), "was replaced by another program while it was read");
 }
 
 TEST(SweepFile, DamageIsRefused) {
@@ -334,7 +336,7 @@ TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   bytes.replace(bytes.find(seal), seal.size(), sha256_of_file(file, kDigestBlockSize));
   folder.write("x.h5", bytes);
   EXPECT_EQ(file_digest_of(file), FileDigest::valid);
-  EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest is another)");
+  EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest does not match)");
 }
 
 // 2^64 runs are 0 in 64-bit arithmetic.

@@ -100,6 +100,16 @@ TEST(LiftNoise, FindsTheMomentsOfSyntheticLifts) {
   EXPECT_TRUE(std::isnan(lift_means(lifts.front(), {50}).thickness_m));
 }
 
+TEST(NoiseEffect, HasNoScatterOfASingleUpdate) {
+  LiftUpdate update;
+  update.frame = 30, update.above_before = true, update.thickness_m = 0.004;
+  const NoiseEffect effect = noise_effect({{update}}, {20}, 0.00499, 30);
+  EXPECT_EQ(effect.thickness_m, 0.004);
+  for (const double unknown : {effect.thickness_sd_m, effect.normal_error_sd, effect.velocity_sd_m_per_s,
+                               effect.margin_sd_m, effect.gain})
+    EXPECT_TRUE(std::isnan(unknown));
+}
+
 // The figures on lifts state the experiment's numbers; they must be those of the experiment.
 TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
   const std::string json = Experiment::load("fig4.12").to_json();

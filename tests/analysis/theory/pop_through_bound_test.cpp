@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <random>
 
 namespace remote_touch::pop_through_bound_test {
@@ -81,6 +82,23 @@ TEST(ScatterBound, HalfSurviveAtIt) {
   NoiseEffect sunk;
   sunk.thickness_m = -0.01, sunk.margin_sd_m = 0.001;
   EXPECT_EQ(scatter_bound(kLift, sunk), 0);  // pops through at rest
+}
+
+// The limit of the search is first at 44.91 m/s^2. With one update, v_1 - v_0 = a / f_c.
+TEST(ScatterBound, IsFoundAlsoFarAboveTheCriticalAcceleration) {
+  NoiseEffect thick;
+  thick.thickness_m = 0.1;
+  EXPECT_NEAR(scatter_bound({0.00499, 30, 0.1, 1}, thick), (0.00499 + 0.1) * 900, 1e-9);
+}
+
+TEST(ScatterBound, IsNanIfTheNoiseIsNotKnown) {
+  for (double NoiseEffect::*part :
+       {&NoiseEffect::thickness_m, &NoiseEffect::margin_sd_m, &NoiseEffect::gain}) {
+    NoiseEffect unknown = kNoise;
+    unknown.*part = std::nan("");
+    EXPECT_TRUE(std::isnan(survival_probability(kLift, unknown, 1)));
+    EXPECT_TRUE(std::isnan(scatter_bound(kLift, unknown)));
+  }
 }
 
 }  // namespace

@@ -31,10 +31,11 @@ TEST(Colour, TheCornersOfTheCubeAreKnown) {
 
 // PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. As floats, those from 0xFF800001 on are NaN.
 TEST(Colour, AFloatHoldsAColourOrNone) {
-  for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00000u, 0xFFFFFFu})
+  for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00001u, 0xFFFFFFu})
     for (const std::uint32_t alpha : {0x00u, 0xFFu}) EXPECT_EQ(colour_of_float(alpha << 24 | rgb), rgb);
+  EXPECT_EQ(colour_of_float(0x00C00000), 0xC00000u);
   for (const std::uint32_t none :
-       {0x7FC00000u, 0x7F800000u, 0x437F0000u, 0x4A808060u})  // nan inf 255 4210736
+       {0x7FC00000u, 0xFFC00000u, 0x7F800000u, 0x437F0000u, 0x4A808060u})  // nan -nan inf 255 4210736
     EXPECT_EQ(colour_of_float(none), kNoColour) << std::hex << none;
 }
 

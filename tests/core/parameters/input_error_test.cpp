@@ -22,6 +22,15 @@ TEST(Printable, ShowsWhatNobodyCanRead) {
   EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
 }
 
+// A terminal obeys U+009B as it does ESC [, and some viewers begin a line at U+2028.
+TEST(Printable, ShowsControlCharactersAndLineEndsBeyondAscii) {
+  EXPECT_EQ(printable("z\xc2\x9b[z"), "z\\xc2\\x9b[z");
+  EXPECT_EQ(printable("\xc2\x80 \xc2\x9f"), "\\xc2\\x80 \\xc2\\x9f");
+  EXPECT_EQ(printable("z\xe2\x80\xa8z\xe2\x80\xa9"), "z\\xe2\\x80\\xa8z\\xe2\\x80\\xa9");
+  for (const char* text : {"\xc2\xa0", "\xe2\x80\xa7", "\xe2\x80\xaa", "\xc3\x9b"})
+    EXPECT_EQ(printable(text), text);
+}
+
 TEST(Printable, ShowsBytesThatAreNoUtf8) {
   EXPECT_EQ(printable("\xff"), "\\xff");
   EXPECT_EQ(printable("gr\xfcn"), "gr\\xfcn");

@@ -183,7 +183,7 @@ TEST(GodObject, TheOffsetMustBeSmallBesideTheEdges) {
   GodObjectParameters p;
   EXPECT_EQ(validate(p), "");
   p.max_edge_length_m = 0.00005;
-  EXPECT_EQ(validate(p), "surface_offset_m = 1e-05: expected up to a tenth of max_edge_length_m = 5e-05");
+  EXPECT_EQ(validate(p), "surface_offset_m = 1e-05: expected at most a tenth of max_edge_length_m = 5e-05");
 }
 
 }  // namespace

@@ -126,6 +126,21 @@ TEST(ImplicitSurfaceRenderer, DoesNotJumpThrough) {
   }
 }
 
+// Regions that enclose the proxy, although no point is within its support.
+TEST(ImplicitSurfaceRenderer, DoesNotJumpThroughPointsWithRegions) {
+  PointCloud cloud = scenes::flat_grid(60);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.2);
+  for (const Settings& p : kAll) {
+    ImplicitSurfaceRenderer with_regions = over(cloud, p), without = over(scenes::flat_grid(60), p);
+    const Vec3 above(0, 0.05, 0), below(0.001, -0.05, 0);
+    with_regions.step({above}, 0), without.step({above}, 0);
+    const RenderOutput out = with_regions.step({below}, 0.001);
+    EXPECT_GE(out.proxy_W.y(), -1e-9);
+    EXPECT_GT(out.force_N.y(), 1);
+    EXPECT_NEAR((out.proxy_W - without.step({below}, 0.001).proxy_W).norm(), 0, 1e-6) << "r_f is ignored";
+  }
+}
+
 // A cloud that jumps less than the support is followed, one that jumps far beyond it is lost.
 TEST(ImplicitSurfaceRenderer, IsBroughtBackFromASmallJumpOfTheCloudOnly) {
   for (const Settings& p : kAll) {

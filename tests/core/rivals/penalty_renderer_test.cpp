@@ -112,6 +112,15 @@ TEST(PenaltyRenderer, AnEmptyFrameHasNoForceAndAStaleOneIsReported) {
   EXPECT_TRUE(stale.force_N.isZero(0));
 }
 
+// The base of all rivals; see RenderOutput::slave_W.
+TEST(PenaltyRenderer, SlaveIsNotSentAnywhereBeforeTheHipIsKnown) {
+  PenaltyRenderer r = over(point_at(Vec3::Zero()));
+  const Vec3 lost = Vec3::Constant(std::nan("")), hip(0, 0.02, 0);
+  EXPECT_TRUE(r.step({lost}, 0).slave_W.array().isNaN().all());
+  EXPECT_EQ(r.step({hip}, 0.001).slave_W, hip);
+  EXPECT_EQ(r.step({lost}, 0.002).slave_W, hip) << "the last command is repeated";
+}
+
 TEST(PenaltyRenderer, TheBallMustBeSmallerThanWhereNormalsComeFrom) {
   PenaltyParameters p;
   EXPECT_EQ(validate(p), "");

@@ -64,7 +64,8 @@ TEST(UseThreads, RefusesMoreThanThereCanBe) {
 
 TEST(UseThreads, RefusesThoseThatCannotBeStarted) {
   const LittleMemory limit;
-  EXPECT_HAS(outcome_of(256).problem, "--threads = 256: so many threads cannot be started: expected fewer");
+  EXPECT_HAS(outcome_of(256).problem,
+             "--threads = 256: this number of threads cannot be started: expected fewer");
 }
 
 }  // namespace

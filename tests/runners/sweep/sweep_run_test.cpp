@@ -10,8 +10,10 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_replay.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_run_test {
@@ -156,6 +158,36 @@ TEST(SweepRuns, AFailureIsReportedAndTheOthersContinue) {
   const SweepResult all = run_sweep(sweep, {});
   ASSERT_FALSE(all.runs_in(RunState::failed).empty());
   EXPECT_HAS(all.error[all.runs_in(RunState::failed).front()], "missing.pcd");
+}
+
+// Its path is longer than the message that is stored, and one of two neighbours is cut within a character.
+TEST(SweepRuns, AMessageIsNotCutWithinACharacter) {
+  std::string umlauts;
+  for (int i = 0; i < 170; ++i) umlauts += i == 85 ? "/\xc3\xa4" : "\xc3\xa4";
+  const Sweep sweep = Sweep::from_json(
+      R"({"experiment": {"scenario": {"name": "recording", "path": "x"}, "renderer": {"name": "proxy"},
+      "trajectory": {"name": "image-scan"}, "duration_s": 0.1}, "measures": ["mean_steps"],
+      "axes": [{"parameter": "scenario.path", "values": ["/)" +
+          umlauts + R"(", "/x)" + umlauts + R"("]}]})",
+      "recordings");
+  const SweepResult result = run_sweep(sweep, {});
+  for (const std::string& error : result.error) {
+    EXPECT_GE(error.size(), 299u) << error;
+    EXPECT_LE(error.size(), 300u);
+    EXPECT_EQ(printable(error), error) << "UTF-8 stays as it is";
+  }
+  EXPECT_EQ(result.error[0].size() + result.error[1].size(), 599u);
+}
+
+// A stored sweep of an earlier version has no recipe.
+TEST(Replays, HaveTheCommandOfTheirOwnProgram) {
+  const Sweep sweep = quick();
+  const StoredSweep stored{sweep.plan(), {{"command", "press-lab sweep quick.json"}}, false};
+  identify_program({"press-lab", "12ab"});
+  const Replay replay = replay_run(stored, sweep, 3, {}, "", Strict::no);
+  identify_program({});
+  EXPECT_EQ(attribute(replay.attributes, "command"),
+            "press-lab sweep quick.json; press-lab replay --cell 0,1 --replicate 1");
 }
 
 TEST(Refinement, KeepsItsBudgetAndNumbersItsRounds) {

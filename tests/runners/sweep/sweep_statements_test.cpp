@@ -200,6 +200,36 @@ TEST(Statements, IntegersThatADoubleDoesNotHaveAreNames) {
   EXPECT_TRUE(sweep_over({axis("seed", "[9007199254740991, 3]")}).plan().axes[0].value_names.empty());
 }
 
+// Six digits are what a person types. A cell is not chosen where they name several.
+TEST(Cells, ANumberThatNamesSeveralValuesIsRefused) {
+  const SweepResult plan =
+      sweep_over({axis("scenario.acceleration_m_per_s2", "[1.000001, 1, 2.0000001]")}).plan();
+  const auto cell = [&](const std::string& value) {
+    return cell_of({"--cell", "acceleration_m_per_s2=" + value}, plan);
+  };
+  EXPECT_EQ(cell("1"), 1u);
+  EXPECT_EQ(cell("1.0"), 1u);
+  EXPECT_EQ(cell("1.000001"), 0u);
+  EXPECT_EQ(cell("2"), 2u);
+  EXPECT_EQ(refusal([&] { cell("1.0000001"); }),
+            "--cell acceleration_m_per_s2=1.0000001: expected for acceleration_m_per_s2 a number with more "
+            "digits, or the indices on the axes: 2 values are 1 with six digits");
+}
+
+TEST(Cells, MayBeNamedByValuesWithCommas) {
+  const std::string starts = axis("trajectory.start_m", "[[0, 0, 0], [0, 0.01, 0]]");
+  const SweepResult plan = sweep_over({starts, axis("renderer.steps_per_tick", "[1, 2]")}).plan();
+  const std::string start = "start_m=" + plan.axes[0].value_names.at(1);
+  ASSERT_NE(start.find(','), std::string::npos) << start;
+  EXPECT_EQ(cell_of({"--cell", start + ",steps_per_tick=1"}, plan), 2u);
+  EXPECT_EQ(cell_of({"--cell", "steps_per_tick=2," + start}, plan), 3u);
+  EXPECT_HAS(refusal([&] {
+               cell_of({"--cell", start}, plan);
+             }),
+             "expected start_m=VALUE,steps_per_tick=VALUE");
+  EXPECT_HAS(refusal([&] { cell_of({"--cell", start + ",other=1"}, plan); }), "expected for start_m one of ");
+}
+
 TEST(Statements, OneNumberInTwoSpellingsComesTwice) {
   EXPECT_HAS(why({axis("scenario.noise_sigma_m", "[0, 0.0]")}),
              "axes.0.values: 0.0 appears twice: expected once");

@@ -103,7 +103,7 @@ TEST(Handwheel, OutsideNoSampleOfTheSurfaceIsCloserAndOneIsAsClose) {
     const double distance = wheel.signed_distance(p), nearest = surface.nearest(p);
     ASSERT_EQ(distance < 0, inside(p)) << p.transpose();
     if (distance < 0) {
-      EXPECT_GE(nearest, -distance - 1e-12) << "inside the depth is at least what is told";
+      EXPECT_GE(nearest, -distance - 1e-12) << "inside, the depth is at least the returned one";
       continue;
     }
     ++outside;

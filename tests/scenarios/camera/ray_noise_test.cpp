@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/sensor_fault_scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::ray_noise_test {
 namespace {
@@ -110,6 +111,20 @@ TEST(RayNoise, APlaceHasTheSameNoiseWhateverElseIsSeen) {
   const std::vector<double> b = standard_noise(noise, many, kKey, 7, scenes::kernels());
   EXPECT_EQ(a[0], b[100]);
   EXPECT_TRUE(std::isnan(b[101]));
+}
+
+// Lattices of 39 million nodes, of the largest range of numbers, and of one million.
+TEST(RayNoise, RefusesALatticeThatIsTooFineForTheCloud) {
+  const PointCloud places = two_places(0, 0, 0.1, 0.1);
+  EXPECT_HAS(refusal([&] {
+               standard_noise({0.01, 1.6e-5, 0}, places, kKey, 0, scenes::kernels());
+             }),
+             "faults.ray_noise_correlation_m: needs a lattice of ");
+  EXPECT_HAS(refusal([&] {
+               standard_noise({0.01, 1e-7, 0}, places, kKey, 0, scenes::kernels());
+             }),
+             ": expected a larger value, for at most 16777216 nodes, or 0");
+  EXPECT_EQ(standard_noise({0.01, 1e-4, 0}, places, kKey, 0, scenes::kernels()).size(), 2u);
 }
 
 TEST(SensorFaults, RayNoiseGrowsWithTheSquareOfTheDistanceAndLeavesRaysAlone) {

@@ -180,6 +180,13 @@ double wave_height(double x) {
   return corner(k) + (place - k) * (corner(k + 1) - corner(k));
 }
 
+TEST(TriangleWave, RefusesAGridOfOneColumn) {
+  TriangleWave::Settings settings;
+  EXPECT_EQ(validate(settings), "");
+  settings.grid.columns = 1;
+  EXPECT_EQ(validate(settings), "columns = 1: expected 2 or more, because the wave runs along x");
+}
+
 TEST(TriangleWave, SignedDistanceIsToTheStraightFlanks) {
   const TriangleWave wave = made<TriangleWave>();
   EXPECT_NEAR(wave.surface_height(-149.5 * 0.0015 + 0.09, 1, 0), 0.015 * 0.09 / (299 * 0.0015), 1e-15);

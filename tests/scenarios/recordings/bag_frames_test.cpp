@@ -153,6 +153,27 @@ TEST_F(Frames, AreAllOfOneCoordinateFrame) {
   EXPECT_HAS(error({cloud(0, 0), other}), "message 1: frame_id = elsewhere: expected optical");
 }
 
+// Older programs write a / in front of the name.
+TEST_F(Frames, OfOneCoordinateFrameMayDifferInALeadingSlash) {
+  BagMessage other = cloud(1, 1);
+  other.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 4, 3, 1, "/optical");
+  EXPECT_EQ(error({cloud(0, 0), other}), "no InputError");
+}
+
+// The unit is rounded to 1e-9 m.
+TEST_F(Frames, RefuseADepthUnitThatIsRoundedTo0) {
+  const std::string sensor = "/device_0/sensor_0/";
+  const auto of_unit = [&](float unit_m) {
+    return error(
+        {{sensor + "option/Depth Units/value", "std_msgs/msg/Float32", 1, MessageBytes().add(unit_m).done()},
+         camera(sensor + "Depth_0/info/camera_info"),
+         depth(0, sensor + "Depth_0/image/data")});
+  };
+  EXPECT_EQ(of_unit(1e-9f), "no InputError");
+  EXPECT_HAS(of_unit(4e-10f), "depth unit = 4e-10 m: expected 1e-9 to 1");
+  EXPECT_HAS(of_unit(2), "depth unit = 2 m: expected 1e-9 to 1");
+}
+
 TEST_F(Frames, DepthFramesAreInTheChosenUnit) {
   const std::vector<BagMessage> bag = {camera("/x/camera_info"), depth(0, "/x/image_rect")};
   BagChoice choice;
@@ -235,6 +256,26 @@ TEST_F(Frames, ComeToTheChosenCoordinateFrame) {
   other.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 4, 3, 1, "elsewhere");
   EXPECT_HAS(error({cloud(0, 0), other, transforms()}, {"", "", {}, "base"}),
              "frame_id = elsewhere: expected optical");
+}
+
+BagMessage frames_in_base(int first, int count) {
+  MessageBytes bytes;
+  bytes.add(static_cast<std::uint32_t>(count));
+  for (int i = first; i < first + count; ++i) {
+    bytes.header(0, "base").text("frame_" + std::to_string(i));
+    for (const double value : {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) bytes.add(value);
+  }
+  return {"/tf_static", kTransforms, first, bytes.done()};
+}
+
+TEST_F(Frames, RefuseMoreCoordinateFramesThanTheLimit) {
+  const BagChoice in_base{"", "", {}, "base"};
+  const auto why = [&](int count) {
+    return error({cloud(0, 0, "/points"), transforms(), frames_in_base(0, 5000), frames_in_base(5000, count)},
+                 in_base);
+  };
+  EXPECT_EQ(why(5000 - 2), "no InputError");
+  EXPECT_HAS(why(5000 - 1), "/tf_static, message 2: has too many coordinate frames: expected at most 10000");
 }
 
 TEST_F(Frames, DamagedOnesAreNamed) {

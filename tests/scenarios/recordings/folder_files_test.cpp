@@ -49,7 +49,8 @@ TEST_F(FolderFiles, AllNumbersCount) {
   EXPECT_EQ(colours(), (Names{"2_1.png", "3_1.png"}));
   fs::remove(folder_ / "rgb/2_1.png"), fs::remove(folder_ / "rgb/3_1.png");
   write({"rgb/1.png"});
-  EXPECT_HAS(error(), path("rgb/1.png") + ": may or may not belong to " + path("depth/k2_0001.png"));
+  EXPECT_HAS(error(),
+             path("rgb/1.png") + ": it is not clear whether it belongs to " + path("depth/k2_0001.png"));
 }
 
 TEST_F(FolderFiles, AreRefusedIfTheyBelongToNothingOrToSeveral) {
@@ -57,13 +58,15 @@ TEST_F(FolderFiles, AreRefusedIfTheyBelongToNothingOrToSeveral) {
   EXPECT_HAS(error(),
              path("rgb") + ": holds no .png file: expected the colour images of " + path("depth/a_1.png"));
   write({"rgb/7.png"});
-  EXPECT_HAS(error(), path("rgb/7.png") + ": may or may not belong to " + path("depth/a_1.png"));
+  EXPECT_HAS(error(), path("rgb/7.png") + ": it is not clear whether it belongs to " + path("depth/a_1.png"));
   write({"rgb/b_1.png", "rgb/c_01.png"});
-  EXPECT_HAS(error(), path("rgb/c_01.png") + ": may or may not belong to " + path("depth/a_1.png"));
+  EXPECT_HAS(error(),
+             path("rgb/c_01.png") + ": it is not clear whether it belongs to " + path("depth/a_1.png"));
   fs::remove(folder_ / "rgb/c_01.png");
   EXPECT_EQ(colours(), (Names{"b_1.png", ""}));
   write({"depth/z_1.png"});
-  EXPECT_HAS(error(), path("rgb/b_1.png") + ": may or may not belong to " + path("depth/z_1.png"));
+  EXPECT_HAS(error(),
+             path("rgb/b_1.png") + ": it is not clear whether it belongs to " + path("depth/z_1.png"));
 }
 
 TEST_F(FolderFiles, LinksToNothingAreRefused) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "core/geometry/colour.h"
 #include "tests/support/test_files.h"
@@ -114,6 +116,18 @@ TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
       EXPECT_HAS(note.text,
                  "2 pair(s) of successive frames show different places, the first is frames 0 and 1");
   }
+}
+
+// The second pair of frames is read first and has less in common.
+TEST(FrameStatistics, NotesTheOverlapOfTheFirstPairInTheRecording) {
+  FrameStatistics statistics(3);
+  for (const auto& [frame, x] : {std::pair(2u, 5.0), {1u, 0.8}, {0u, 0.0}})
+    statistics.add(frame, wall(x, 1), 3);
+  ASSERT_EQ(statistics.notes(3).size(), 1u);
+  const std::string text = statistics.notes(3)[0].text;
+  EXPECT_HAS(text,
+             "2 pair(s) of successive frames show different places, the first is frames 0 and 1: only ");
+  EXPECT_EQ(text.find("only 0 %"), std::string::npos) << text;
 }
 
 // A wall that moves back and forth, by 1.2 mm to nearly a cell of 50 mm, counts as the same place, both at a

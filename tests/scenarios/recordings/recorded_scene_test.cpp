@@ -132,7 +132,7 @@ TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
                      pcd_header("x y z", "4 4 4", "F F F", "1 1 1", width, height, "4", "ascii") + rows)
               .string();
       EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-                 std::string(value) == "1e30" ? "x.pcd: frame 0 has all its points farther than 1000 m"
+                 std::string(value) == "1e30" ? "x.pcd: frame 0 has all its points more than 1000 m"
                                               : "x.pcd: its first frame has no point within 10000")
           << value;
     }
@@ -159,10 +159,10 @@ TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
       throw InputError("read");
     });
   };
-  EXPECT_HAS(problem(far), "x.pcd: frame 0 has all its points farther than 1000 m from the origin");
+  EXPECT_HAS(problem(far), "x.pcd: frame 0 has all its points more than 1000 m from the origin");
   EXPECT_EQ(problem("0 0 1\n" + far.substr(far.find('\n') + 1)), "read");
   settings.camera_position_m = Vec3(-2, 0, 0);  // the limit is for the cloud in its own coordinates, too
-  EXPECT_HAS(problem(far), "farther than 1000 m");
+  EXPECT_HAS(problem(far), "more than 1000 m");
 }
 
 // --- from frame to frame ---
@@ -304,13 +304,14 @@ TEST(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
   for (const auto playback :
        {RecordedScene::Playback::hold, RecordedScene::Playback::loop, RecordedScene::Playback::ping_pong}) {
     settings.playback = playback;
-    EXPECT_EQ(text_after({0, 1}), "2 of 4 frames were not used: the run ends before");
+    EXPECT_EQ(text_after({0, 1}), "2 of 4 frames were not used: the run ended before them");
     EXPECT_EQ(text_after({0, 1, 2, 3}), "");
-    EXPECT_EQ(text_after({0, 3}), "2 of 4 frames were not used: newer ones replaced them, or they were lost");
+    EXPECT_EQ(text_after({0, 3}),
+              "2 of 4 frames were not used: newer frames replaced them, or they were lost");
     EXPECT_EQ(
         text_after({0, 2}),
-        "2 of 4 frames were not used: the run ends before 1 of them, newer ones replaced the others, or these "
-        "were lost");
+        "2 of 4 frames were not used: the run ended before 1 of them; newer frames replaced the others, or "
+        "they were lost");
   }
 }
 

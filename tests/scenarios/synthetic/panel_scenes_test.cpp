@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -191,6 +192,14 @@ TEST(MovingPlane, WaitsRisesAndRests) {
   s.rise_height_m = 0;
   EXPECT_EQ(validate(s), "");
   EXPECT_EQ(made<MovingPlane>(s).frame_count(), 1);
+}
+
+// It rises for 1e8 s, which is 1e12 frames.
+TEST(MovingPlane, LimitsItsFramesToTheLargestInt) {
+  MovingPlane::Settings s;
+  s.frame_rate_hz = 10000, s.speed_m_per_s = 1e-6, s.rise_height_m = 100;
+  EXPECT_EQ(validate(s), "");
+  EXPECT_EQ(made<MovingPlane>(s).frame_count(), std::numeric_limits<int>::max());
 }
 
 TEST(MovingPlane, NoiseBelongsToPointAndFrame) {

@@ -23,7 +23,7 @@ is() {
   if "$@" >is.log 2>&1; then pass "$name"; else fail "$name" "$* ($(head -c 300 is.log))"; fi
 }
 
-# What a slow machine shows of progress every ten seconds is no message: "figures: 1 of 3, at work on 4.13; about 9 s left",
+# What a slow machine shows of progress every ten seconds is no message: "figures: 1 of 3, making 4.13; about 9 s left",
 # "fig4.16:  12 %, 3.1 %/s, 28 s left".
 # Thousands of checks use these: what bash does itself takes no process.
 without_progress() { [[ ! -s err ]] || sed -i -E '/^remote-touch: /!{/: +[0-9]+ (%|of [0-9])/d}' err; }

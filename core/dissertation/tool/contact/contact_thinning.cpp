@@ -1,5 +1,6 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "core/kernels/tool_kernels.h"
@@ -37,7 +38,10 @@ ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
 }
 
 void ContactThinning::begin() {
-  ++stamp_;
+  if (++stamp_ == 0) {  // after 2^32 calls, an old stamp must not count as the present one
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+    stamp_ = 1;
+  }
   cells_ = 0;
 }
 

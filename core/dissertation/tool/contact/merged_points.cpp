@@ -76,8 +76,9 @@ std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
 }
 
 bool is_covered(const MergedPoint& disk, const Cubes& cubes) {
-  const int side =
-      std::clamp(static_cast<int>(2 * disk.extent_m / (kSquare * disk.spacing_m)), 1, kMaxSquares);
+  const double squares = std::floor(2 * disk.extent_m / (kSquare * disk.spacing_m));
+  if (squares > kMaxSquares) return false;
+  const int side = std::max(static_cast<int>(squares), 1);
   const double square_m = 2 * disk.extent_m / side;
   const Vec3 u = disk.n_W.unitOrthogonal(), v = disk.n_W.cross(u);
   std::bitset<kMaxSquares * kMaxSquares> has_point;  // set() throws outside

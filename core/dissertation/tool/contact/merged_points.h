@@ -20,7 +20,7 @@ struct CloudPoint {
 // - each of them, and the rim of a disk of one spacing around it, lies within kFlat_m of its plane;
 // - the cloud covers it: every square of a grid within extent_m of the middle contains a point of this or a
 //   neighbouring cube, so that the disk does not reach beyond an edge or over a hole. The squares are 1.5
-//   spacings wide or somewhat wider; they are wider too if more than 32 would be needed along a side.
+//   spacings wide or somewhat wider. Points that would need more than 32 squares along a side are not merged.
 struct MergedPoint {
   Vec3 p_W, n_W;
   double spacing_m, extent_m;

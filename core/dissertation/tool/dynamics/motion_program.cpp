@@ -102,7 +102,9 @@ ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const
   }
   ConstrainedMotion motion = read(loosened.y.head<6>(), kept, loosened.active, loosened.multiplier, contacts);
   motion.elastic = true;
-  if (loosened.status != ProgramStatus::optimal || !motion.a_g.allFinite()) motion.a_g.setZero();
+  const bool has_motion = loosened.status == ProgramStatus::optimal && motion.a_g.allFinite();
+  if (!has_motion) motion.a_g.setZero();
+  motion.failed = !has_motion || result.status == ProgramStatus::stalled;
   return motion;
 }
 

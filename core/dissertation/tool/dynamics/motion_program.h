@@ -29,6 +29,7 @@ struct ConstrainedMotion {
   Vec3 push_T = Vec3::Zero();     // sum of their multipliers times normals
   double side = 0;                // sum of their multipliers times sides
   bool elastic = false;           // not all constraints could be met; all were relaxed by the same slack
+  bool failed = false;            // a program stopped without a result: a_g may not be the nearest motion
 };
 
 // Returns the inertia of a body of 1 kg with the same gyration radius about every axis.
@@ -47,8 +48,9 @@ class MotionProgram {
 
   // Solves (6.4), (6.5) for a desired motion in tool axes. (6.7), (6.8) is the same with a desired motion of
   // zero and depths of 1. If a wedge makes (6.5) infeasible, one slack variable relaxes every row, and the
-  // objective is still the desired motion. If that fails too, the motion is zero. Contacts beyond
-  // kMaxContacts are ignored. Does not allocate.
+  // objective is still the desired motion. The same is done if (6.5) stalls, which is reported as failed. If
+  // the relaxed program fails too, the motion is zero and failed. Contacts beyond kMaxContacts are ignored.
+  // Does not allocate.
   ConstrainedMotion solve(const Vector6& desired_T, std::span<const ToolContact> contacts);
 
  private:

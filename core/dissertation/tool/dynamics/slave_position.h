@@ -14,6 +14,7 @@ class SlavePosition {
   explicit SlavePosition(ToolCommand rule) : rule_(rule) {}
   // Returns the tool's position for ToolCommand::tool, and the device's for ToolCommand::hip. If the device's
   // pose is not valid, ToolCommand::hip repeats the last command; the result is NaN before the first one.
+  // pre: the tool has been placed at a device pose.
   Vec3 command_W(const ToolPose& tool, const std::optional<ToolPose>& device) {
     if (rule_ == ToolCommand::tool) return tool.p_W;
     if (device) last_W_ = device->p_W;

@@ -5,7 +5,7 @@ namespace remote_touch {
 Parameters parameters(ToolParameters& p) {
   return {
       {"contact_rule", choice(p.contact_rule, {"look-ahead", "voxels", "continuous"}), 0, 0,
-       "look-ahead: every near point is a constraint with its signed distance; voxels: points in the tool's voxels are constraints, as printed, 6.2.3 to 6.2.5; continuous: look-ahead, with no step longer than until a point would get into the tool"},
+       "look-ahead: every near point is a constraint with its signed distance; voxels: points in the tool's voxels are constraints, as printed, 6.2.3 to 6.2.5; continuous: look-ahead, with each step ended before a point enters the tool"},
       {"detections_per_tick", &p.detections_per_tick, 1, 10000,
        "maximum number of collision detections in a tick; a tick that needs more stops and sets budget_exhausted"},
       {"max_step_m", &p.max_step_m, 1e-5, 0.01,
@@ -19,9 +19,12 @@ Parameters parameters(ToolParameters& p) {
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
        "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead and continuous"},
       {"merged_disk_m", &p.merged_disk_m, 0, 0.005,
-       "where points are less than 0.6 mm apart, one disk replaces the points of a cube of this size that cover a plane; parts of the tool smaller than the cube may get into the surface between the middles of disks; 0: none; for contact_rule = look-ahead and continuous, which still checks for every point whether it stops a motion"},
+       "size of the cubes in which points less than 0.6 mm apart are replaced by one disk if they cover a plane; 0: no "
+       "merging; smaller parts of the tool may sink between disk centres; for contact_rule = look-ahead and "
+       "continuous (which still checks whether a single point stops a motion)"},
       {"frame_reach_m", &p.frame_reach_m, 0, 0.05,
-       "for contact_rule = continuous: how far a surface that holds the tool may move in a frame; the tool is moved out by up to this, and back until a point stops it; a small detections_per_tick shortens it; 0: not moved out"},
+       "largest motion of a surface in a frame after which a tool that it held is moved out of it; a small "
+       "detections_per_tick shortens it; 0: the tool is never moved out; for contact_rule = continuous"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "stiffness K of the virtual coupling (6.9)",
        kLive},

@@ -66,6 +66,7 @@ void GodObjectMotion::gather_touched(const NearContacts& near) {
 
 Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, ToolMotionReport& report) {
   report.active_count = 0, report.push_W.setZero();
+  has_failed_ = false;
   if (touched_.empty()) return a_gu;
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
@@ -73,6 +74,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
     for (ToolContact& contact : touched_) contact.depth_m = 0;
     motion = program_.solve(desired_T, touched_);
   }
+  has_failed_ = motion.failed;
   report.active_count = motion.active_count;
   report.push_W = pose.q_WT * motion.push_T;
   if (!settling_ && motion.side != 0) side_ = motion.side > 0 ? 1 : -1;
@@ -110,9 +112,10 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     const Vector6 a_c = constrained(a_gu, pose, report);
     report.allowed_W = a_c;
     progress.update(max_point_displacement_m(a_gu, reach_m_));
-    report.at_rest = max_point_displacement_m(a_c, reach_m_) <= p_.rest_threshold_m || progress.has_ended() ||
-                     stopped >= kGodObjectPatience;
-    if (report.at_rest || report.steps >= p_.steps_per_tick) break;
+    const bool stops = max_point_displacement_m(a_c, reach_m_) <= p_.rest_threshold_m ||
+                       progress.has_ended() || stopped >= kGodObjectPatience;
+    report.at_rest = stops && !has_failed_;
+    if (stops || report.steps >= p_.steps_per_tick) break;
     const Vector6 step = capped(a_c, reach_m_, max_step_m_);
     const double free = free_fraction(step, pose, near);
     stopped = free * max_point_displacement_m(step, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;

@@ -77,8 +77,9 @@ class GodObjectMotion final : public ToolMotion {
   ContinuousContacts near_;
   MotionProgram program_;
   std::vector<ToolContact> touched_;
-  double side_ = 1;        // side of the surface that held the tool last: +1 is the side of the sensor
-  bool settling_ = false;  // a frame came, and points are still in the tool
+  double side_ = 1;          // side of the surface that held the tool last: +1 is the side of the sensor
+  bool settling_ = false;    // a frame came, and points are still in the tool
+  bool has_failed_ = false;  // ConstrainedMotion::failed of the last program
 };
 
 }  // namespace remote_touch

@@ -75,10 +75,11 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
     }
     const Vector6 a_g = step_of(look, pose, report);
     progress.update(remaining_m);
-    report.at_rest = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
-                     (near.deepest_m <= kCollision_m && progress.has_ended()) ||
-                     stopped >= kLookAheadPatience;
-    if (report.at_rest || report.detections >= p_.detections_per_tick) break;
+    const bool stops = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
+                       (near.deepest_m <= kCollision_m && progress.has_ended()) ||
+                       stopped >= kLookAheadPatience;
+    report.at_rest = stops && !look.motion.failed;
+    if (stops || report.detections >= p_.detections_per_tick) break;
     // Points that a frame put into the tool do not stop it in this tick, because it has to leave them first.
     const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);
     stopped = clear * max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;

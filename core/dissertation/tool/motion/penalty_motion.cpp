@@ -23,7 +23,7 @@ Parameters parameters(ToolPenaltyParameters& p) {
       {"voxmap_voxel_m", &p.voxmap_voxel_m, 5e-4, 0.05,
        "for force_law = voxmap: size of a voxel, and spacing of the points on the tool; not below the spacing of the cloud"},
       {"point_stiffness_N_per_m", &p.point_stiffness_N_per_m, 1, 1e6,
-       "k_p: force of a point per depth; where more than 10 points touch, they push as 10"},
+       "k_p: force of a point per depth; if more than 10 points touch, their sum is scaled as if 10 did"},
       {"steps_per_tick", &p.steps_per_tick, 1, 1000,
        "maximum number of steps in a tick, each half a voxel or less; a tick that needs more sets budget_exhausted"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},

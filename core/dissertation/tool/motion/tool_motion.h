@@ -12,8 +12,9 @@ namespace remote_touch {
 
 struct ToolMotionReport {
   int steps = 0;
-  int detections = 0;           // number of poses whose contacts were queried
-  bool at_rest = false;         // the tool has converged; false: the budget was used up before
+  int detections = 0;  // number of poses whose contacts were queried
+  // The tool has converged. False: the budget was used up before, or the program of the last step failed.
+  bool at_rest = false;
   int active_count = 0;         // contacts that pushed in the last step
   Vec3 push_W = Vec3::Zero();   // sum of their multipliers times normals: the direction of contact
   Vec3 touch_W = Vec3::Zero();  // sum of the normals of all touched contacts, pushing or not

@@ -140,7 +140,7 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double time_s) {
     out.tool->torque_Nm = wrench.torque_Nm;
   }
   out.proxy_W = pose_.p_W;
-  out.slave_W = slave_.command_W(pose_, goal);
+  if (placed_) out.slave_W = slave_.command_W(pose_, goal);
   out.tool->orientation_W = pose_.q_WT;
   out.normal_W = normal_W_;
   out.surface_velocity_m_per_s = velocity_.m_per_s();

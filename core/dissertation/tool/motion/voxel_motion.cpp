@@ -48,7 +48,7 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
   }
   report.active_count = motion.active_count;
   report.push_W = pose.q_WT * motion.push_T;
-  return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped};
+  return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped, motion.failed};
 }
 
 // Moves along a displacement in sub-steps, to its end or until the state changes; bisection then finds the
@@ -105,10 +105,11 @@ ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, Conta
     const double left = max_point_displacement_m(a_gu, reach_m_);
     if (here.state == ContactState::contact) progress.update(left);
     const bool may_rest = here.state != ContactState::entrenched || desired.trapped;
-    report.at_rest = (may_rest && max_point_displacement_m(desired.a_g, reach_m_) <= p_.rest_threshold_m) ||
-                     (here.state == ContactState::contact && progress.has_ended());
+    const bool stops = (may_rest && max_point_displacement_m(desired.a_g, reach_m_) <= p_.rest_threshold_m) ||
+                       (here.state == ContactState::contact && progress.has_ended());
+    report.at_rest = stops && !desired.failed;
     if (here.state == ContactState::free && left <= p_.rest_threshold_m) pose = device;
-    if (report.at_rest || spent(report)) break;
+    if (stops || spent(report)) break;
     const bool arrives = here.state == ContactState::free && desired.a_g == a_gu;
     report.at_rest =
         advance(pose, here, desired.a_g, arrives ? &device : nullptr, contacts, report) && arrives;

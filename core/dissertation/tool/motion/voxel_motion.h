@@ -24,6 +24,7 @@ class VoxelMotion final : public ToolMotion {
   struct DesiredStep {
     Vector6 a_g;
     bool trapped = false;  // no motion leads out of all collisions
+    bool failed = false;   // ConstrainedMotion::failed
   };
   DesiredStep desired_step(const ToolPose& pose, const Vector6& a_gu, const PoseQuery& here,
                            ToolMotionReport& report);

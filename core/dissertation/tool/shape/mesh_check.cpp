@@ -98,21 +98,24 @@ MeshCheck check_mesh(const TriangleMesh& mesh) {
 
 std::string text(const MeshCheck& check) {
   std::string faults;
-  const auto add = [&](int count, const std::string& what) {
-    if (count > 0) faults += (faults.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  const auto add = [&](int count, const std::string& one, const std::string& many) {
+    if (count > 0)
+      faults += (faults.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
   };
   if (check.triangles == 0) return "no triangles";
-  add(check.bad_vertices, "vertices that are not finite");
-  add(check.bad_indices, "triangles with a corner that is not a vertex");
+  add(check.bad_vertices, "vertex that is not finite", "vertices that are not finite");
+  add(check.bad_indices, "triangle with a corner that is not a vertex",
+      "triangles with a corner that is not a vertex");
   if (!faults.empty()) return faults;
-  add(check.boundary_edges, "boundary edges");
-  add(check.non_manifold_edges, "non-manifold edges");
-  add(check.inconsistent_edges, "edges between faces of opposite orientation");
+  add(check.boundary_edges, "boundary edge", "boundary edges");
+  add(check.non_manifold_edges, "non-manifold edge", "non-manifold edges");
+  add(check.inconsistent_edges, "edge between faces of opposite orientation",
+      "edges between faces of opposite orientation");
   std::string all = faults.empty() ? "closed" : "not closed: " + faults;
   faults.clear();
-  add(check.parts, check.parts == 1 ? "part" : "parts");
-  add(check.triangles, "triangles");
-  add(check.degenerate_triangles, "of them degenerate");
+  add(check.parts, "part", "parts");
+  add(check.triangles, "triangle", "triangles");
+  add(check.degenerate_triangles, "of them degenerate", "of them degenerate");
   if (check.inverted()) faults += ", inside out";
   return all + " (" + faults + ")";
 }

@@ -66,8 +66,9 @@ void drop_useless(TriangleMesh& mesh, MeshRepair& done) {
 
 // Walks from triangle to triangle over the edges that two triangles share. Flips each triangle that runs
 // along an edge in the same direction as its neighbour. The walk does not cross edges of three triangles or
-// more. Returns the component of each triangle: the index of the component's first triangle.
-std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
+// more. Returns the component of each triangle: the index of the component's first triangle. flipped: for
+// each triangle, whether it was flipped.
+std::vector<int> orient(TriangleMesh& mesh, std::vector<char>& flipped) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   struct Neighbour {
     int triangle;
@@ -84,7 +85,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
     neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
   }
   std::vector<int> component(mesh.triangles.size(), -1);
-  std::vector<char> flipped(mesh.triangles.size(), 0);  // the library checks no index of a vector of bool
+  flipped.assign(mesh.triangles.size(), 0);
   for (std::size_t start = 0; start < component.size(); ++start) {
     if (component[start] >= 0) continue;
     component[start] = static_cast<int>(start);
@@ -98,7 +99,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
         }
   }
   for (std::size_t t = 0; t < flipped.size(); ++t)
-    if (flipped[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), ++done.flipped_triangles;
+    if (flipped[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   return component;
 }
 
@@ -143,7 +144,9 @@ void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& don
   }
 }
 
-void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRepair& done) {
+// Flips every part whose volume is negative. Changes `flipped` of its triangles as well; triangles that fill
+// holes have no entry there.
+void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, std::vector<char>& flipped) {
   std::map<int, std::vector<int>> parts;
   for (std::size_t t = 0; t < component.size(); ++t) parts[component[t]].push_back(static_cast<int>(t));
   for (const auto& [first, triangles] : parts) {
@@ -156,8 +159,10 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRe
       volume += (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
     }
     if (volume >= 0) continue;
-    for (const int t : triangles) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    done.flipped_triangles += static_cast<int>(triangles.size());
+    for (const int t : triangles) {
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+      if (static_cast<std::size_t>(t) < flipped.size()) flipped[t] = flipped[t] == 0 ? 1 : 0;
+    }
   }
 }
 
@@ -169,9 +174,11 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done) {
   if (repaired.vertices.empty()) return repaired;
   weld(repaired, done);
   drop_useless(repaired, done);
-  std::vector<int> component = orient(repaired, done);
+  std::vector<char> flipped;  // not of bool, because the library checks no index of such a vector
+  std::vector<int> component = orient(repaired, flipped);
   fill_holes(repaired, component, done);
-  turn_outwards(repaired, component, done);
+  turn_outwards(repaired, component, flipped);
+  done.flipped_triangles = static_cast<int>(std::count(flipped.begin(), flipped.end(), 1));
   return repaired;
 }
 

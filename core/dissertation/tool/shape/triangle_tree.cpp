@@ -12,8 +12,9 @@ namespace remote_touch {
 namespace {
 
 constexpr int kLeaf = 4;
-constexpr int kDeepest = 64;  // trees are halved: no tree of 2^31 triangles is deeper than 32
-constexpr double kFar = 3;    // triangles farther away than this many radii are combined
+constexpr int kDeepest = 64;       // trees are halved: no tree of 2^31 triangles is deeper than 32
+constexpr double kFar = 3;         // triangles farther away than this many radii are combined
+constexpr double kNoArea = 1e-10;  // a smaller sine of the angle at a triangle's first corner is rounding
 constexpr double kPi = 3.14159265358979323846;
 
 // Returns the squared distance from v to the segment from 0 to d. dd: squared length of d; vd = v d.
@@ -35,7 +36,8 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     const Vec3 a = mesh.vertices[i], ab = mesh.vertices[j] - a, ac = mesh.vertices[k] - a;
     const Vec3 cross = ab.cross(ac);
     const double area = cross.norm();
-    faces_.push_back({a, ab, ac, area > 0 ? Vec3(cross / area) : Vec3::Zero(), ab.squaredNorm(), ab.dot(ac),
+    const bool has_area = area > kNoArea * ab.norm() * ac.norm();
+    faces_.push_back({a, ab, ac, has_area ? Vec3(cross / area) : Vec3::Zero(), ab.squaredNorm(), ab.dot(ac),
                       ac.squaredNorm()});
   }
 }
@@ -94,13 +96,13 @@ int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int b
 }
 
 // Returns the squared distance to the triangle's plane if p projects into the triangle, else to its nearest
-// edge. This is also right for slivers, where a decision by regions would fail. It is not reliable for a
-// triangle without area: rounding can make the result 0.
+// edge. This is also right for slivers, where a decision by regions would fail. A triangle without area has
+// only edges, because rounding alone would decide whether p projects into it.
 double TriangleTree::squared_to(const Face& f, const Vec3& p) {
   const Vec3 v = p - f.a;
   const double vb = v.dot(f.ab), vc = v.dot(f.ac);
   const double s = vb * f.cc - vc * f.bc, t = vc * f.bb - vb * f.bc, all = f.bb * f.cc - f.bc * f.bc;
-  if (s > 0 && t > 0 && s + t < all) {
+  if (s > 0 && t > 0 && s + t < all && !f.normal.isZero(0)) {
     const double height = v.dot(f.normal);
     return height * height;
   }

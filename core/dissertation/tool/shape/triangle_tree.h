@@ -40,7 +40,7 @@ class TriangleTree {
 
  private:
   struct Face {
-    Vec3 a, ab, ac, normal;  // the normal a unit vector, zero for a degenerate triangle
+    Vec3 a, ab, ac, normal;  // the normal a unit vector, zero for a triangle without area
     double bb, bc, cc;       // products of ab and ac
   };
   // A node is bounded by a disc rather than a box: a patch of a smooth surface is flat, and a box around it

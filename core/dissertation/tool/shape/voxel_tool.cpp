@@ -88,7 +88,8 @@ void check_and_mend(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolR
   drop_unused(mesh);
   if (settings.repair && !report.check.closed()) {
     mesh = repair_mesh(mesh, report.repaired);
-    if (mesh.triangles.empty()) refuse(name, "no triangle of it has an area");
+    if (mesh.triangles.empty())
+      refuse(name, "no triangles are left after the repair: expected a closed mesh");
     report.by_winding_number = !check_mesh(mesh).closed();
   } else if (!report.check.closed()) {
     refuse(name, text(report.check) + ": expected a closed mesh, or renderer.tool_repair=true");
@@ -103,17 +104,18 @@ void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& re
            const std::string& name) {
   const Vec3 sides = bounding_box(mesh.vertices).sizes();
   const double max_length = sides.maxCoeff();
-  if (!(max_length > 0) || !std::isfinite(max_length)) refuse(name, "has no size: expected a closed mesh");
+  if (!(max_length > 0) || !std::isfinite(max_length))
+    refuse(name, "its size is 0 or infinite: expected a closed mesh");
   const double factor = settings.size_m > 0 ? settings.size_m / max_length : 1;
   for (Vec3& v : mesh.vertices) v *= factor;
   report.sides_m = factor * sides;
   const double cells = cells_around(mesh, settings.voxel_m);
   if (cells > kMaxCells)
-    refuse(name, std::to_string(report.sides_m.maxCoeff()) + " m long, needs " +
+    refuse(name, "the mesh is " + std::to_string(report.sides_m.maxCoeff()) + " m long and needs " +
                      std::to_string(std::llround(std::min(cells / 1e6, 1e15))) + " million voxels of " +
                      std::to_string(settings.voxel_m) + " m: expected " +
                      std::to_string(std::llround(kMaxCells / 1e6)) +
-                     " million: set renderer.tool_size_m, or a larger renderer.tool_voxel_m");
+                     " million or fewer: set renderer.tool_size_m, or a larger renderer.tool_voxel_m");
 }
 
 void take(VoxelTool& tool, const MassProperties& mass, const std::string& name) {
@@ -139,7 +141,7 @@ std::vector<std::uint8_t> place(VoxelTool& tool, const VoxelToolSettings& settin
   take(tool, mass_properties(tool.mesh), name);
   tool.grid = grid_around(tool.mesh, settings.voxel_m);
   InsideNodes nodes = inside_nodes(tool.mesh, tool.grid);
-  if (nodes.negative) refuse(name, "a part of it is inside out: expected all faces outwards");
+  if (nodes.negative) refuse(name, "a part of the mesh is inside out: expected all faces to point outwards");
   return std::move(nodes.inside);
 }
 

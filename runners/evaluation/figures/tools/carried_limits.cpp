@@ -1,5 +1,7 @@
 #include "runners/evaluation/figures/tools/carried_limits.h"
 
+#include <cmath>
+
 namespace remote_touch {
 
 double CarrySweep::value(std::size_t setting, std::size_t axis) const {
@@ -31,7 +33,8 @@ double count_rows_apart(const Table& table, const std::string& carried, const st
   const auto &from = numbers(table, carried), &to = numbers(table, lost), &least = numbers(table, low),
              &most = numbers(table, high);
   double apart = 0;
-  for (std::size_t i = 0; i < from.size(); ++i) apart += to[i] < least[i] || from[i] > most[i];
+  for (std::size_t i = 0; i < from.size(); ++i)
+    apart += std::isnan(least[i] + most[i]) || to[i] < least[i] || from[i] > most[i];
   return apart;
 }
 

@@ -37,7 +37,8 @@ class CarrySweep {
   double value(std::size_t setting, std::size_t axis) const;
   Tally lost(std::size_t setting, std::size_t strength, Carrier rule) const;
   struct Limit {
-    double carried = 0;  // every run is carried up to this strength; 0: none is known
+    // Every run is carried up to this strength; NaN: none is known.
+    double carried = std::numeric_limits<double>::quiet_NaN();
     double lost = std::numeric_limits<double>::infinity();      // the next strength; infinite: no run is lost
     double all_lost = std::numeric_limits<double>::infinity();  // all runs are lost from here on
   };
@@ -52,7 +53,7 @@ class CarrySweep {
 };
 
 // Returns the number of rows in which a limit is not between two columns: a run is lost below `low`, or
-// carried above `high`.
+// carried above `high`, or `low` or `high` is NaN. `carried` is NaN where nothing is carried.
 double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
                         const std::string& low, const std::string& high);
 

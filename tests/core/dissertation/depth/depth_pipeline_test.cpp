@@ -257,7 +257,7 @@ TEST(DepthPipeline, RefusesWhatDoesNotFit) {
   EXPECT_EQ(validate(even), "normal_window = 10: expected odd numbers, 3 to 15");
   Settings odd_step;
   odd_step.normal_step = 3;
-  EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4, half of normal_window - 1");
+  EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4 = (normal_window - 1) / 2");
   EXPECT_THROW(DepthPipeline(odd_step, best()), std::invalid_argument);
   Settings sharp;
   sharp.sharp_edges = true;

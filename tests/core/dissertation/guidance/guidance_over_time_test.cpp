@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,33 @@ TEST_P(GuidanceOverTime, TheForceRisesAndFallsEvenly) {
   held.buttons = 2;
   for (int ms = 151; ms <= 300; ++ms) EXPECT_NEAR(level(ms), std::max(0.0, 0.01 * (250 - ms)), 1e-12) << ms;
   expect_no_guidance(r.step(held, 0.301));
+}
+
+// Wherever the two are in the list of fixtures.
+TEST_P(GuidanceOverTime, TheGoalIsThatOfTheActiveFixtureWhileAnotherFades) {
+  GuidanceSettings fading = plain();
+  fading.fade_s = 0.1;
+  for (const bool reversed : {false, true}) {
+    const std::string first = reversed ? "right" : "left", second = reversed ? "left" : "right";
+    const Vec3 first_W = reversed ? kRight : kLeft, second_W = reversed ? kLeft : kRight;
+    std::vector<SequenceStep> steps{step(FixtureAction::activate, first, StepStart::button, 0),
+                                    step(FixtureAction::activate, second, StepStart::button, 1),
+                                    step(FixtureAction::release, second, StepStart::button, 2)};
+    GuidedRenderer r = guided(GetParam(), {guide("left"), guide("right")}, steps, fading);
+    r.on_frame(frame({target(kLeft), target(kRight)}));
+    DeviceState held = device(kAbove);
+    r.step(held, 0);
+    held.buttons = 1;
+    for (int ms = 1; ms <= 200; ++ms) {
+      ASSERT_EQ(r.step(held, 0.001 * ms).guidance->goal_W, first_W) << ms;
+    }
+    held.buttons = 2;
+    for (int ms = 201; ms <= 350; ++ms) {
+      ASSERT_EQ(r.step(held, 0.001 * ms).guidance->goal_W, second_W) << ms;
+    }
+    held.buttons = 4;
+    EXPECT_EQ(r.step(held, 0.351).guidance->goal_W, second_W) << "it fades alone";
+  }
 }
 
 // The force of a lost target fades as gently.

@@ -46,6 +46,23 @@ TEST(GuidancePresence, ATargetThatNeverHadEnoughPointsIsNotHeld) {
   EXPECT_EQ(presence.target(0), nullptr);
 }
 
+// A schedule that falls to 0 says that the fixture has ended; nothing is lost.
+TEST(GuidancePresence, ATargetOfStrengthZeroEndsItWithoutAHold) {
+  for (const std::size_t points : {std::size_t{0}, kMinPoints}) {
+    GuidancePresence presence(kMinPoints, kHold_s, 0);
+    presence.on_frame(seen(kMinPoints, 1), 0);
+    GuidanceTarget off = seen(points, 2);
+    off.strength = 0;
+    presence.on_frame(off, 1);
+    EXPECT_EQ(presence.target(1), nullptr) << points;
+    presence.on_frame(seen(0), 1.0625);
+    EXPECT_EQ(presence.target(1.0625), nullptr) << "what was switched off is not held";
+    presence.on_frame(seen(kMinPoints, 3), 2);
+    ASSERT_NE(presence.target(2), nullptr);
+    EXPECT_EQ(presence.target(2)->mean_W.x(), 3);
+  }
+}
+
 // Ticks continue while the frame is on its way, so its time may be later than that of the tick it arrives in.
 TEST(GuidancePresence, AFrameEndsItAtAnyTimeIfThereIsNoHold) {
   GuidancePresence presence(kMinPoints, 0, 0);

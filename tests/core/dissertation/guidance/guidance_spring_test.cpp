@@ -108,7 +108,7 @@ TEST(GuidanceGoal, AnAxisWithoutLengthIsRefused) {
   GuidanceSettings s;
   EXPECT_EQ(validate(s), "");
   s.approach_axis = {5e-4, 0, 0};
-  EXPECT_EQ(validate(s), "approach_axis: expected 0.001 or longer");
+  EXPECT_EQ(validate(s), "approach_axis: expected a vector of length 0.001 or more");
 }
 
 // --- wrench ---

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -24,9 +26,13 @@ PointCloud touching(const std::vector<Vec3>& normals) {
   return cloud;
 }
 
-Vec3 motion(const PointCloud& c, const Vec3& u) {
+std::optional<Vec3> found_motion(const PointCloud& c, const Vec3& u) {
   const PointsView view{c.x.data(), c.y.data(), c.z.data(), c.fixture_radius_m.data(), nullptr, c.size()};
   return admissible_motion(view, Vec3::Zero(), u, kR2);
+}
+
+Vec3 motion(const PointCloud& c, const Vec3& u) {
+  return found_motion(c, u).value();
 }
 
 // Small integers: many normals lie in one plane, and some come twice.
@@ -71,6 +77,15 @@ TEST(TouchingRegions, TheMotionIsTheNearestThatEntersNone) {
   }
   EXPECT_GT(along, 500);
   EXPECT_GT(held, 500);
+}
+
+// Numbers so small that rounding is as large as they are: the rounds go in a circle.
+TEST(TouchingRegions, AMotionThatIsNotFoundIsNotZero) {
+  const PointCloud cloud =
+      touching({Vec3(-2, 2, -1).normalized(), Vec3(1, -1, 1).normalized(), Vec3::UnitZ()});
+  const Vec3 u(-3, 18, -8);
+  EXPECT_EQ(found_motion(cloud, std::numeric_limits<double>::denorm_min() * u), std::nullopt);
+  EXPECT_TRUE(found_motion(cloud, 1e-3 * u));
 }
 
 TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatter) {

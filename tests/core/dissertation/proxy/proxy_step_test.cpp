@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "tests/support/scenes.h"
@@ -289,6 +290,8 @@ TEST(HasConverged, WithinThetaOfTheNormal) {
   const Vec3 down(0, -0.01, 0);
   EXPECT_TRUE(has_converged(ContactState::contact, kUp, down, kDefault));
   EXPECT_FALSE(has_converged(ContactState::entrenched, kUp, down, kDefault));
+  EXPECT_TRUE(has_converged(Vec3(Vec3::Zero()), down, kDefault));
+  EXPECT_FALSE(has_converged(std::nullopt, down, kDefault)) << "no admissible motion was found";
   EXPECT_FALSE(has_converged(ContactState::free, kUp, down, kDefault));
   EXPECT_TRUE(has_converged(ContactState::free, kUp, Vec3::Zero(), kDefault));
 }

@@ -68,6 +68,28 @@ TEST(StraightExit, OnlyTheDirectionOfTheDisplacementMatters) {
   }
 }
 
+// Rows of balls along all nine lines. The end of a ball lies in the next one, so every ball is an exit.
+PointCloud rows_of_balls(int count) {
+  constexpr double kBall_m = 0.02;
+  const double apart_m = 1.5 * (kBall_m + kDefault.contact_radius_m());
+  PointCloud cloud;
+  cloud.append(Vec3::Zero());
+  for (const Vec3& direction : {Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0), Vec3(0, 1, 1), Vec3(0, 1, -1),
+                                Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
+    for (int k = 1; k < count; ++k) cloud.append(k * apart_m * direction.normalized());
+  cloud.fixture_radius_m.assign(cloud.size(), kBall_m);
+  return cloud;
+}
+
+TEST(StraightExit, LeavesAsManyRegionsAsItMay) {
+  for (const int count : {kMaxExits - 1, kMaxExits, kMaxExits + 1}) {
+    Neighbourhood near = neighbourhood(rows_of_balls(count));
+    const auto exit =
+        straight_exit(near, scenes::kernels(), Vec3::Zero(), Vec3::UnitY(), {1e-3, 0, 0}, kDefault);
+    EXPECT_EQ(exit.has_value(), count <= kMaxExits) << count;
+  }
+}
+
 // Never against the normal, though that is nearest.
 TEST(StraightExit, NeverGoesAgainstTheNormal) {
   Neighbourhood near = neighbourhood(two_balls(0, 0.02));

@@ -137,6 +137,19 @@ TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndReportedOnce) {
   EXPECT_EQ(out.frame_index, 5);
 }
 
+TEST(SphereTreeRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
+  const Vec3 lost = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+    ToolParameters p;
+    p.slave_command = command;
+    SphereTreeRenderer r = renderer({Vec3::Zero()}, p);
+    r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
+    EXPECT_TRUE(r.step({lost}, 0).slave_W.array().isNaN().all());
+    EXPECT_EQ(r.step({kAway}, 0.001).slave_W, kAway);
+    EXPECT_EQ(r.step({lost}, 0.002).slave_W, kAway);
+  }
+}
+
 TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
   ToolParameters p;
   std::set<std::string> all, kept;

@@ -4,12 +4,14 @@
 
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <limits>
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/regression/baseline_bless.h"
+#include "runners/evaluation/regression/program_run.h"
 #include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
@@ -266,6 +268,15 @@ TEST_F(MeasureSpread, ProgramsThatAreNone) {
   EXPECT_HAS(refused(programs), "not a readable HDF5 file");
 }
 
+// A process that ignores SIGCHLD, as a parent may make it, does not learn how its programs end.
+TEST_F(MeasureSpread, AProgramOfUnknownEndIsRefused) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  const std::string message =
+      refusal([&] { run_program("/bin/false", {}, {}, folder_ / "errors", nullptr); });
+  std::signal(SIGCHLD, before);
+  EXPECT_HAS(message, "/bin/false: has an unknown end (No child processes): expected");
+}
+
 TEST_F(MeasureSpread, Sweeps) {
   const Sweep sweep = Sweep::from_json(R"({"experiment": "fig4.12",
     "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
@@ -336,7 +347,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
 
   folder.write("manifest.json", text_of(Manifest{false, {{"x", "run", "fig4.11"}}}));
   EXPECT_HAS(refused([](auto& b) { b.run = "", b.overrides = {"seed=1"}; }),
-             "--set: without --run or --sweep");
+             "--set: is given without --run or --sweep");
   folder.write("manifest.json", "damaged");
   EXPECT_HAS(refused([](auto&) {}), "manifest.json: ");
   EXPECT_EQ(bytes_of(folder / "manifest.json"), "damaged");

@@ -315,7 +315,7 @@ TEST_F(CompareTraceFiles, OtherVersionsOfTheLayoutAreRefused) {
         {"remote-touch-sweep/1", "reads remote-touch-sweep/2: run it again"},
         {"remote-touch-session/1", "reads remote-touch-session/2: run it again"},
         {"of-another/1", "is of schema of-another/1: expected a trace, a sweep, a figure or hashes"},
-        {"", "names no schema: expected a trace"}}) {
+        {"", "has no attribute schema: expected a trace"}}) {
     Hdf5Writer hdf5;
     hdf5.attribute("/", "schema", schema);
     hdf5.save(folder_ / "b.h5");

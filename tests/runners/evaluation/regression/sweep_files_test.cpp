@@ -146,7 +146,8 @@ TEST_F(CompareSweepFiles, ARunThatFailsNowIsWorse) {
     rules.paired = in_pairs;
     const ResultComparison failed = compare("a.h5", "b.h5", rules);
     EXPECT_EQ(failed.outcome, Outcome::regressed);
-    EXPECT_HAS(failed.verdict, "1 are done in one only, of which 1 failed in the candidate");
+    EXPECT_HAS(failed.verdict,
+               "1 are finished in only one of the two sweeps, of which 1 failed in the candidate");
     EXPECT_EQ(compare("b.h5", "a.h5", rules).outcome, Outcome::changed);
   }
 }
@@ -231,7 +232,7 @@ TEST_F(CompareSweepFiles, AnUnfinishedOneLacksRuns) {
     for (const auto& [baseline, candidate] : {std::pair("a.h5", "part.h5"), std::pair("part.h5", "a.h5")}) {
       const ResultComparison comparison = compare(baseline, candidate, rules);
       EXPECT_EQ(comparison.outcome, Outcome::changed);
-      EXPECT_HAS(comparison.verdict, "140 are done in one only");
+      EXPECT_HAS(comparison.verdict, "140 are finished in only one of the two sweeps");
       EXPECT_EQ(json_of(comparison)["sweep"]["runs"], 100);
     }
   }

@@ -176,7 +176,8 @@ TEST(Benchmark, AMeasureIsJudgedByItsOwnDirection) {
   EXPECT_EQ(better(R"({"force_noise": "reported"})"), Better::neither);
   EXPECT_EQ(better(R"({"max_force": "smaller"})"), Better::smaller);  // where nothing should be touched
   EXPECT_HAS(refusal([&] { scene(R"({"force_noise": "larger"})"); }),
-             "measures.force_noise = \"larger\": smaller is better: expected judged, reported");
+             "measures.force_noise = \"larger\": the measure has its own direction (smaller is better): "
+             "expected judged or reported");
   EXPECT_HAS(refusal([&] { scene(R"({"max_force": "judged"})"); }), "expected larger, smaller");
 }
 
@@ -215,6 +216,21 @@ TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
              "tolerance_m");
   EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "held", "old_bounds": []}})"); }),
              "old_bounds");
+}
+
+TEST(Benchmark, APartOfTheSuccessThatHasNoEffectIsRefused) {
+  const auto refused = [](const std::string& success) {
+    return refusal([&] {
+      read_benchmark_scene("x",
+                           R"({"title": "t", "experiment": {}, "measures": {}, "success": )" + success + "}");
+    });
+  };
+  const std::string bounds = R"("bounds": [{"measure": "max_force", "max": 3}])";
+  EXPECT_EQ(refused(R"({"meaning": "m", )" + bounds + "}"), "no InputError");
+  EXPECT_HAS(refused(R"({"meaning": "m", "tolerance_m": 0.002, )" + bounds + "}"),
+             "success.tolerance_m: is that of a rule");
+  EXPECT_EQ(refused(R"({"rule": "held", "meaning": "m", )" + bounds + "}"), "no InputError");
+  EXPECT_HAS(refused(R"({"rule": "held", "meaning": "m"})"), "success.meaning: is that of bounds");
 }
 
 TEST(Benchmark, RunsNoSeedThatParametersWereFixedWith) {

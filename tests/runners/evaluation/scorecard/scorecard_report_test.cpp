@@ -312,5 +312,15 @@ TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
   EXPECT_TRUE(read_costs(folder / "none.json", here).empty());
 }
 
+// The error may be one of the machine, such as too little memory, so the cost is measured again.
+TEST(Costs, OfARunThatEndedWithAnErrorAreNotRead) {
+  const TestFolder folder("costs");
+  const TextAttributes here = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "c"}};
+  write_costs(folder / "costs.json", {{"a", "b", std::nan(""), std::nan("")}, {"a", "c", 1e-5, 1e-4}}, here);
+  const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
+  ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].method, "c");
+}
+
 }  // namespace
 }  // namespace remote_touch::scorecard_report_test

@@ -1,6 +1,7 @@
 #include "runners/evaluation/scorecard/stored_card.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,18 @@ TEST_F(StoredCards, SayFirstWhereTheOwnMethodIsNotTheBest) {
   EXPECT_HAS(text, "| short | success without noise | 0 | 1 (proxy) | - |\n");
   EXPECT_HAS(text, "All methods, means over 1 scenes:");
   EXPECT_LT(text.find("| proxy | "), text.rfind("| tracked-sheet | "));  // the most successful first
+}
+
+TEST_F(StoredCards, AnEvaluationThatFailsGivesTheThreadsBack) {
+  const std::filesystem::path& card = plan_.benchmark.folder;
+  std::filesystem::create_directories(card / "traces");
+  std::filesystem::create_directories(card / "costs.json");  // a folder, so that no costs can be written
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(3);
+  EXPECT_HAS(refusal([&] { evaluate(plan_, kernels_for(best_isa()), nullptr, [](auto...) {}); }),
+             "costs.json");
+  EXPECT_EQ(omp_get_max_threads(), 3);
+  omp_set_num_threads(before);
 }
 
 TEST_F(StoredCards, OtherFilesAreRefused) {

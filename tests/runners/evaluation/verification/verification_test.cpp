@@ -242,7 +242,7 @@ TEST(Dimension, RefusalNamesTheParameterThatCannotFollow) {
   int window = 5;
   const auto changed = [](const Parameter& p) { return refusal([&] { change_units({p}, {2, 1, 1}); }); };
   EXPECT_EQ(changed({"length_m", &length, 0, 1, ""}),
-            "length_m = 0.6: a check multiplies it by 2: expected 0 to 1 after that too");
+            "length_m = 0.6: a check multiplies it by 2: expected a product from 0 to 1");
   EXPECT_EQ(changed({"window_m", &window, 0, 100, ""}).find("window_m: an integer"), 0u);
   EXPECT_EQ(changed({"odd_furlong", &odd, 0, 1, ""}).find("odd_furlong: ends in no known unit"), 0u);
 }

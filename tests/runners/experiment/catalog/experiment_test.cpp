@@ -118,7 +118,7 @@ TEST(Experiments, RefuseOverridesThatAreNone) {
   const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
   EXPECT_HAS(why("seed"), "--set seed: expected key=value");
   EXPECT_HAS(why("=3"), "--set =3: expected key=value");
-  EXPECT_HAS(why("seed.x=3"), "--set seed.x=3: the path leads through a value");
+  EXPECT_HAS(why("seed.x=3"), "--set seed.x=3: the path continues below a plain value");
   EXPECT_HAS(why("scenario=3"), "scenario");
   EXPECT_HAS(why("renderer.=3"), "renderer");
   EXPECT_HAS(why("title=\xff"), "title");
@@ -169,7 +169,7 @@ TEST(Experiments, RefuseFixturesThatAreNone) {
   EXPECT_HAS(why(one, "fixtures.0.radius=1"), "fixtures.0.radius: unknown; did you mean fixtures.0.radius_m");
   EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: expected -1 to 1");
   EXPECT_HAS(why(one, "fixtures.0.schedule=[[0,1.5]]"), "fixtures.0.schedule: strength 1.5");
-  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "expected 0 to 0 for its place in a list");
+  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "expected an index of the list, 0 to 0");
   EXPECT_HAS(why("[]", "fixtures.0.radius_m=1"), "fixtures");
   EXPECT_HAS(why(R"([{"name": "everywhere"}, {"name": "half-space", "normal": [0, 0, 0]}])"),
              "fixtures.1.normal: expected longer than 0");

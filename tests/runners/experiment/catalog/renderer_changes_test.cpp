@@ -67,7 +67,8 @@ TEST(RendererChanges, TimesDoNotGoBack) {
 TEST(RendererChanges, ChangesOfOneTimeAreCheckedTogether) {
   const std::string r1 = change("0.1", "renderer.r1_m", "0.00599"),
                     r2 = change("0.1", "renderer.r2_m", "0.00601");
-  EXPECT_EQ(why("[" + r1 + "]"), "changes.0: then renderer.r1_m = 0.00599: expected below r2_m = 0.00501");
+  EXPECT_EQ(why("[" + r1 + "]"),
+            "changes.0: after this change renderer.r1_m = 0.00599: expected below r2_m = 0.00501");
   EXPECT_EQ(lift("[" + r1 + ", " + r2 + "]").changes().size(), 2u);
 }
 

@@ -316,7 +316,8 @@ TEST(SensorFaultFrames, RefusesWhatIsNone) {
   EXPECT_EQ(why("faults.dropout_probability=1.5"), "faults.dropout_probability = 1.5: expected 0 to 1");
   EXPECT_EQ(why("faults.quantisation_m=-0.001"), "faults.quantisation_m = -0.001: expected 0 to 1");
   EXPECT_EQ(why("faults.hole_radius_m=0"), "faults.hole_radius_m = 0: expected 0.0001 to 10");
-  EXPECT_HAS(why("faults.view_direction=[0,0,0]"), "faults.view_direction: expected 0.001 or longer");
+  EXPECT_HAS(why("faults.view_direction=[0,0,0]"),
+             "faults.view_direction: expected a vector of length 0.001 or more");
   EXPECT_HAS(why("faults.dropout=0.5"), "faults.dropout: unknown; did you mean faults.dropout_probability");
   EXPECT_HAS(why("faults=3"), "faults: expected an object of parameters");
   SensorFaults blind;

@@ -79,10 +79,10 @@ TEST(ImageScan, BridgesStripesUpToTheLimit) {
   const Course at = course(hand, mug, is_mug);
   EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
   EXPECT_GT(at.on_object_s, kMugSeconds / 2);  // steep parts differ more from stripe to stripe
-  EXPECT_HAS(refusal([&] { ImageScan({}, wide); }), "holes of at most 8 mm");
+  EXPECT_HAS(refusal([&] { ImageScan({}, wide); }), "holes above 8 mm");
   ImageScan::Settings none;
   none.bridge_m = 0;
-  EXPECT_HAS(refusal([&] { ImageScan(none, narrow); }), "no surface without edges");
+  EXPECT_HAS(refusal([&] { ImageScan(none, narrow); }), "no surface that can be touched in this row");
 }
 
 // A plate with a hole of 4 cm in its middle, with nothing or a far wall behind it.

@@ -178,6 +178,18 @@ TEST(FollowSurface, LiftsOffOverSteps) {
   EXPECT_GT(inside, 5000);
 }
 
+// A line of no length has no direction: the hand would be nowhere.
+TEST(FollowSurface, RefusesEndsThatDifferOnlyInHeight) {
+  FollowSurface::Settings s;
+  EXPECT_EQ(validate(s), "");
+  s.from_m = {0.1, 0, 0.2}, s.to_m = {0.1, 0.3, 0.2};
+  EXPECT_EQ(validate(s), "to_m: expected another x or z than that of from_m");
+  s.to_m.x() += 1e-200;  // the square of this length is 0
+  EXPECT_NE(validate(s), "");
+  s.to_m.z() = 0.3;
+  EXPECT_EQ(validate(s), "");
+}
+
 TEST(HeightFields, AreNeededToPressAndToFollow) {
   const PointsOnly scene;
   EXPECT_THROW(Press({}, scene), InputError);

@@ -148,6 +148,17 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver lets it go
 }
 
+TEST_F(OpenClDoubleTest, AShortLimitIsReportedInFractionsOfASecond) {
+  auto pipeline = opened(std::chrono::milliseconds(50));
+  library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_NE(told_[0].find("no answer within 0.05 s"), std::string::npos) << told_[0];
+  pipeline.reset();
+  library().let_go = true;
+  EXPECT_TRUE(everything_is_released());
+}
+
 // A sweep of short runs: the second run finds what the first one built and tried.
 TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
   library().failing = "clBuildProgram", library().failing_call = 1000;

@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <new>
 #include <string>
 
 #include "runners/experiment/provenance/cache_file.h"
@@ -94,6 +95,27 @@ TEST_F(CacheSizeTest, AKindCanHaveAMaximum) {
     EXPECT_EQ(read_cache_file(folder_.path(), kind, "a", take), length == 10);
     EXPECT_TRUE(read_cache_file(folder_.path(), {"levels", 1}, "a", take));
   }
+}
+
+TEST_F(CacheSizeTest, AWriterThatFailsLeavesNoFile) {
+  const auto put = [](CacheWriter& pack) {
+    pack.text("a part");
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW(write_cache_file(folder_.path(), {"levels", 1, 4096}, "a", put), std::bad_alloc);
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(CacheSizeTest, AFileOfAnotherKeyIsNotTaken) {
+  const CacheKind kind{"tool", 1};
+  ASSERT_TRUE(write_cache_file(folder_.path(), kind, "a", [](CacheWriter& pack) { pack.text("of a"); }));
+  folder_.write("b.tool", bytes_of(folder_ / "a.tool"));
+  std::string taken;
+  const auto take = [&](Unpacker& unpack) { unpack.text(taken); };
+  EXPECT_FALSE(read_cache_file(folder_.path(), kind, "b", take));
+  EXPECT_EQ(taken, "");
+  EXPECT_TRUE(read_cache_file(folder_.path(), kind, "a", take));
+  EXPECT_EQ(taken, "of a");
 }
 
 TEST_F(CacheSizeTest, TheMaximumIsTakenFromTheEnvironment) {

@@ -159,20 +159,23 @@ TEST_F(Inputs, AreRefusedIfTheyChangeDuringARun) {
   folder_.write("depth/0001.png", "another image");
   const std::string message = refusal([&] { require_unchanged({part(0, 1)}, before); });
   EXPECT_HAS(message, folder_.path().string() + ": changed while it was read (");
-  EXPECT_HAS(message, "expected files that nothing writes");
+  EXPECT_HAS(message, "expected files that no program writes");
+}
+
+// Three short runs on a cloud.
+Sweep sweep_on(const std::string& cloud_file) {
+  return Sweep::from_json(R"({"experiment": {"scenario": {"name": "recording", "path": ")" + cloud_file +
+                              R"("}, "renderer": {"name": "proxy"}, "duration_s": 0.01,
+              "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.4, 0], [0, 0, 0.4, 0.01]]}},
+          "measures": ["max_force"], "axes": [{"parameter": "renderer.steps_per_tick", "values": [10, 20, 30]}]})",
+                          "test");
 }
 
 // The first run that ends changes the recording: no run of that call is kept, and the next call does them
 // all.
 TEST_F(Inputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
   const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
-  const std::string file = folder_.write("cloud.pcd", cloud).string();
-  const Sweep sweep =
-      Sweep::from_json(R"({"experiment": {"scenario": {"name": "recording", "path": ")" + file +
-                           R"("}, "renderer": {"name": "proxy"}, "duration_s": 0.01,
-              "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.4, 0], [0, 0, 0.4, 0.01]]}},
-          "measures": ["max_force"], "axes": [{"parameter": "renderer.steps_per_tick", "values": [10, 20, 30]}]})",
-                       "test");
+  const Sweep sweep = sweep_on(folder_.write("cloud.pcd", cloud).string());
   const TextAttributes attributes{{"config", sweep.to_json()},
                                   {"input_digests", input_hashes(sweep.inputs())}};
   const auto result = folder_ / "sweep.h5";
@@ -187,6 +190,26 @@ TEST_F(Inputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
   folder_.write("cloud.pcd", cloud);
   EXPECT_TRUE(SweepSession(sweep, {}, attributes, result).run(kernels, nullptr, [](auto, auto, auto) {}));
   EXPECT_EQ(read_sweep(result).result.runs_in(RunState::done).size(), 3u);
+}
+
+// As when the file cannot be written, or a run finds no memory.
+TEST_F(Inputs, UndoTheRunsOfASweepThatFailsIfTheyChangeDuringIt) {
+  const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
+  const Sweep sweep = sweep_on(folder_.write("cloud.pcd", cloud).string());
+  const TextAttributes attributes{{"config", sweep.to_json()},
+                                  {"input_digests", input_hashes(sweep.inputs())}};
+  const auto result = folder_ / "sweep.h5";
+  const auto run = [&](const std::string& now) {
+    SweepSession(sweep, {}, attributes, result).run(kernels_for(best_isa()), nullptr, [&](auto, auto, auto) {
+      folder_.write("cloud.pcd", now);
+      throw InputError("a full disk");
+    });
+  };
+  EXPECT_HAS(refusal([&] { run(cloud + "\n"); }), "changed while it was read");
+  EXPECT_TRUE(read_sweep(result).result.runs_in(RunState::done).empty());
+  folder_.write("cloud.pcd", cloud);
+  EXPECT_EQ(refusal([&] { run(cloud); }), "a full disk");
+  EXPECT_FALSE(read_sweep(result).result.runs_in(RunState::done).empty());
 }
 
 TEST(ChangedInputs, AreListedByPath) {

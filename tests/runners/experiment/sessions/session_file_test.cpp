@@ -54,7 +54,7 @@ TEST(SessionFile, GivesBackTheTicksToTheBit) {
   session.add_tick(0), session.add_tick(2, 0), session.add_tick(3, 2), session.add_tick(2147483647);
   session.ticks[1].device = {{-0.0, 1.0 / 3, 5e-324}, {0.1, -0.2, 0.3, -0.4}, 0x7fffffffu};
   session.ticks[2].device = {
-      {1e300, -1e-300, std::numeric_limits<double>::quiet_NaN()}, {-0.0, 1, 0, 0}, 0x80000001u};
+      {1e300, -1e-300, std::numeric_limits<double>::max()}, {-0.0, 1, 0, 0}, 0x80000001u};
   session.ticks[3].device.buttons = 0xffffffffu;
   expect_same(SessionReader(session.write(folder / "session.h5")), session);
 }
@@ -287,7 +287,7 @@ TEST(SessionFile, ColumnsThatDoNotFitAreRefused) {
 
 TEST(SessionFile, RefusesWhatNoLoopRecords) {
   const char *ticks = "its ticks are out of order", *frames = "its frames are out of order",
-             *changes = "its changes of parameters cannot be";
+             *changes = "its changes of parameters are not possible";
   expect_refused({
       {[](RawSession& s) { s.changed_at[0] = 5; }, changes},
       {[](RawSession& s) { s.changed_at[1] = std::uint64_t{1} << 31; }, changes},
@@ -331,6 +331,10 @@ TEST(SessionFile, RefusesWhatNoLoopRecords) {
        frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::quiet_NaN(); }, frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::infinity(); }, frames},
+      {[](RawSession& s) { s.position[4] = std::numeric_limits<double>::quiet_NaN(); },
+       "/ticks/position has values that are not finite"},
+      {[](RawSession& s) { s.orientation[11] = std::numeric_limits<double>::infinity(); },
+       "/ticks/orientation has values that are not finite"},
       {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that are not button states"},
       {[](RawSession& s) { s.buttons[2] = 1e10; }, "/ticks/buttons has values that are not button states"},
   });

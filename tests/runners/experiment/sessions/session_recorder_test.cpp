@@ -303,6 +303,29 @@ TEST(SessionRecorder, ATickIsNotWholeBeforeTheFrameThatItTook) {
   EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 150u);
 }
 
+TEST(SessionRecorder, DoesNotFinishWithoutAllTicksAndChanges) {
+  const TestFolder folder("session_recorder");
+  SmallSession session;
+  session.add_frame(0, 0);
+  SessionRecorder recorder(folder / "x.h5", session.view, session.registered, {{"config", session.config}},
+                           kParameters);
+  SessionTick tick;
+  recorder.append(tick);
+  tick.number = 1, tick.taken = 0;
+  recorder.append(tick);
+  EXPECT_HAS(refusal([&] { recorder.finish({}); }),
+             "x.h5: lacks 1 ticks and 0 changes: expected every frame");
+  EXPECT_FALSE(fs::exists(folder / "x.h5"));
+  EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 1u);
+  recorder.append(session.frames[0], 0, 0);
+  recorder.append(SessionChange{2, 0, 0.5});
+  EXPECT_HAS(refusal([&] { recorder.finish({}); }), "x.h5: lacks 0 ticks and 1 changes");
+  tick.number = 2, tick.taken = -1;
+  recorder.append(tick);
+  recorder.finish({});
+  EXPECT_EQ(SessionReader(folder / "x.h5").tick_count(), 3u);
+}
+
 TEST(SessionRecorder, LeavesNothingWhereNothingWasRecorded) {
   const TestFolder folder("session_recorder");
   const Recorded recorded(0, images());

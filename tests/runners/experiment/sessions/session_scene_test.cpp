@@ -77,7 +77,7 @@ TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
   ASSERT_EQ(scene.input_notes().size(), 1u);
   EXPECT_EQ(scene.input_notes()[0].kind, "frames unused");
   EXPECT_EQ(scene.input_notes()[0].text,
-            file_.string() + ": 1 of 2 frames were not used: the run ends before");
+            file_.string() + ": 1 of 2 frames were not used: the run ended before them");
   scene.points(2);
   EXPECT_TRUE(scene.input_notes().empty()) << "the frame that was overtaken belongs to no run";
   EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
@@ -88,7 +88,7 @@ TEST_F(SessionSceneTest, AFrameThatWasReplacedIsNotSaidToBeAfterTheEnd) {
   scene.points(2);
   ASSERT_EQ(scene.input_notes().size(), 1u);
   EXPECT_EQ(scene.input_notes()[0].text,
-            file_.string() + ": 1 of 2 frames were not used: newer ones replaced them, or they were lost");
+            file_.string() + ": 1 of 2 frames were not used: newer frames replaced them, or they were lost");
 }
 
 TEST_F(SessionSceneTest, IsRefusedIfThereAreNoFrames) {
@@ -188,8 +188,10 @@ TEST_F(SessionSceneTest, AnExperimentOfNoSessionIsRefused) {
   EXPECT_HAS(refusal([this] { session_experiment((folder_ / "none.h5").string()); }),
              "none.h5: no such recording");
   session_.config = "[]";
-  EXPECT_EQ(refusal([this] { session_experiment(session_.write(file_)); }),
-            file_.string() + ": damaged (its attributes view and config): expected a result of this program");
+  EXPECT_EQ(
+      refusal([this] { session_experiment(session_.write(file_)); }),
+      file_.string() +
+          ": damaged (its attributes view and config cannot be read): expected a result of this program");
   // It would be printed by a function that calls itself for every level.
   session_.config =
       R"({"haptic_rate_hz": 1000, "title": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}";

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "tests/runners/experiment/sessions/small_session.h"
@@ -49,6 +52,10 @@ class UnfinishedSessionFile : public testing::Test {
   static JournalBlock ticks(const std::vector<SessionTick>& list) {
     return block(SessionBlock::ticks, packed_ticks(list, {}));
   }
+  // A block of tick 4 with these changes.
+  static JournalBlock changes(const std::vector<SessionChange>& list) {
+    return block(SessionBlock::ticks, packed_ticks(std::vector<SessionTick>{tick(4)}, list));
+  }
   // The last block follows a session of one frame and one tick. It is left out, and so is all that follows.
   void expect_left_out(const JournalBlock& last) {
     const std::vector<JournalBlock> good{start(), frame(0), ticks({tick(3, 0)})};
@@ -91,6 +98,29 @@ TEST_F(UnfinishedSessionFile, LeavesOutBlocksThatNoRecordingHas) {
   }
   stored.depth = "no image";
   expect_left_out(block(SessionBlock::frame, packed_frame(stored)));
+}
+
+// SessionReader refuses such changes and ticks, so that a recording with them could not be read.
+TEST_F(UnfinishedSessionFile, LeavesOutChangesAndStatesThatNoRecordingHas) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  expect_left_out(changes({{5, 0, 0.1}, {4, 0, 0.1}}));
+  expect_left_out(changes({{std::uint64_t{1} << 31, 0, 0.1}}));
+  expect_left_out(changes({{4, 1, 0.1}}));
+  expect_left_out(changes({{4, -1, 0.1}}));
+  expect_left_out(changes({{4, 0, kInfinity}}));
+  SessionTick nowhere = tick(4), unturned = tick(4);
+  nowhere.device.position_W.y() = std::nan("");
+  unturned.device.orientation_W.x() = kInfinity;
+  expect_left_out(ticks({nowhere}));
+  expect_left_out(ticks({unturned}));
+}
+
+TEST_F(UnfinishedSessionFile, KeepsPossibleChanges) {
+  const std::vector<JournalBlock> all{start(), changes({{4, 0, 0.1}, {4, 0, 0.2}})};
+  const UnfinishedSession found =
+      recover_session(folder_.write("x", block_bytes(folder_, all)), folder_ / "r.h5");
+  EXPECT_EQ(found.changes, 2u);
+  EXPECT_EQ(SessionReader(folder_ / "r.h5").changes().size(), 2u);
 }
 
 TEST_F(UnfinishedSessionFile, RefusesWhatIsNoSession) {

@@ -28,5 +28,14 @@ TEST(ConfigurationDifferences, LeaveOutTitles) {
       1u);
 }
 
+// The limit of 57 bytes is in the middle of the 28th of these characters, behind a quotation mark and a
+// letter.
+TEST(ConfigurationDifferences, DoNotCutACharacter) {
+  std::string umlauts;
+  for (int i = 0; i < 40; ++i) umlauts += "\xc3\xa4";
+  const Texts found = configuration_differences(R"({"path": "x)" + umlauts + R"("})", R"({"path": 1})");
+  EXPECT_EQ(found, (Texts{"path \"x" + umlauts.substr(0, 54) + "... against 1"}));
+}
+
 }  // namespace
 }  // namespace remote_touch::configuration_difference_test

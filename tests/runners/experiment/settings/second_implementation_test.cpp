@@ -35,6 +35,12 @@ TEST(SecondImplementation, GivesAColumnOfEveryRow) {
   }
 }
 
+// A number of a claim comes from the program itself, whatever files there are.
+TEST(SecondImplementation, ReadsNoFile) {
+  const char* const file = REMOTE_TOUCH_SOURCE_DIR "/data/second_implementation/chapter_4.json";
+  EXPECT_THROW(second_number(file, "/lifts/noisy/survived"), InputError);
+}
+
 TEST(SecondImplementation, RefusesWhatIsNotThere) {
   EXPECT_THROW(second_number("chapter_0", "/lifts"), InputError);
   EXPECT_THROW(second_number("chapter_4", "/lifts/nothing"), std::exception);

@@ -131,8 +131,8 @@ TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
   EXPECT_HAS(line(pcd(false, false), "god-object"), "of a PCD file: HEIGHT above 1");
   EXPECT_HAS(
       line(pcd(false, false), "surfels"),
-      "renderer.view = [0, -1, 0]: the points of this recording are not an image: expected the direction in "
-      "which its sensor looks, [0, 0, 1]");
+      "renderer.view = [0, -1, 0]: the frames of this recording are not images, so the direction of the sensor must "
+      "be given: expected the direction in which it looks, [0, 0, 1]");
 }
 
 // Rules that assign no radius make no regions.
@@ -158,7 +158,7 @@ TEST_F(FrameNeeds, FaultsAlongAWrongViewAreRefused) {
   const std::string faults = R"(, "faults": {"quantisation_m": 0.001)";
   const Kind cloud = pcd(false, false);
   EXPECT_HAS(refusal([&] { run(press_on(cloud, R"({"name": "proxy"})", faults + "}")); }),
-             "faults.view_direction = [0, -1, 0]: the points of this recording are not an image");
+             "faults.view_direction = [0, -1, 0]: the frames of this recording are not images");
   const Method proxy{"proxy", "", "", ""};
   expect_force_or_refusal(cloud, proxy, faults + R"(, "view_direction": [0, 0, 1]})");
   expect_force_or_refusal(cloud, proxy, R"(, "faults": {"dropout_probability": 0.1})");

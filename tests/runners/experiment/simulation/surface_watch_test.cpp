@@ -95,7 +95,7 @@ TEST(SurfaceWatch, ReportsAHandThatFliesBehind) {
     const std::vector<Note> notes = watched(depths, plan, {0.1, 0, 0.51});
     EXPECT_EQ(kinds(notes), Kinds{"behind the surface"});
     // 20, 60 and 82 mm in 3 of 5 ticks; 10 mm are planned.
-    EXPECT_HAS(notes[0].text, "in 60 % of the ticks, first at 0.15 s, by up to 82 mm; planned were 16 mm");
+    EXPECT_HAS(notes[0].text, "in 60 % of the ticks, first at 0.15 s, by up to 82 mm; at most 16 mm");
   }
 }
 
@@ -141,7 +141,7 @@ TEST(SurfaceWatch, ReportsAHandThatJumps) {
       ASSERT_EQ(kinds(notes), Kinds{"hand jumped"});
       EXPECT_EQ(
           notes[0].text,
-          "the hand jumped by 60 mm at 0.39 s, because its pixel then showed another place; it jumped 2 "
+          "the hand jumped by 60 mm at 0.39 s, because its pixel then showed another surface; it jumped 2 "
           "times, by up to 90 mm");
     }
   }
@@ -183,7 +183,7 @@ TEST(SurfaceWatch, ReportsAScanOfASceneThatMoves) {
   const RunReport moved = report_of_run(folder.path().string(), R"({"name": "image-scan", "row": 120,
     "first_column": 130, "last_column": 190})");
   EXPECT_EQ(kinds(moved.notes), Kinds{"behind the surface"});
-  EXPECT_HAS(moved.notes[0].text, "by up to 60 mm; planned were 16 mm at most");
+  EXPECT_HAS(moved.notes[0].text, "by up to 60 mm; at most 16 mm were planned");
   EXPECT_EQ(kinds(report_of_run(folder.path().string(), R"({"name": "image-press"})", kHalf_s).notes),
             Kinds{"frames unused"});
 }

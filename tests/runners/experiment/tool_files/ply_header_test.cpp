@@ -55,7 +55,9 @@ TEST_F(PlyHeader, CountsBeyondTheFileAreRefused) {
 
 TEST_F(PlyHeader, CountsThatAreNoneAreRefused) {
   for (const char* none : {"-1", "many", "18446744073709551616", "3.5", ""})
-    EXPECT_HAS(problem(header("ascii", none, "1") + "0 0 0\n"), "its header counts ") << none;
+    EXPECT_HAS(problem(header("ascii", none, "1") + "0 0 0\n"),
+               "its header has a count that is not a number: ")
+        << none;
 }
 
 }  // namespace

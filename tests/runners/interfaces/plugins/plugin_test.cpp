@@ -1,9 +1,10 @@
 // Renderers in shared libraries. The libraries are test doubles: tests/doubles/plugin_renderers.cpp,
-// plugin_mistakes.c.
+// plugin_mistakes.c; and endless_plugin.c here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
@@ -13,6 +14,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/plugins/plugin_library.h"
+#include "runners/interfaces/plugins/plugin_renderer.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -97,6 +99,37 @@ TEST(Plugin, ALibraryWithAMistakeIsRefused) {
   Catalog catalog = built_in_catalog();
   EXPECT_EQ(refusal([&] { catalog.add(load_plugin(PLUGIN_FOLDER "/libplugin_mistake_6.so").front()); }),
             "renderer \"proxy\": is in the catalog already");
+}
+
+TEST(Plugin, ALibraryWithTooManyRenderersIsRefused) {
+  EXPECT_HAS(refusal([] { load_plugin(ENDLESS_PLUGIN); }), "has too many renderers: expected at most 1000");
+}
+
+// A renderer whose functions that free something throw; its prepared frames are this number.
+int number_to_free = 0;
+remote_touch_renderer throws_when_freed() {
+  remote_touch_renderer functions{};
+  functions.name = "throws-when-freed", functions.summary = "for tests";
+  functions.degrees_of_freedom = 3;
+  functions.create = [](const double*, double, char*, std::size_t) -> void* { return &number_to_free; };
+  functions.destroy = [](void*) { throw std::runtime_error("it cannot be destroyed"); };
+  functions.prepare = [](const void*, const remote_touch_frame*, char*, std::size_t) -> void* {
+    return &number_to_free;
+  };
+  functions.release = [](void*) { throw std::runtime_error("it cannot be released"); };
+  return functions;
+}
+
+TEST(Plugin, AnExceptionOfAFunctionThatFreesIsIgnored) {
+  const remote_touch_renderer functions = throws_when_freed();
+  const auto factory = plugin_factory(functions);
+  EXPECT_EQ(factory->validate(), "");
+  auto renderer = factory->build(1000, scenes::kernels());
+  Frame frame = scenes::frame(scenes::flat_grid(10));
+  renderer->prepare(frame);
+  EXPECT_TRUE(frame.prepared);
+  frame.prepared.reset();
+  renderer.reset();
 }
 
 TEST(Plugin, OtherFilesAreRefused) {

@@ -107,11 +107,11 @@ class A(rt.Trajectory):
 class A(rt.Trajectory):
     duration_s = 1
     def at(self, t): return (0, 0, 1e8)
--> trajectory a: A.at: a position farther than 1000 m from the origin
+-> trajectory a: A.at: a position more than 1000 m from the origin
 
 class A(rt.Scenario):
     def cloud(self, frame): return [[1e6, 0, 0], [1e6, 1, 0]]
--> scenario a: A.cloud: points: all points are farther than 1000 m from the origin
+-> scenario a: A.cloud: points: all points are more than 1000 m from the origin
 
 class A(rt.Trajectory):
     duration_s = 1

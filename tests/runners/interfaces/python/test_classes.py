@@ -37,6 +37,16 @@ else:
 ''')
 
 
+def test_a_cloud_without_points_has_arrays_of_length_0(in_python):
+    in_python(COMMON + '''
+empty = rt.Cloud(np.zeros((0, 3)))
+for column in (empty.x, empty.y, empty.z):
+    assert column.shape == (0,) and column.dtype == np.float64 and not column.flags.writeable, column
+assert len(empty) == 0 and empty.points.shape == (0, 3)
+assert empty.nx is None and empty.normals is None and empty.colour is None and empty.stiffness_N_per_m is None
+''')
+
+
 def test_live_settings_change_during_a_run(in_python):
     in_python(PENALTY + '''
 change = [{"time_s": 0.1, "parameter": "renderer.stiffness_N_per_m", "value": 1200}]
@@ -282,7 +292,7 @@ rt.register(Registers)
 try:
     rt.run(PRESS, set={"renderer": {"name": Registers}})
 except rt.InputError as error:
-    assert "register: a run or a sweep is going on" in str(error), error
+    assert "register: a run or a sweep is in progress" in str(error), error
 else:
     raise AssertionError
 ''')

@@ -88,7 +88,7 @@ TEST_F(DeviceTable, TheMouseBeginsWhereTheExperimentDoes) {
 }
 
 TEST_F(DeviceTable, TheMouseNeedsAPage) {
-  EXPECT_HAS(refusal([&] { open("browser:"); }), "expected with --view");
+  EXPECT_HAS(refusal([&] { open("browser:"); }), "expected the option --view");
   EXPECT_HAS(refusal([&] { open("browser:x", std::make_shared<HandPoses>()); }), "expected browser:");
 }
 

@@ -9,9 +9,11 @@
 
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/live/devices/haply.h"
+#include "runners/live/devices/haply_place.h"
 #include "runners/live/devices/steady_clock.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
@@ -133,11 +135,21 @@ class SilentPort {
   int number_ = 0;
 };
 
+// As the header Host of the handshake has them.
+TEST(HaplyPlace, HasBracketsAroundAnAddressOfIpv6) {
+  for (const auto& [address, authority] :
+       {std::pair("ws://[::1]:10002", "[::1]:10002"), std::pair("ws://[fe80::1]/path", "[fe80::1]:10001"),
+        std::pair("ws://localhost:5", "localhost:5"), std::pair("", "127.0.0.1:10001")})
+    EXPECT_EQ(haply_place({"haply", address, {}}).authority(), authority);
+}
+
 TEST(HaplyLink, RefusesAddressesThatCannotBeOpened) {
   const SilentPort silent;
   const std::string gone = "ws://127.0.0.1:" + std::to_string(silent.number());
   EXPECT_HAS(refusal([&] { open_link(gone); }), "haply:" + gone + ": no Haply service at " + gone + "/ (");
   EXPECT_HAS(refusal([&] { open_link(gone); }), "start the Inverse service");
+  EXPECT_HAS(refusal([&] { open_link("ws://[::1]:" + std::to_string(silent.number())); }),
+             ": no Haply service at ws://[::1]:" + std::to_string(silent.number()) + "/ (");
   EXPECT_HAS(refusal([&] { open_link("http://127.0.0.1"); }), "write ws://HOST:PORT");
   EXPECT_HAS(refusal([&] { open_link("ws://:1"); }), "write ws://HOST:PORT");
 }

@@ -26,6 +26,15 @@ TEST(Jitter, ALateTickIsLateAndOneThatNeverCameIsMissed) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(jitter.late_s[i], i == 6 ? 0.7e-3 : 0, 1e-12) << i;
 }
 
+// A period of 333333 ns: after 300 ticks the loop is 0.1 us before a grid of 1 / 3000 s.
+TEST(Jitter, NoTickIsLateAtARateWhosePeriodIsRounded) {
+  SimulatedClock clock;
+  const Jitter jitter = measure_jitter(0.1, 3000, nullptr, clock);
+  ASSERT_EQ(jitter.late_s.size(), 300u);
+  for (const double late_s : jitter.late_s) EXPECT_NEAR(late_s, 0, 1e-12);
+  EXPECT_EQ(jitter.missed, 0);
+}
+
 TEST(Jitter, AStopEndsIt) {
   SimulatedClock clock;
   std::atomic<bool> stop = false;

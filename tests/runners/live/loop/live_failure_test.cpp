@@ -131,7 +131,7 @@ TEST_P(PressedDevice, ALongHangIsReportedWhileItLasts) {
   ASSERT_EQ(run_.told().size(), 2u);
   EXPECT_EQ(run_.told()[0].line, "force is off: the haptic loop hangs, and the device was released");
   EXPECT_EQ(run_.told()[0].at_ns, ms(530));
-  EXPECT_EQ(run_.told()[1].line, "re-armed: the force begins when the hand is free");
+  EXPECT_EQ(run_.told()[1].line, "re-armed: the force starts again when the hand is in free space");
 }
 
 TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {

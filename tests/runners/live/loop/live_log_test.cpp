@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "runners/live/loop/live_logger.h"
 #include "runners/live/loop/live_report.h"
@@ -84,6 +87,48 @@ TEST(LiveLog, TheTraceEndsWhereItsRowsEndAndTheCountsGoOn) {
   EXPECT_EQ(report.counts.front().value, 1000);
   EXPECT_EQ(report.times.front().count, 1000u);
   EXPECT_FLOAT_EQ(static_cast<float>(report.times.front().greatest), 999e-6f);
+}
+
+double count_of(const LiveReport& report, const std::string& name) {
+  for (const auto& count : report.counts)
+    if (count.name == name) return count.value;
+  ADD_FAILURE() << name;
+  return -1;
+}
+
+constexpr const char *kMissed = "missed deadlines, percent", *kProcessing = "processing of a frame, mean us",
+                     *kPause = "longest pause between frames, ms", *kForce = "largest force written, N";
+
+TEST(LiveReport, HasNoValueForWhatWasNotMeasured) {
+  const LiveReport report = live_report({}, {});
+  for (const char* name : {kMissed, kProcessing, kPause, kForce})
+    EXPECT_TRUE(std::isnan(count_of(report, name))) << name;
+  EXPECT_EQ(count_of(report, "ticks"), 0);
+  EXPECT_EQ(count_of(report, "missed deadlines"), 0);
+  const std::string shown = text(report);
+  EXPECT_HAS(shown, std::string("  ") + kForce + std::string(35, ' ') + "none\n");
+  EXPECT_HAS(shown, "0      none      none      none      none      none\n");
+  EXPECT_EQ(shown.find("nan"), std::string::npos) << shown;
+  const Figure figure = live_figure(report);
+  EXPECT_TRUE(std::isnan(std::get<std::vector<double>>(figure.tables[1].columns[1].values).back()));
+}
+
+TEST(LiveReport, HasNoPauseWithOneFrame) {
+  LiveCounts counts;
+  counts.camera.received = 3, counts.camera.reversed = 2, counts.camera.processing_s = 0.004;
+  const LiveReport one = live_report({}, counts);
+  EXPECT_TRUE(std::isnan(count_of(one, kPause)));
+  EXPECT_EQ(count_of(one, kProcessing), 4000);
+  counts.camera.received = 4, counts.camera.max_pause_s = 0.5;
+  EXPECT_EQ(count_of(live_report({}, counts), kPause), 500);
+}
+
+TEST(LiveReport, ATickWithoutForceIsMeasured) {
+  LiveLog log;
+  log.append({}, 1000);
+  const LiveReport report = live_report(log, {});
+  EXPECT_EQ(count_of(report, kMissed), 0);
+  EXPECT_EQ(count_of(report, kForce), 0);
 }
 
 TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {

@@ -250,8 +250,28 @@ TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
   run();
   EXPECT_EQ(renderer_.steps, 50);
   EXPECT_TRUE(servo_->has_failed());
-  EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop");
+  EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop: a renderer breaks its contract");
   EXPECT_EQ(device_.released_ms, (Numbers{50}));
+}
+
+TEST_F(ServoTest, KeepsTheStartOfALongReasonAndNoOtherOne) {
+  renderer_.on_step = [calls = 0](int) mutable {
+    throw std::runtime_error(std::string(10'000, ++calls == 1 ? 'x' : 'y'));
+  };
+  run();
+  const std::string told = servo_->trouble();
+  EXPECT_EQ(told.find("an exception in the haptic loop: xxx"), 0u) << told;
+  EXPECT_GT(told.size(), 200u);
+  EXPECT_LT(told.size(), 10'000u);
+  EXPECT_FALSE(servo_->tick()) << "an adapter that calls once more";
+  EXPECT_EQ(servo_->trouble(), told);
+}
+
+TEST_F(ServoTest, AnExceptionWithoutATextLetsTheDeviceGo) {
+  renderer_.on_step = [](int) { throw 7; };
+  run();
+  EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop");
+  EXPECT_EQ(device_.released_ms.front(), 0);
 }
 
 TEST_F(ServoTest, AStepWithoutMemoryLetsTheDeviceGo) {

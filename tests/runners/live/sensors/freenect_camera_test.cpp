@@ -142,14 +142,14 @@ TEST_F(FreenectCamera, PlaysARecording) {
   EXPECT_GE(seen, 2);    // a reader that is late gets the newest
   EXPECT_GE(waited, 1);  // a hundred times for the last
   EXPECT_EQ(state, SensorState::failed);
-  EXPECT_HAS(source->failure(), "freenect:0: no more frames, the library says -1: ");
-  EXPECT_HAS(source->failure(), "a recording of fakenect is at its end");
+  EXPECT_HAS(source->failure(), "freenect:0: no more frames (error -1 of the library): ");
+  EXPECT_HAS(source->failure(), "a recording of fakenect has ended");
   EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
 }
 
 TEST_F(FreenectCamera, OtherNumbersAreRefused) {
   EXPECT_HAS(refusal([] { open_freenect("1", steady_clock()); }),
-             "freenect:1: 1 Kinects are plugged in, from 0 on: expected ");
+             "freenect:1: 1 Kinects are plugged in, numbered from 0: expected ");
   for (const char* address : {"-1", "x", "0x", " 0", "99999999999"})
     EXPECT_HAS(refusal([&] { open_freenect(address, steady_clock()); }),
                "freenect:" + std::string(address) + ": no camera has this number: expected 0, 1, ...");

@@ -83,15 +83,28 @@ TEST_F(ExportedRunTest, OddColumnsAreRefused) {
     return store("remote-touch run a.json", columns);
   };
   const auto negative = with("time", [](Column& c) { std::get<std::vector<double>>(c.values)[3] = -1; });
-  EXPECT_HAS(export_as("x.mcap", negative), "/trace/time has a time that cannot be");
+  EXPECT_HAS(export_as("x.mcap", negative),
+             "/trace/time has a time that is not a number, negative, or 2e9 s or more");
   const auto back =
       with("frame_index", [](Column& c) { std::get<std::vector<std::int32_t>>(c.values)[3] = 9; });
   EXPECT_HAS(export_as("x.vtp", back), "/trace/frame_index goes back");
   const auto narrow = with("force", [](Column& c) { c.width = 1; });
-  EXPECT_HAS(export_as("x.mcap", narrow), "/trace/force has values of another kind");
+  EXPECT_HAS(export_as("x.mcap", narrow), "/trace/force has values of another type or width");
   const auto cut = with("hip_position", [](Column& c) { std::get<std::vector<double>>(c.values).resize(3); });
   EXPECT_HAS(export_as("x.vtp", cut), "hip_position is not as long as /trace/time");
   EXPECT_HAS(export_as("x.vtp", store("remote-touch live a.json", {})), "is of a live run");
+  EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
+}
+
+// A run without a tool has no torque.
+TEST_F(ExportedRunTest, AMissingColumnIsRefused) {
+  store("remote-touch run a.json", {});
+  for (const std::string missing : {"hip_position", "proxy_position", "force"}) {
+    std::vector<Column> columns = trace_.columns();
+    std::erase_if(columns, [&](const Column& column) { return column.name == missing; });
+    const auto file = store("remote-touch run a.json", columns);
+    EXPECT_HAS(export_as("x.mcap", file), "damaged (it has no /trace/" + missing + ")");
+  }
   EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "runners/presentation/export/npy_array.h"
 #include "runners/presentation/export/zip_archive.h"
 #include "tests/support/test_files.h"
@@ -45,6 +47,22 @@ TEST(NpyArray, WritesTexts) {
             npy("{'descr': '<U3', 'fortran_order': False, 'shape': (), }", c('a') + c(0xfffd) + c(0xfffd)));
 }
 
+// Forms that are too long, halves of pairs of UTF-16, and numbers above U+10FFFF, which NumPy refuses.
+TEST(NpyArray, ACharacterThatIsNoneBecomesAQuestion) {
+  const std::string question = raw(std::uint32_t{0xfffd});
+  const auto values = [](const std::string& text) { return npy_text(text).substr(128); };
+  for (const char* wrong : {"\xe0\x80\x80", "\xed\xa0\x80", "\xed\xbf\xbf"})
+    EXPECT_EQ(values(wrong), question + question + question) << wrong;
+  for (const char* wrong : {"\xf0\x80\x80\x80", "\xf4\x90\x80\x80"})
+    EXPECT_EQ(values(wrong), question + question + question + question) << wrong;
+  for (const auto& [right, number] : {std::pair("\xe0\xa0\x80", 0x800u),
+                                      {"\xed\x9f\xbf", 0xd7ffu},
+                                      {"\xee\x80\x80", 0xe000u},
+                                      {"\xf0\x90\x80\x80", 0x10000u},
+                                      {"\xf4\x8f\xbf\xbf", 0x10ffffu}})
+    EXPECT_EQ(values(right), raw(std::uint32_t{number})) << right;
+}
+
 // The bytes follow the specification (APPNOTE 4.3). The CRC-32 of "123456789" is the check value of its
 // catalogue.
 TEST(ZipArchive, HasTheBytesOfTheSpecification) {
@@ -69,6 +87,17 @@ TEST(ZipArchive, HasTheBytesOfTheSpecification) {
                           raw(static_cast<std::uint32_t>(local.size())) + u16(0);
   EXPECT_EQ(archive, local + central + end);
   EXPECT_TRUE(archive.starts_with(ZipArchive::opening("a", "123456789")));
+}
+
+TEST(ZipArchive, HasNoMoreMembersThanTheFormatCounts) {
+  ZipArchive zip([](const std::string&) {});
+  for (int i = 0; i < 65534; ++i) zip.add("a", "");
+  try {
+    zip.add("a", "");
+    ADD_FAILURE() << "one more is accepted";
+  } catch (const std::length_error& limit) {
+    EXPECT_STREQ(limit.what(), "would have more than 65534 members");
+  }
 }
 
 }  // namespace

@@ -64,6 +64,8 @@ TEST(TouchingTool, NoPointTouchesIfThereIsNoPose) {
   EXPECT_FALSE(touching[0].empty());
   EXPECT_TRUE(touching[1].empty());
   EXPECT_EQ(touching[2], touching[0]);
+  path[2].p_W = path[1].p_W;
+  EXPECT_EQ(touching_tool(*tool, path, cloud)[0], touching[0]) << "the only pose is before the middle";
   for (ToolPose& pose : path) pose.p_W.x() = std::numeric_limits<double>::quiet_NaN();
   for (const auto& none : touching_tool(*tool, path, cloud)) EXPECT_TRUE(none.empty());
 }

@@ -69,6 +69,14 @@ TEST(TraceEvents, StepsOfATaskSayWhatBecameOfThem) {
                           "4 Step 1 of the task is missed, 0.5 mm and 90 deg from its goal."}));
 }
 
+TEST(TraceEvents, AStepOfATaskCanBeginOrEndInTheFirstTick) {
+  EXPECT_EQ(found({column("sequence_step", Integers{0, 0}), column("sequence_running", Integers{1, 1})}),
+            (Texts{"0 task"}));
+  EXPECT_EQ(found({column("sequence_step", Integers{1, 1}), column("sequence_running", Integers{1, 1})}),
+            (Texts{"0 task", "0 task"}))
+      << "step 0 is done, step 1 begins";
+}
+
 TEST(TraceEvents, StepsOfATaskAndTheirOrder) {
   EXPECT_EQ(found({column("sequence_step", Integers{0, 0, 1, 1, 2}),
                    column("signed_distance", Doubles{1, 1, 1, -1, -1})}),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "analysis/figures/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
@@ -83,7 +84,7 @@ TEST_F(TracePageTest, PointsAreLeftOutUntilThePageIsSmallEnough) {
   small.max_bytes = viewer_script().size() + (whole - viewer_script().size()) / 2;
   const ViewPage page = trace_page({folder_ / "a.h5"}, small);
   EXPECT_LE(page.html.size(), small.max_bytes);
-  EXPECT_HAS(page.shown, "all near the proxy, of the others some");
+  EXPECT_HAS(page.shown, "all points near the proxy and some of the others");
   small.max_bytes = 1000;
   EXPECT_HAS(refusal([&] { trace_page({folder_ / "a.h5"}, small); }), "expected --max-mb ");
 }
@@ -139,6 +140,22 @@ TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
   EXPECT_HAS(note(), "These are not the frames of the run");
 }
 
+TEST_F(TracePageTest, ANoteOnOtherFramesKeepsTheOtherNotes) {
+  const Experiment one = Experiment::load(
+      "fig4.12",
+      {"duration_s=0.1", R"(changes=[{"time_s": 0.05, "parameter": "renderer.r1_m", "value": 0.003}])"});
+  SimulationOptions with_hashes;
+  with_hashes.hash_frames = true;
+  Trace trace = simulate(one, with_hashes);
+  for (std::uint64_t& hash : trace.frame_hash) ++hash;
+  write_trace(folder_ / "a.h5", trace, provenance(one.to_json(), "a test", ""), {});
+  const std::string note =
+      ReadPage(trace_page({folder_ / "a.h5"}, options()).html).json["runs"][0]["note"].get<std::string>();
+  EXPECT_HAS(note, "These are not the frames of the run");
+  EXPECT_HAS(note, "The contact radius changes");
+  EXPECT_EQ(count(note, "These are not the frames of the run"), 1u) << note;
+}
+
 TEST_F(TracePageTest, SaysThatTheContactRadiusChanges) {
   const auto note = [&](const std::string& parameter, const char* value) {
     store("a.h5", "fig4.12",
@@ -170,6 +187,14 @@ TEST(PageFile, NumbersComeBackFromTheirCompressedForm) {
   for (int i = 0; i < 100000; ++i) bytes += static_cast<char>(i % 251 * (i % 251) % 251);
   for (const std::size_t length : {0u, 1u, 2u, 3u, 1000u, 100000u})
     EXPECT_EQ(decompressed(compressed(bytes.substr(0, length)), 200000), bytes.substr(0, length));
+}
+
+// Bytes that cannot be made shorter, so that both are done in several pieces.
+TEST(PageFile, NumbersOfSeveralPiecesComeBack) {
+  std::mt19937 random(1);
+  std::string bytes;
+  for (int i = 0; i < 7'000'001; ++i) bytes += static_cast<char>(random() & 0xff);
+  EXPECT_TRUE(decompressed(compressed(bytes), bytes.size() + 1) == bytes);
 }
 
 }  // namespace

@@ -182,6 +182,37 @@ TEST_F(Bags, OtherKindsAreRefused) {
   EXPECT_FALSE(is_bag(folder_ / "folder.mcap"));
 }
 
+// The table lists /a twice, and each entry has one message.
+TEST_F(Bags, ATopicThatSqliteListsTwiceIsOneTopic) {
+  const std::string file = (folder_ / "twice.db3").string();
+  write_db3(file, {{"/a", "std_msgs/msg/Float32", 2, "second"}});
+  sqlite3* database = nullptr;
+  sqlite3_open(file.c_str(), &database);
+  EXPECT_EQ(sqlite3_exec(database,
+                         "INSERT INTO topics VALUES (7, '/a', 'std_msgs/msg/Float32', 'cdr', '');"
+                         "INSERT INTO messages(topic_id, timestamp, data) VALUES (7, 1, x'6669727374')",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const auto bag = open("twice.db3");
+  ASSERT_EQ(bag->topics().size(), 1u);
+  ASSERT_EQ(bag->places(0).size(), 2u);
+  EXPECT_EQ(bag->message(bag->places(0)[0]), "first");
+  EXPECT_EQ(bag->message(bag->places(0)[1]), "second");
+}
+
+TEST_F(Bags, ASplitBagReportsEveryDamagedPart) {
+  const std::string whole = mcap_file(messages(), {true, true, true, "lz4"});
+  folder_.write("split/metadata.yaml", "");
+  folder_.write("split/x_0.mcap", whole.substr(0, whole.size() / 2));
+  folder_.write("split/x_1.mcap", whole);
+  folder_.write("split/x_2.mcap", whole.substr(0, whole.size() / 3));
+  const auto remark = [&](const char* name) {
+    return std::string(name) + " " + open(std::string("split/") + name)->remark();
+  };
+  EXPECT_EQ(open("split")->remark(), remark("x_0.mcap") + "; " + remark("x_2.mcap"));
+}
+
 // Tables that can run any computation, for any time.
 TEST_F(Bags, HostileDatabasesAreRefused) {
   const auto made = [&](const std::string& text) {

@@ -227,6 +227,12 @@ TEST_F(PcdFile, RefusesSizesThatDoNotAgree) {
   EXPECT_HAS(error(wide + std::string(64, 'x')), "POINTS = 2: the 64 bytes of binary data hold at most 0");
 }
 
+TEST_F(PcdFile, RefusesANumberWithTwoSigns) {
+  const std::string text = xyz_header("1", "ascii");
+  EXPECT_EQ(error(text + "+1 -2 3\n"), "no InputError");
+  EXPECT_HAS(error(text + "1 +-2 3\n"), ":12: '+-2': expected a number");
+}
+
 TEST_F(PcdFile, RefusesTruncatedData) {
   const std::string text = xyz_header("2", "ascii");  // 11 header lines
   EXPECT_HAS(error(text + "1 2 3\n                      \n"), "the data end after 1 points: POINTS = 2");

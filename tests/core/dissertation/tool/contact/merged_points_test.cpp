@@ -122,20 +122,41 @@ TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
   EXPECT_TRUE(merged_points(points, kCube_m).empty());
 }
 
+// The disks of a cloud of points one step apart: a circle of `half` steps in one cube. Points around it,
+// which have no normals and lie in another cube, cover the squares at its rim.
+std::vector<MergedPoint> disks_of_circle(int half) {
+  constexpr double kStep_m = 1.0 / (1 << 16), kCircleCube_m = 1.0 / 128;
+  const Vec3 no_normal = Vec3::Constant(std::nan(""));
+  std::vector<CloudPoint> points;
+  const int all = half + 3;
+  for (int j = -all; j <= all; ++j)
+    for (int i = -all; i <= all; ++i) {
+      const int squared = i * i + j * j;
+      if (squared > all * all) continue;
+      const bool is_in_circle = squared <= half * half;
+      const double height_m = is_in_circle ? 0.25 * kStep_m : -0.25 * kStep_m;  // above a side of the cubes
+      points.push_back({{0.5 * kCircleCube_m + i * kStep_m, height_m, 0.5 * kCircleCube_m + j * kStep_m},
+                        is_in_circle ? Vec3::UnitY() : no_normal,
+                        kStep_m});
+      points.back().p_W.y() += kCircleCube_m;
+    }
+  std::vector<MergedPoint> merged = merged_points(points, kCircleCube_m);
+  std::erase_if(merged, [](const MergedPoint& point) { return point.extent_m == 0; });
+  return merged;
+}
+
 // The largest possible number of squares along a side, with a point on each end of the disk's axes: the last
 // square ends there.
 TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
-  constexpr int kHalf = 64;
-  constexpr double kStep_m = 1.0 / (1 << 16);
-  std::vector<CloudPoint> points;
-  for (int j = -kHalf; j <= kHalf; ++j)
-    for (int i = -kHalf; i <= kHalf; ++i)
-      if (i * i + j * j <= kHalf * kHalf)
-        points.push_back({{i * kStep_m, 0, j * kStep_m}, Vec3::UnitY(), kStep_m});
-  for (CloudPoint& point : points) point.p_W += Vec3::Constant(1.0 / 256);  // within one cube
-  const std::vector<MergedPoint> merged = merged_points(points, 1.0 / 128);
-  ASSERT_EQ(merged.size(), 1u);
-  EXPECT_EQ(merged[0].extent_m, kHalf * kStep_m);
+  constexpr int kHalf = 24;  // 32 squares of 1.5 steps
+  const std::vector<MergedPoint> disks = disks_of_circle(kHalf);
+  ASSERT_EQ(disks.size(), 1u);
+  EXPECT_EQ(disks[0].extent_m, kHalf * (1.0 / (1 << 16)));
+}
+
+// Wider squares could hide holes.
+TEST(MergedPoints, PointsThatNeedMoreSquaresStandForThemselves) {
+  for (const int half : {25, 40, 64}) EXPECT_TRUE(disks_of_circle(half).empty()) << half;
 }
 
 TEST(MergedPoints, PointsWithoutNormalsStandForThemselves) {

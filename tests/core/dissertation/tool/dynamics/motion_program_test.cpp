@@ -73,9 +73,20 @@ TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
                                              {{-0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1}};
   const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 5e-4}), contacts);
   EXPECT_TRUE(motion.elastic);
+  EXPECT_FALSE(motion.failed);
   EXPECT_NEAR(motion.a_g[0], 1e-3, 1e-9);
   EXPECT_NEAR(motion.a_g[2], 5e-4, 1e-9);
   EXPECT_NEAR(motion.a_g[1], 0, 1e-6);
+}
+
+// A desired motion too long for the program has no result.
+TEST(MotionProgram, AProgramWithoutAResultHasFailedAndMovesNothing) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(desired({0, -1e200, 0}), contacts);
+  EXPECT_TRUE(motion.failed);
+  EXPECT_TRUE(motion.a_g.isZero(0));
+  EXPECT_FALSE(program.solve(desired({0, -2e-3, 0}), contacts).failed);
 }
 
 TEST(MotionProgram, NanContactsAreLeftOut) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/contact/contact_list.h"
+#include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
@@ -131,6 +132,19 @@ TEST(LookAheadProgram, AsksForAllBeforeItSaysThatNothingIsNear) {
   EXPECT_TRUE(free.near.contacts.empty());
   EXPECT_NEAR(free.a_g.head<3>().norm(), ToolParameters().look_ahead_m, 1e-15);
   EXPECT_FALSE(std::isfinite(none.asked_m.back()));
+}
+
+// The motion is zero because the program failed, not because the contacts hold the tool.
+TEST(LookAheadMotion, AToolIsNotAtRestIfItsProgramFailed) {
+  const std::vector<ToolContact> below{{Vec3(0, -0.003, 0), Vec3::UnitY(), 0, 1}};
+  for (const double length_m : {1e-3, 1e200}) {
+    Planes planes(below);
+    LookAheadMotion motion({}, *kTool, kTool->reach_m);
+    ToolPose pose;
+    const ToolPose device{{0, -length_m, 0}, Eigen::Quaterniond::Identity()};
+    EXPECT_EQ(motion.move(pose, device, planes, false).at_rest, length_m == 1e-3) << length_m;
+    EXPECT_LT(pose.p_W.norm(), 1e-9);
+  }
 }
 
 // Points outside a tool, with normals roughly towards it.

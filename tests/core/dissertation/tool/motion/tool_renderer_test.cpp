@@ -182,10 +182,15 @@ TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
 }
 
 TEST(ToolRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
-  ToolParameters p;
-  p.slave_command = ToolCommand::hip;
-  ToolRenderer r = renderer(TouchRule::look_ahead, p);
-  EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0).slave_W.array().isNaN().all());
+  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+    ToolParameters p;
+    p.slave_command = command;
+    ToolRenderer r = renderer(TouchRule::look_ahead, p);
+    EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0).slave_W.array().isNaN().all());
+    r.on_frame(scenes::frame(sheet()));
+    EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0.001).slave_W.array().isNaN().all());
+    EXPECT_EQ(r.step(device({0, 0.05, 0}), 0.002).slave_W, Vec3(0, 0.05, 0));
+  }
 }
 
 TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "core/dissertation/tool/shape/voxelisation.h"
 #include "tests/support/meshes.h"
 
@@ -81,6 +85,25 @@ TEST(TriangleTree, FindsTheNearestFaceAndAllWithinADistance) {
       count += meshes::to_triangle(p, body.vertices[a], body.vertices[b], body.vertices[c]) <= 1.1 * expected;
     EXPECT_EQ(faces.size(), count);
     EXPECT_EQ(faces.front().distance_m, std::sqrt(found.squared_m2));
+  }
+}
+
+double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  return (p - a - std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm();
+}
+
+// Three corners on a line: rounding alone would decide whether a position is above their triangle.
+TEST(TriangleTree, ATriangleWithoutAreaIsAsFarAsItsEdges) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> within(-0.01, 0.01);
+  const auto draw = [&] { return Vec3(within(random), within(random), within(random)); };
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 a = draw(), along = draw(), p = draw();
+    const Vec3 b = a + 100 * within(random) * along, c = a + 100 * within(random) * along;
+    const TriangleTree tree(TriangleMesh{{a, b, c}, {{0, 1, 2}}});
+    const double expected = std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
+    ASSERT_NEAR(std::sqrt(tree.squared_to(0, p)), expected, 1e-8) << i;
   }
 }
 

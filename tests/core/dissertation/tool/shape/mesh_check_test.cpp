@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "core/dissertation/tool/shape/mesh_repair.h"
 #include "tests/support/meshes.h"
@@ -121,6 +122,16 @@ TEST(MeshRepair, TurnsEachPartOutwardsForItself) {
   const TriangleMesh mixed = meshes::together(kBox, meshes::inside_out(box_mesh({1, 1, 1}, {10, 0, 0})));
   EXPECT_NEAR(check_mesh(repair_mesh(mixed, done)).volume_m3, 25, 1e-12);
   EXPECT_EQ(done.flipped_triangles, 12);
+}
+
+// The walk begins at the only triangle that is the wrong way round, so it turns all others first.
+TEST(MeshRepair, ATriangleThatIsTurnedTwiceIsNotCounted) {
+  TriangleMesh mesh = kBox;
+  std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+  MeshRepair done;
+  const TriangleMesh repaired = repair_mesh(mesh, done);
+  EXPECT_NEAR(check_mesh(repaired).volume_m3, 24, 1e-12);
+  EXPECT_EQ(done.flipped_triangles, 1);
 }
 
 TEST(MeshRepair, LeavesAClosedMeshAlone) {

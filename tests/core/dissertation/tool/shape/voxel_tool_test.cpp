@@ -117,7 +117,7 @@ TEST(VoxelTool, RefusesWhatIsNotClosed) {
   EXPECT_HAS(refusal([&] {
                make(meshes::together(box, meshes::inside_out(box_mesh({0.01, 0.01, 0.01}, {1e-2, 9e-3, 0}))));
              }),
-             "a part of it is inside out");
+             "a part of the mesh is inside out");
 }
 
 TEST(VoxelTool, RefusesWhatIsNoBody) {
@@ -131,9 +131,9 @@ TEST(VoxelTool, RefusesWhatIsNoBody) {
   bad.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 vertices that are not finite");
   bad = box, bad.triangles[0][0] = 99;
-  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangles with a corner that is not a vertex");
+  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangle with a corner that is not a vertex");
   EXPECT_HAS(refusal([] { make(box_mesh({0.03, 0.02, 0})); }), "encloses no volume");
-  EXPECT_HAS(refusal([] { make(box_mesh({0, 0, 0})); }), "has no size");
+  EXPECT_HAS(refusal([] { make(box_mesh({0, 0, 0})); }), "its size is 0 or infinite");
 }
 
 TEST(VoxelTool, RepairGivesBackTheBox) {

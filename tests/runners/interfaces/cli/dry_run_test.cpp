@@ -1,0 +1,41 @@
+// The estimate of `sweep --dry-run`.
+#include <gtest/gtest.h>
+
+#include "core/kernels/isa.h"
+#include "runners/interfaces/cli/commands.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::dry_run_test {
+namespace {
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 2}],
+  "replicates": 2, "measures": ["max_penetration"]})";
+
+std::string printed(const CommandLine& line, const SweepRequest& request) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(command_sweep(line, request), kDone);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(DryRun, HasNoTimeToEstimateIfNoRunIsLeft) {
+  const TestFolder folder("dry_run");
+  CommandLine line;
+  line.quiet = true;
+  line.kernels = &kernels_for(best_isa());
+  SweepRequest request;
+  request.sweep = folder.write("quick.json", kQuick).string();
+  request.output = (folder / "map.h5").string(), request.shard = "1/1", request.dry_run = true;
+  EXPECT_HAS(printed(line, request), " ms a run, some tried)\n");
+  request.dry_run = false;
+  printed(line, request);
+  request.dry_run = true;
+  const std::string done = printed(line, request);
+  EXPECT_HAS(done, "0 runs to do, all valid; 4 are done\n  no time to estimate: no run was tried\n");
+  EXPECT_EQ(done.find("about"), std::string::npos) << done;
+}
+
+}  // namespace
+}  // namespace remote_touch::dry_run_test

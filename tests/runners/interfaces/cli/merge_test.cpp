@@ -1,0 +1,81 @@
+// What the command `merge` may overwrite.
+#include <gtest/gtest.h>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "core/kernels/isa.h"
+#include "runners/interfaces/cli/commands.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::merge_test {
+namespace {
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 2}],
+  "replicates": 2, "measures": ["max_penetration"]})";
+
+class Merge : public testing::Test {
+ protected:
+  Merge() {
+    line_.quiet = true;
+    line_.kernels = &kernels_for(best_isa());
+    const std::string sweep = folder_.write("quick.json", kQuick).string();
+    for (const char* shard : {"1/2", "2/2"})
+      shards_.push_back(
+          sweep_to(sweep, {}, file("part" + std::to_string(shards_.size() + 1) + ".h5"), shard));
+    longer_ = sweep_to(sweep, {"replicates=3"}, file("longer.h5"), "1/1");
+  }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string sweep_to(const std::string& sweep, const std::vector<std::string>& overrides,
+                       const std::string& output, const std::string& shard) const {
+    SweepRequest request;
+    request.sweep = sweep, request.overrides = overrides, request.output = output, request.shard = shard;
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(command_sweep(line_, request), kDone);
+    testing::internal::GetCapturedStdout();
+    return output;
+  }
+  std::string merged_to(const std::string& output) const {
+    testing::internal::CaptureStdout();
+    const std::string why = refusal([&] { EXPECT_EQ(command_merge(line_, {shards_, output}), kDone); });
+    testing::internal::GetCapturedStdout();
+    return why;
+  }
+
+  const TestFolder folder_{"merge_test"};
+  CommandLine line_;
+  std::vector<std::string> shards_;
+  std::string longer_;
+};
+
+constexpr const char* kNone = "no InputError";
+
+TEST_F(Merge, ReplacesAnotherFileOnlyIfForced) {
+  const std::string output = folder_.write("notes.txt", "precious notes").string();
+  EXPECT_HAS(merged_to(output), "notes.txt: exists already and is not a result of this program");
+  EXPECT_EQ(bytes_of(output), "precious notes");
+  line_.force = true;
+  EXPECT_EQ(merged_to(output), kNone);
+  EXPECT_EQ(read_sweep(output).result.runs_in(RunState::done).size(), 4u);
+}
+
+TEST_F(Merge, ReplacesAnEmptyFileAndItsOwnResult) {
+  const std::string output = folder_.write("empty.h5", "").string();
+  for (int time = 0; time < 2; ++time) EXPECT_EQ(merged_to(output), kNone);
+  EXPECT_EQ(read_sweep(output).result.runs_in(RunState::done).size(), 4u);
+}
+
+// Not even with --force.
+TEST_F(Merge, KeepsAPlugInAShardAndASweepWithMoreRuns) {
+  line_.force = true;
+  line_.plugins = {folder_.write("mine.so", "a library").string()};
+  EXPECT_HAS(merged_to(line_.plugins.front()), "is the input file");
+  EXPECT_EQ(bytes_of(line_.plugins.front()), "a library");
+  EXPECT_HAS(merged_to(shards_.front()), "is one of the shards");
+  EXPECT_HAS(merged_to(longer_), "holds runs that the shards do not");
+  EXPECT_EQ(read_sweep(longer_).result.runs_in(RunState::done).size(), 6u);
+}
+
+}  // namespace
+}  // namespace remote_touch::merge_test
