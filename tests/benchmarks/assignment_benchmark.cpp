@@ -1,4 +1,4 @@
-// Preparing a frame: the columns of each fixture rule, (5.2), and the search.
+// The preparation of a frame: the columns of each fixture rule, (5.2), and the search.
 #include <benchmark/benchmark.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ constexpr double kRadius_m = 0.02;
 
 PointCloud coloured_frame() {
   PointCloud cloud = naive::wave_image(0.5);
-  // Reddish hues, which the rule picks, beside green ones, each in shades.
+  // Reddish hues, which the rule selects, beside green ones, each in shades.
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     cloud.colour.push_back((i / 40 % 2 == 0 ? 0xC00000 : 0x00C000) + i % 64);
   return cloud;
@@ -48,7 +48,7 @@ void add_rule(const std::string& name, const PointCloud& cloud, const Picks& pic
     for (auto _ : state) {
       assignment->assign(frame, 0);
       benchmark::ClobberMemory();
-      frame.fixture_radius_m = {};  // each frame comes without
+      frame.fixture_radius_m = {};  // each frame comes without the column
     }
   });
 }

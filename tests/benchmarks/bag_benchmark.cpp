@@ -1,6 +1,6 @@
 // Frames of 640 x 480 pixels from bags of ROS, as a run reads them: from the file to the cloud, on one
-// thread, each once after the bag was opened, so that every CRC is computed. Every cloud is compared with the
-// positions that were written before it is timed.
+// thread. Each frame is read once after the bag was opened, so that every CRC is computed. Every cloud is
+// compared with the positions that were written before it is timed.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 

@@ -11,7 +11,7 @@ bool mismatch = false;
 
 }  // namespace
 
-// Checked once a process: repetitions and calibration run the same code on the same data.
+// The check is done once per process: repetitions and calibration run the same code on the same data.
 void add(const std::string& name, const std::function<bool()>& is_right,
          const std::function<void(benchmark::State&)>& time) {
   const auto checked = std::make_shared<bool>(false);

@@ -8,8 +8,8 @@
 
 namespace remote_touch::benchmarks {
 
-// time() runs only if is_right(); otherwise the benchmark is skipped with an error. Both are called after the
-// call of add().
+// time() runs only if is_right() is true; otherwise the benchmark is skipped with an error. Both are called
+// after add() has returned.
 void add(const std::string& name, const std::function<bool()>& is_right,
          const std::function<void(benchmark::State&)>& time);
 

@@ -1,6 +1,6 @@
-// A depth frame of 640 x 480 pixels, all valid, into a cloud with normals: windows of 9 x 9 pixels, from a
-// depth image in double to columns in double. Every answer is compared with the plain double reference, and
-// that of the region with the whole frame's, before it is timed.
+// A depth frame of 640 x 480 pixels, all valid, is turned into a cloud with normals: windows of 9 x 9 pixels,
+// from a depth image in double to columns in double. Before it is timed, every answer is compared with the
+// plain double reference, and that of the region with the whole frame's.
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
@@ -34,7 +34,8 @@ Expected expected() {
   return made;
 }
 
-// Within 2 micrometres and 0.05 degrees; where two eigenvalues are as good as the same there is no telling.
+// The tolerances are 2 micrometres and 0.05 degrees. A normal is not compared if two eigenvalues are almost
+// the same.
 bool near(const PointCloud& cloud, const PixelRectangle& at, const ReferenceDepth& of) {
   const PointCloud& reference = of.cloud;
   constexpr double kClearGap = 2e-3;

@@ -20,7 +20,7 @@
 namespace remote_touch::benchmarks {
 namespace {
 
-// A new list, as Neighbourhood gathers one: 0.8661 of its cubes' edge beyond r3.
+// A new list reaches 0.8661 of its cubes' edge beyond r3, as Neighbourhood gathers it.
 const double kListRadius_m = kSettings.r3_m * (1 + 0.8661 * 0.125);
 
 // The mean stiffness is a quotient of sums of some thousand N/m, each term on a grid of 2e-7.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kSteps = 1024;
 constexpr double kRadius_m = 0.02;
-// The slide of the other benchmarks, on a nearer surface. It begins beside the plane x = 0, which parts the
-// protected half from the other.
+// The slide of the other benchmarks, on a nearer surface. It begins beside the plane x = 0, which separates
+// the protected half from the other.
 const Vec3 kAbove(-0.012, 0, 0.42), kStart(-0.012, 0, 0.525);
 
 PointCloud with_columns(PointCloud cloud, double radius, double radius_right, bool stiff) {
@@ -46,7 +46,8 @@ FixtureSteps contact_steps(const FixtureScene& scene) {
   return steps;
 }
 
-// The same steps begun out or in along the normal; with a way, the HIP is so far below.
+// The same steps begin at a height along the normal. If displacement_m > 0, the HIP is that far below the
+// proxy.
 FixtureSteps lifted(const FixtureScene& scene, const FixtureSteps& contact, FixtureSteps out, double height_m,
                     double displacement_m) {
   Neighbourhood near(kSettings.r3_m, scenes::kernels());
@@ -87,7 +88,7 @@ FixtureScene made_scene(std::string name, PointCloud cloud) {
                  lifted(scene, contact, {"free_far", ContactState::free}, 0.0005, 0),
                  lifted(scene, contact, {"entrenched", ContactState::entrenched}, -0.0002, 0)};
   scene.jumps = jumps_on(scene.cloud);
-  // Regions farther away are not met; the reference then takes a tenth of the time.
+  // Regions farther away are not reached. The reference then takes a tenth of the time.
   std::vector<naive::RegionPoint> points;
   for (const naive::RegionPoint& point : naive::region_points_of(scene.cloud, kSettings))
     if ((point.x - kStart).norm() < 0.12) points.push_back(point);

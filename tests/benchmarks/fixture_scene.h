@@ -12,7 +12,7 @@
 
 namespace remote_touch::benchmarks {
 
-// One kind of step: it begins at a proxy position with a HIP.
+// One kind of step. It begins at a proxy position with a HIP.
 struct FixtureSteps {
   std::string name;
   ContactState state;
@@ -21,8 +21,8 @@ struct FixtureSteps {
 };
 
 constexpr std::size_t kFixtureCheckEvery = 64;
-// Number of ticks that are compared. It is small: where regions of different sizes meet, the proxy moves to
-// and fro, and a rounding difference grows tenfold per tick.
+// Number of ticks that are compared. It is small because the proxy moves to and fro where regions of
+// different sizes meet, and a rounding difference grows tenfold per tick.
 constexpr std::size_t kFixtureCheckedTicks = 10;
 
 struct FixtureScene {
@@ -30,12 +30,13 @@ struct FixtureScene {
   PointCloud cloud;
   std::shared_ptr<const NeighbourSearch> search = nullptr;
   std::vector<FixtureSteps> steps = {};
-  std::vector<Vec3> jumps = {};           // touching the region of a random point each: no branch is foreseen
+  std::vector<Vec3> jumps = {};           // each touches the region of a random point, so branches are new
   std::vector<Vec3> expected_ticks = {};  // proxies after whole ticks; the first begins and ends above
 };
 
-// An image of 640x480 points at about 0.5 m, 1 mm apart: without radii; all radii 0; all 0.02 m; half of the
-// points, those on one side, 0.02 m; all 0.02 m and a stiffness each, but for every third point.
+// An image of 640x480 points at about 0.5 m, 1 mm apart: without radii; all radii 0; all radii 0.02 m; half
+// of the points, those on one side, with 0.02 m; all radii 0.02 m, and a stiffness except at every third
+// point.
 std::vector<FixtureScene> fixture_scenes();
 
 // Position of the HIP during the slide below the surface, and the position above all regions where it waits

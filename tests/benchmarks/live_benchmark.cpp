@@ -1,4 +1,4 @@
-// Measures how punctual the live loop is on this machine; nothing here passes or fails. The tests check on a
+// Measures how punctual the live loop is on this machine. It has no pass or failure. The tests check on a
 // simulated clock, to exact times, what the loop does in which tick. `remote-touch jitter` reports how late
 // ticks begin.
 #include <algorithm>

@@ -1,6 +1,6 @@
-// Times of the pop-through map of Fig 4.13. First samples of its lifts are compared with lifts that make
-// every point and look at every point; then the map is timed, and what it would take with all noise made, and
-// written plainly. Prints one JSON object a line. Exit: 0; 1 when an answer differs; 2 bad usage.
+// Times of the pop-through map of Fig 4.13. Samples of its lifts are first compared with lifts that make and
+// search every point. Then the map is timed, and the time is estimated with all noise made, and with the
+// plain method. Prints one JSON object per line. Exit: 0; 1 if an answer differs; 2 for bad usage.
 #include <omp.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct Seconds {
   void min(const Seconds& other) { wall = std::min(wall, other.wall), cpu = std::min(cpu, other.cpu); }
 };
 
-// cpu: of all threads together.
+// cpu is the time of all threads together.
 Seconds seconds(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu_start = std::clock();
@@ -53,7 +53,7 @@ Seconds seconds(const std::function<void()>& work) {
 
 struct Cell {
   Experiment experiment;
-  naive::Lift lift;  // the same, for the plain method and at most 30 steps
+  naive::Lift lift;  // the same lift, for the plain method and at most 30 steps
 };
 
 class Map {
@@ -78,7 +78,8 @@ class Map {
   const SweepResult plan_;
 };
 
-// One lift of each of rows x 4 equal parts of the map: their middles, or spread so that its edges are met.
+// One lift of each of rows x 4 equal parts of the map: the middle of each part, or spread so that the edges
+// of the map are met.
 enum class Spread { middles, edges };
 
 std::vector<Cell> sample(const Map& map, std::size_t rows, Spread spread) {
@@ -99,8 +100,8 @@ MakeFrame all_noise_of(const Cell& cell, const Kernels& kernels) {
   return all_noise(cell.lift.scene, cell.experiment.settings().key, kernels);
 }
 
-// Compares the lazy noise with its oracle, the whole cloud, and with the search that makes all noise, which
-// time() measures.
+// Compares the lazy noise with its reference, the whole cloud, and with the search that makes all noise,
+// which time() measures.
 bool equals_full(const Cell& cell, const Kernels& kernels) {
   const auto full = [&](const MakeFrame& make_frame) {
     return digest(simulate_with(cell.experiment, kernels, make_frame).columns());
@@ -116,8 +117,8 @@ bool follows(const std::vector<Vec3>& plain_W, const Trace& trace, std::size_t s
   return true;
 }
 
-// The plain method, given the noise of the map. Among noisy points last bits grow from step to step once the
-// HIP presses, so noisy lifts are compared up to the end of the first pressed frame only.
+// The plain method receives the noise of the map. The last bits of noisy lifts grow from step to step once
+// the HIP presses, so noisy lifts are compared only up to the end of the first pressed frame.
 bool equals_plain(const Cell& cell, const Kernels& kernels) {
   const auto scenario = cell.experiment.build_scenario(kernels);
   const auto given = [&](int frame, double, std::vector<Vec3>& points) {
@@ -129,7 +130,7 @@ bool equals_plain(const Cell& cell, const Kernels& kernels) {
   return follows(plain_W, simulate(cell.experiment), noisy ? pressed : plain_W.size());
 }
 
-// Zero noise is zero with the standard library's generator too: the proxy is lifted at a = 3 m/s^2, and pops
+// Zero noise is also zero with the standard library's generator. The proxy is lifted at a = 3 m/s^2, and pops
 // through at a = 6 m/s^2.
 bool outcomes_are_known(const Map& map) {
   bool right = true;

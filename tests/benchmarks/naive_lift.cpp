@@ -10,7 +10,7 @@ namespace remote_touch::naive {
 
 namespace {
 
-// (4.20): of every frame
+// (4.20), for every frame
 std::vector<double> heights(const MovingLift::Settings& scene) {
   const LiftMotion::Settings& lift = scene.lift;
   double velocity = lift.start_velocity_m_per_s, height = -lift.start_depth_m;

@@ -1,5 +1,5 @@
-// A lift of Fig 4.12 written plainly from its equations, over all points, with the standard library's noise:
-// what the map of Fig 4.13 is measured against.
+// A lift of Fig 4.12 written plainly from its equations, over all points, with the standard library's noise.
+// The map of Fig 4.13 is measured against it.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,14 @@ struct Lift {
   double depth_m = 0.03;  // depth of the pressing HIP below the plane
 };
 
-// Fills in the points of a frame, whose plane lies at that height; what they were before may be anything.
+// Replaces the content of points by the points of a frame, whose plane lies at that height.
 using MakePoints = std::function<void(int frame, double height_m, std::vector<Vec3>& points)>;
 
-// Every point of the scene's grid with three normals of its own, drawn anew for each frame.
+// Every point of the scene's grid with three normal deviates of its own, drawn anew for each frame.
 MakePoints standard_noise(const MovingLift::Settings& scene, std::uint64_t seed);
 
-// The proxy after every step. One step a tick, with frame correction (4.3) and velocity estimate (4.13).
+// Returns the proxy after every step. A tick has one step, with frame correction (4.3) and velocity estimate
+// (4.13).
 std::vector<Vec3> proxies(const Lift& lift, const MakePoints& make_points);
 
 // True if the last proxy lies below the plane of the last frame.

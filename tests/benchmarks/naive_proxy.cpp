@@ -126,7 +126,7 @@ namespace {
 constexpr double kQueryRadius_m = 0.01;
 constexpr int kQueries = 512;
 
-// Points of the middle of a cloud with rows of that width.
+// Centres are points of the middle of a cloud with rows of that width.
 std::vector<Ball> jumping_balls(const PointCloud& cloud, int width) {
   const int height = static_cast<int>(cloud.size()) / width;
   std::mt19937 random(1);
@@ -149,7 +149,8 @@ std::vector<Ball> sliding_on_grid() {
   return balls;
 }
 
-// The row with the fewest holes on its right half, for a recorded image has whole regions without depth.
+// Returns the row with the fewest holes on its right half, because a recorded image has whole regions without
+// depth.
 int measured_row(const PointCloud& cloud, const CameraIntrinsics& camera) {
   int best = 0, max = -1;
   for (int v = camera.height / 3; v < 2 * camera.height / 3; ++v) {
@@ -161,7 +162,7 @@ int measured_row(const PointCloud& cloud, const CameraIntrinsics& camera) {
   return best;
 }
 
-// Over a hole the surface goes on at the depth of the last measured pixel.
+// The surface continues over a hole at the depth of the last measured pixel.
 std::vector<Ball> sliding_on_image(const PointCloud& cloud, const CameraIntrinsics& camera) {
   const int row = measured_row(cloud, camera);
   double z = 0;
@@ -170,7 +171,7 @@ std::vector<Ball> sliding_on_image(const PointCloud& cloud, const CameraIntrinsi
     if (std::isfinite(here)) z = here;
     return z;
   };
-  for (int u = camera.width - 1; u > camera.width / 2; --u) depth_at(u);  // a depth to begin with
+  for (int u = camera.width - 1; u > camera.width / 2; --u) depth_at(u);  // it gives z a first depth
   std::vector<Ball> balls;
   balls.reserve(kQueries);
   double u = camera.width / 2.0;

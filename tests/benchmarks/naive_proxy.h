@@ -1,5 +1,5 @@
 // The reference of the benchmarks: the method written plainly from its equations, over all points, in double
-// precision and without the kernels. Also the clouds that both implementations run on.
+// precision and without the kernels. The file also makes the clouds on which both implementations run.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace remote_touch::naive {
 
 struct Step {
-  ContactState state = ContactState::free;  // before the step
+  ContactState state = ContactState::free;  // state before the step
   double nearest_distance_m = 0;
   Vec3 normal = Vec3::Zero();
   Vec3 step = Vec3::Zero();
@@ -23,20 +23,21 @@ struct Step {
 // (4.2)
 double psi(double r, const ProxyParameters& p);
 
-// Both roots of (4.9), (4.10) for one point, from its foot on the ray; false without a real root.
+// Both roots of (4.9), (4.10) for one point, from its foot on the ray. The function returns false if there is
+// no real root.
 bool roots(const Vec3& point, const Vec3& from, const Vec3& direction, double radius, double& near,
            double& far);
 
-// (4.6), (4.7), (4.11), (4.12); u = HIP - P.
+// (4.6), (4.7), (4.11), (4.12), with u = HIP - P.
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p);
 
-// One proxy step, 4.2.3 and 4.2.4, looking at every point. pre: step_rule = variable, free_root = ahead.
+// One proxy step, 4.2.3 and 4.2.4, which checks every point. pre: step_rule = variable, free_root = ahead.
 Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& hip_W,
                 const Vec3& previous_normal, const ProxyParameters& p);
 
 std::vector<Vec3> points_of(const PointCloud& cloud);
 
-// Indices of all points with |x - centre| <= radius, rising.
+// Returns the indices of all points with |x - centre| <= radius, rising.
 std::vector<std::uint32_t> points_within(const PointCloud& cloud, const Ball& ball);
 
 // A wavy wall across the view of a 640x480 camera at the origin, at that mean distance along z.
@@ -50,8 +51,8 @@ struct Queries {
   std::vector<std::vector<std::uint32_t>> expected = {};  // points_within() of each ball
 };
 
-// slide: 0.1 mm from one centre to the next, a tick's way at 0.1 m/s. jump: random points, as if each query
-// came from another user; neither caches nor branch predictors help then.
+// slide: successive centres are 0.1 mm apart, the way of a tick at 0.1 m/s. jump: the centres are random
+// points, as if each query came from another user. Neither caches nor branch predictors help then.
 enum class Centres { slide, jump };
 
 // The cloud is a flat grid of 100x100 points.

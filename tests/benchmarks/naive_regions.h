@@ -1,5 +1,5 @@
-// The proxy of chapter 5 written plainly, over all points: what the benchmarks of forbidden regions are
-// compared with.
+// The proxy of chapter 5 written plainly, over all points: the reference of the benchmarks of forbidden
+// regions.
 #pragma once
 
 #include <vector>
@@ -14,15 +14,15 @@ struct RegionPoint {
   double stiffness;  // k_s of (5.3)
 };
 
-// Columns that the cloud does not have are 0 and the renderer's own stiffness.
+// Missing columns of the cloud count as 0 and as the renderer's own stiffness.
 std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyParameters& p);
 
 struct RegionStep {
   Step step;             // nearest_distance_m is the least r_n, (5.5)
-  double stiffness = 0;  // (5.8) as a weighted mean; the renderer's own where no point has a weight
+  double stiffness = 0;  // (5.8) as a weighted mean; the renderer's own if no point has a weight
 };
 
-// One proxy step. pre: as proxy_step().
+// One proxy step. pre: as for proxy_step().
 RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& hip_W,
                        const Vec3& previous_normal, const ProxyParameters& p);
 
@@ -31,7 +31,7 @@ struct RegionProxy {
   Vec3 proxy_W = Vec3::Zero(), normal_W = Vec3::Zero(), clear_W = Vec3::Zero();
 };
 
-// A whole tick, closing steps included; ends early like the renderer's.
+// A whole tick, closing steps included. It ends early as the renderer's does.
 void region_tick(const std::vector<RegionPoint>& points, const Vec3& hip_W, const ProxyParameters& p,
                  RegionProxy& proxy);
 

@@ -1,4 +1,4 @@
-// The normals of the noise, next to those of the standard library.
+// The normals of the noise, compared with those of the standard library.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
-// Depth frames on every OpenCL device of this machine beside the same on the CPU, both with all threads, from
-// a depth image in double to columns in double, and from a sensor's frame to the renderer's: with upload and
-// download. The bits are compared first. On the
-// processor's own device, pocl, this is the price of OpenCL and no measure of a GPU.
+// Depth frames on every OpenCL device of this machine, beside the same frames on the CPU, both with all
+// threads. They are timed from a depth image in double to columns in double, and from a sensor's frame to the
+// renderer's, with upload and download. The bits are compared first. The times on pocl, the processor's own
+// device, show the cost of OpenCL and not the speed of a GPU.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -45,7 +45,8 @@ void measure(benchmark::State& state, const Work& work) {
     benchmark::ClobberMemory();
     min_ms = std::min(min_ms, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
-  // Processor time of all threads of the process: other programs disturb it less than wall-clock time.
+  // This is the processor time of all threads of the process. Other programs disturb it less than wall-clock
+  // time.
   state.counters["min_cpu_ms"] = min_ms;
 }
 
@@ -69,7 +70,7 @@ void add_processor(const std::string& name, const scenes::DepthScene& scene, con
 }
 
 // A frame of a sensor on its way to the renderer in a live run: 16-bit depths, colours, two rules by hue, and
-// the search structure. On the CPU also with the cloud of the image, which a device makes for itself.
+// the search structure. The CPU also makes the cloud of the image, which a device makes for itself.
 struct LiveFrames {
   SensorView view;
   SensorFrame sensed;

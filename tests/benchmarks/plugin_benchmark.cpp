@@ -53,7 +53,7 @@ int main() {
   std::vector<double> ratios, ticks_ns;
   for (int pair = 0; pair < kPairs; ++pair) {
     const double start_s = 1.0 + pair;
-    const bool first = pair % 2 == 0;  // neither is always the first
+    const bool first = pair % 2 == 0;  // neither is first in every pair
     const double a = first ? slide_ns(built_in, start_s) : 0;
     const double b = slide_ns(*plugged, start_s);
     const double own = first ? a : slide_ns(built_in, start_s);

@@ -1,5 +1,5 @@
-// Quadratic programs of six variables, next to those of NLopt and to all subsets of rows tried. Answers are
-// first compared with those of least distance programming.
+// Quadratic programs of six variables, compared with those of NLopt and with a trial of all subsets of rows.
+// The answers are first compared with those of least distance programming.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -23,9 +23,9 @@ namespace {
 using Problem = peers::Problem<6>;
 using Vector = peers::Vector<6>;
 
-// Many, in turn: branches cannot be learnt by heart.
+// The programs are many, in turn, so that the processor cannot learn their branches.
 constexpr int kProblems = 64;
-// Beyond, there are too many subsets to wait for.
+// The subsets of more rows are too many to wait for.
 constexpr int kMaxRowsOfSubsets = 6;
 
 // Random rows around a point near the origin that fulfils them, and a random target.

@@ -1,6 +1,6 @@
 // Times of the proxy and of its parts, in nanoseconds. Every benchmark compares its answers with the plain
-// ones of naive_proxy.h and naive_regions.h before it is timed, and is skipped with an error when they
-// differ. Times mean something as ratios within one run; scripts/benchmark prints those.
+// ones of naive_proxy.h and naive_regions.h before it is timed, and is skipped with an error if they differ.
+// Times have a meaning only as ratios within one run, which scripts/benchmark prints.
 #include "tests/benchmarks/proxy_benchmark.h"
 
 #include <benchmark/benchmark.h>

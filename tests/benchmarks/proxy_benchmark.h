@@ -1,4 +1,4 @@
-// The parts of proxy_benchmark. What is given to them must live until the benchmarks have run.
+// The parts of proxy_benchmark. Their arguments must live until the benchmarks have run.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace remote_touch::benchmarks {
 
-// One proxy step; still is stopped(slide).
+// One proxy step. still is stopped(slide).
 void add_steps(const Slide& slide, const Slide& still);
 
 // Whole ticks of the renderer.
 void add_ticks(const Slide& slide);
 
-// Radius queries around centres that slide and centres that jump, on every cloud there is.
+// Radius queries around centres that slide and centres that jump, on every available cloud.
 std::vector<naive::Queries> query_sets();
 void add_queries(const naive::Queries& queries);
 

@@ -59,7 +59,7 @@ void add_query(const std::string& name, const std::shared_ptr<const NeighbourSea
         [=, &queries](benchmark::State& state) { time_queries(state, *search, queries, *kernels); });
 }
 
-// The first frame of a recording, where there is one: a real surface, with holes.
+// Returns the first frame of a recording, if there is one: a real surface, with holes.
 std::optional<PointCloud> recorded_cloud() {
   const char* named = std::getenv("REMOTE_TOUCH_DATA");
   const auto folder =

@@ -23,8 +23,8 @@ double away_from_capsule(const Vec3& p, const Vec3& from, const Vec3& to, double
   return (p - from - fraction * along).norm() - radius_m;
 }
 
-// Signed distance of a position, in the wheel's frame, to the wheel: a ring, three spokes and a hub along its
-// axis.
+// Returns the signed distance of a position, in the wheel's frame, to the wheel: a ring, three spokes and a
+// hub along its axis.
 double away_from_wheel(const Vec3& p) {
   double away = std::hypot(std::hypot(p.x(), p.y()) - kRing_m, p.z()) - kTube_m;
   for (const double turn : {0.25, 0.25 + 1.0 / 3, 0.25 + 2.0 / 3}) {

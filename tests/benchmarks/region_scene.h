@@ -1,5 +1,5 @@
 // Two handwheels among forbidden regions as a camera sees them, 7.5.1, and tools of spheres that meet them,
-// for the benchmarks of chapter 7. The camera is in the origin and looks along z.
+// for the benchmarks of chapter 7. The camera is at the origin and faces along z.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,8 @@ namespace remote_touch::benchmarks {
 inline constexpr double kRegion_m = 0.04;
 inline constexpr double kWheelAway_m = 0.9, kWheelAside_m = 0.09, kRing_m = 0.045;
 
-// 640 x 480 pixels, the wheels nearer_m nearer than usual; behind them a wall without regions.
+// The image has 640 x 480 pixels, with the wheels nearer_m nearer than usual. A wall without regions is
+// behind them.
 PointCloud frame_of_wheels(double nearer_m = 0);
 
 struct SphereTool {
@@ -26,10 +27,10 @@ struct SphereTool {
   double reach_m;
 };
 SphereTool generated_sphere_tool(const std::string& name, int max_leaves);
-// Three links of 0.27 m, one after the other, of 30 mm radius, all around them leaves of 12 mm.
+// Three links of 0.27 m length and 30 mm radius, one after the other, with leaves of 12 mm all around them.
 SphereTool arm_of_leaves(int leaves);
 
-// Every pair of leaves with a gap of margin_m or less, by a plain loop over all.
+// Every pair of leaves with a gap of margin_m or less, by a plain loop over all pairs.
 std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
                                   double margin_m);
 

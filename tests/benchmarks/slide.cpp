@@ -11,8 +11,7 @@ namespace {
 constexpr double kSpeed_m_per_s = 0.1;
 constexpr std::size_t kSteps = 4096;
 
-// The renderer itself finds the positions, at one proxy step a tick; the plain method then says whether they
-// are right.
+// The renderer itself finds the positions, at one proxy step per tick. The plain method then checks them.
 void record_steps(Slide& slide) {
   ProxyParameters one_step = kSettings;
   one_step.steps_per_tick = 1;
@@ -37,7 +36,7 @@ double within_r3(const Slide& slide) {
   return sum / static_cast<double>(slide.expected_steps.size());
 }
 
-// A whole tick, plainly; ends early like the renderer's, when nothing moves any more.
+// A whole tick, plainly. It ends early as the renderer's does, when nothing moves any more.
 void naive_tick(const Slide& slide, const Vec3& hip_W, Vec3& proxy_W, Vec3& normal_W) {
   for (int k = 0; k < kSettings.steps_per_tick; ++k) {
     const naive::Step step = naive::proxy_step(slide.points, proxy_W, hip_W, normal_W, kSettings);

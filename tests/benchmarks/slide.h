@@ -1,4 +1,4 @@
-// A HIP that slides below a surface, and what the plain method of naive_proxy.h answers on its way.
+// A HIP that slides below a surface, and the answers of the plain method of naive_proxy.h on its way.
 #pragma once
 
 #include <cstddef>
@@ -24,15 +24,15 @@ struct Slide {
   std::shared_ptr<const NeighbourSearch> search = nullptr;
   std::vector<Vec3> points = {};                 // the cloud as the plain method reads it
   std::vector<Vec3> proxies = {}, hips = {};     // single steps in contact state
-  std::vector<naive::Step> expected_steps = {};  // one for every kCheckEvery-th
+  std::vector<naive::Step> expected_steps = {};  // one for every kCheckEvery-th step
   std::vector<Vec3> expected_ticks = {};         // proxies after whole ticks
   double within_r3 = 0;                          // points within r3 of a proxy, on average
 };
 
-// Fills in all that has a default above.
+// Fills in all members that have a default above.
 Slide made(Slide slide);
 
-// The slide stopped at its first step, so that one list serves.
+// The slide stopped at its first step, so that one list is enough.
 Slide stopped(const Slide& slide);
 
 Vec3 hip_at(const Slide& slide, double time_s);

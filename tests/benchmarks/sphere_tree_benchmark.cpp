@@ -1,6 +1,6 @@
 // Chapter 7: the regions of a frame as a tree, pairs of leaves, and whole ticks of a tool among regions.
-// Every answer is compared with a plain loop over all pairs, ticks also with those of the slowest instruction
-// set level, bit for bit, before anything is timed.
+// Every answer is compared with a plain loop over all pairs before anything is timed. Ticks are also
+// compared, bit for bit, with those of the slowest instruction set level.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -24,11 +24,11 @@ namespace {
 
 const double kLookAhead_m = ToolParameters{}.look_ahead_m;
 constexpr double kSettled_m = 1e-4;
-constexpr double kAtRest_m = 1e-5;  // these two as the renderer sphere-tree has them by default
+constexpr double kAtRest_m = 1e-5;  // both are the defaults of the renderer sphere-tree
 constexpr int kDetections = 30;
 constexpr int kLeaves = 112;
 
-// Made when it is first asked for: some take seconds.
+// A tool is made when it is first needed, because some take seconds.
 const SphereTool& tool_of(const std::string& name, int leaves) {
   static std::map<std::pair<std::string, int>, SphereTool> made;
   const auto [entry, is_new] = made.try_emplace({name, leaves});
@@ -41,7 +41,8 @@ struct Place {
   ToolPose pose;
 };
 
-// Out of reach of all regions, at their surface, and with the tool's middle in the tube of the wheel.
+// The poses are out of reach of all regions, at their surface, and with the tool's middle in the tube of the
+// wheel.
 std::vector<Place> places() {
   ToolPose clear = device_around_wheel(0), touching = clear, deep = clear;
   clear.p_W.z() -= 0.3, touching.p_W.z() -= 0.0225, deep.p_W.z() += 0.03;
@@ -149,7 +150,8 @@ const PointCloud& wheels() {
   static const PointCloud cloud = frame_of_wheels();
   return cloud;
 }
-// Frames whose wheels are 30 mm nearer swallow the tool; it is pushed out, and let down again by the next.
+// Frames whose wheels are 30 mm nearer swallow the tool. The motion pushes it out, and the next frame lets it
+// down again.
 const PointCloud& nearer_wheels() {
   static const PointCloud cloud = frame_of_wheels(0.03);
   return cloud;
@@ -176,7 +178,7 @@ class Ride {
     pose_.p_W.z() -= 0.3;
     for (int i = 0; i < 20; ++i) step(course.device(0));
   }
-  // The frame is not part of the tick.
+  // The time of a tick does not include the frame.
   void begin(int tick) {
     const PointCloud* frame = course_.frame(tick);
     if (frame) contacts_.on_frame(formatted<RegionTree>(*frame));
@@ -202,7 +204,7 @@ class Ride {
   bool updated_ = false;
 };
 
-// Now and then also against all pairs: no leaf rests in a region.
+// Some ticks are also compared with all pairs: no leaf rests in a region.
 bool ride_right(const SphereTool& tool, const Course& course, const Kernels& kernels) {
   constexpr int kCheckedTick = 61;
   Ride ride(tool, course, kernels), slowest(tool, course, kernels_for(Isa::x86_64));

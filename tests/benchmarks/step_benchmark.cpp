@@ -1,4 +1,5 @@
-// One proxy step: plainly, on a list that is there, with a search at every step, as the renderer does it.
+// One proxy step: the plain method, a step on a list that exists already, a step with a search, and a step as
+// the renderer does it.
 #include <benchmark/benchmark.h>
 
 #include <bit>
@@ -24,8 +25,8 @@ bool same(const naive::Step& a, const naive::Step& b) {
          (a.normal - b.normal).norm() < 1e-11 && (a.step - b.step).norm() < 1e-14;
 }
 
-// make_step() gives a functor from proxy and HIP to a naive::Step; its listed() is the number of points it
-// read.
+// make_step() gives a functor from proxy and HIP to a naive::Step. Its listed() is the number of points that
+// it read.
 template <class MakeStep>
 void add_step(const std::string& name, const Slide& slide, MakeStep make_step) {
   const auto is_right = [&slide, make_step] {
@@ -61,7 +62,8 @@ struct NaiveStep {
   std::size_t listed() const { return points.size(); }
 };
 
-// State, normal and contact step from a list of points, as ProxyRenderer::look() and next_step() make them.
+// State, normal and contact step from a list of points, as ProxyRenderer::local_query() and next_step() make
+// them.
 naive::Step step_from(const GatheredPoints& list, double sum_grid, const Kernels& kernels,
                       const Vec3& proxy_W, const Vec3& hip_W) {
   const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, sum_grid,
@@ -79,7 +81,7 @@ double sum_grid_for(const GatheredPoints& list) {
   return 1.5 * static_cast<double>(std::bit_ceil(list.size() + 1));
 }
 
-// The list is there already: the step alone.
+// The list exists already: the step alone is timed.
 class ListedStep {
  public:
   ListedStep(const NeighbourSearch& search, const Vec3& proxy_W, const Kernels& kernels) : kernels_(kernels) {

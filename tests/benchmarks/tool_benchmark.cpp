@@ -1,6 +1,6 @@
 // Six degrees of freedom: the collision list, a step (one detection, one program, one motion) and whole ticks
-// while the tool slides. Lists are compared with a plain loop over all points, steps and ticks with the same
-// on the slowest instruction set level, bit for bit, before they are timed.
+// while the tool slides. Before they are timed, lists are compared with a plain loop over all points. Steps
+// and ticks are compared, bit for bit, with those of the slowest instruction set level.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -91,7 +91,7 @@ struct Stepper {
     contacts.on_frame(formatted<TiledCloud>(scene.cloud, used_merged_disk_m(settings(rule_))));
   }
 
-  // A millimetre down and along at most, as far as the points allow.
+  // Moves the tool by up to a millimetre down and along, as far as the points allow.
   ToolPose step(const ToolPose& pose, std::size_t& listed) {
     Vector6 desired;
     desired << 3e-4, -8e-4, 0, 0, 0, 0;
@@ -117,7 +117,7 @@ void add_step(const ToolScene& scene, TouchRule rule) {
     add(
         "tool_step/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
         [=, &scene] {
-          Stepper slowest(scene, rule, kernels_for(Isa::x86_64));  // new, like stepper: no look came before
+          Stepper slowest(scene, rule, kernels_for(Isa::x86_64));  // new, like stepper, with no earlier pose
           for (int i = 0; i < 64; ++i) {
             const ToolPose pose = shaken(scene.in_contact, i);
             std::size_t listed = 0, expected = 0;
@@ -173,8 +173,8 @@ bool rides_same(const ToolScene& scene, const ToolParameters& parameters, const 
   return touching == kSlideTicks;
 }
 
-// A slide is the same every time, so the least time of a tick among many slides is that of the work; what
-// remains above the mean is work too, not the machine.
+// A slide is the same every time, so the least time of a tick among many slides is that of the work. Least
+// times above the mean are also due to the work, not to the machine.
 void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParameters& parameters,
                const Kernels& kernels) {
   Ride ride(scene, parameters, kernels);

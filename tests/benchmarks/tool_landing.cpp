@@ -38,7 +38,7 @@ class Landing {
     step(above);
     for (int i = 0; i < kTicksUp; ++i) step(device_);
   }
-  // 0 .. kTicks - 1, in turn; 0 takes the frame that lands in the tool.
+  // tick is 0 .. kTicks - 1, in turn. Tick 0 receives the frame that lands in the tool.
   RenderOutput tick(int tick) {
     if (tick == 0) show(up_);
     if (tick == kTicksUp) show(down_);
@@ -59,7 +59,7 @@ class Landing {
   int shown_ = 0;
 };
 
-// The same on every level, and the tool comes up with the surface.
+// The result is the same on every level, and the tool comes up with the surface.
 bool lands_same(const ToolScene& scene, const ToolParameters& parameters, const Kernels& kernels) {
   Landing landing(scene, parameters, kernels), slowest(scene, parameters, kernels_for(Isa::x86_64));
   double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;

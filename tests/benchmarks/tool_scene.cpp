@@ -13,9 +13,9 @@ namespace remote_touch::benchmarks {
 namespace {
 
 constexpr double kAmplitude_m = 5e-4, kWave_per_m = 50;
-constexpr std::size_t kPressed = 20;  // points in the tool in contact, at least
+constexpr std::size_t kPressed = 20;  // least number of points in the tool in contact
 
-// Positions, not numbers: the finder keeps its points in an order of its own.
+// Positions are compared, not numbers, because the finder keeps its points in an order of its own.
 using Places = std::set<std::array<double, 3>>;
 
 Vec3 surface_point(double x, double z) {
@@ -27,7 +27,7 @@ Vec3 surface_normal(double x, double z) {
   return Vec3(-slope * std::cos(a) * std::cos(b), 1, 0.7 * slope * std::sin(a) * std::sin(b)).normalized();
 }
 
-// Lowered by steps of a tenth of a millimetre until enough points are in the tool.
+// The pose is lowered by steps of a tenth of a millimetre until enough points are in the tool.
 ToolPose pressed(const VoxelTool& tool, const PointCloud& cloud) {
   ToolPose pose{{1e-4, tool.reach_m, 2e-4}, rotation({0.02, 0.4, -0.03})};
   while (naive_list(tool, cloud, pose).size() < kPressed && pose.p_W.y() > -tool.reach_m)

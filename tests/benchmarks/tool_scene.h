@@ -13,28 +13,28 @@
 
 namespace remote_touch::benchmarks {
 
-// outer_field: for the continuous rule.
+// outer_field is for the continuous rule.
 std::shared_ptr<const VoxelTool> generated_tool(const std::string& name, bool outer_field = false);
 
 struct ToolScene {
   std::string name;
   std::shared_ptr<const VoxelTool> tool;
   PointCloud cloud;  // unorganised, with normals, around the origin of x and z
-  // The tool above its place of contact, its side down: pressed on, so that some points are in shell voxels;
-  // and out of reach of all points.
+  // The pose of the tool on its side at the surface, pressed on so that some points are in shell voxels, and
+  // the pose out of reach of all points.
   ToolPose in_contact, separated;
 };
 
-// side x side points. The device of a tick is pressed below the surface.
+// The cloud has side x side points. The device of a tick is pressed below the surface.
 ToolScene tool_scene(const std::string& name, std::shared_ptr<const VoxelTool> tool, int side,
                      double spacing_m);
 
-// Numbers of the points in shell or interior voxels by a plain loop over all of them, as one writes it down.
+// Numbers of the points in shell or interior voxels, by a plain loop over all of them.
 std::vector<std::uint32_t> naive_list(const VoxelTool& tool, const PointCloud& cloud, const ToolPose& pose);
 // True if the finder's list of the scene's points is that of naive_list().
 bool list_right(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose);
 
-// The pose as it changes a little from call to call.
+// Returns the pose, which changes a little from call to call.
 ToolPose shaken(ToolPose pose, int call);
 
 // Pose of the device in a slide along x at 0.1 m/s, to and fro, a centimetre below the pose of contact.

@@ -1,7 +1,8 @@
 // The renderers proxy and tracked-sheet on the same lifts, 4.3.2, from no noise to 3 contact radii: the CPU
-// time of a frame and of a tick while the HIP presses. Checked before anything is timed: every output is the
-// same on all instruction set levels, bit for bit; without noise those of the tracked sheet are the proxy's,
-// on a cloud at rest bit for bit; and with the noise that it is to stand it ends above the cloud.
+// time of a frame and of a tick while the HIP presses. Three things are checked before anything is timed.
+// Every output is the same on all instruction set levels, bit for bit. The outputs of the tracked sheet
+// without noise are the proxy's, on a cloud at rest bit for bit. The sheet ends above the cloud with the
+// noise that it must withstand.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -29,12 +30,12 @@ constexpr int kFrameRate_hz = 30, kTickRate_hz = 1000;
 constexpr int kFrames = 26;
 constexpr int kPressFrame = 15;  // first frame with the HIP below the cloud
 constexpr double kPressDepth_m = 0.03;
-constexpr int kFirstTimedFrame = 2;         // the two before begin a track
+constexpr int kFirstTimedFrame = 2;         // the two frames before begin a track
 constexpr double kStandsNoise_rc = 2;       // largest noise at which the sheet may not pop through
 constexpr double kMinHeight_rc = -0.5;      // least height of its last proxy above the cloud
 constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/beyond/tracked_surface/patch_frame.h
 
-// --- a lift, and what is answered on it ---
+// --- a lift, and the answers on it ---
 
 struct Lift {
   double noise_rc;
@@ -65,7 +66,7 @@ double time_of(int tick) {
   return static_cast<double>(tick) / kTickRate_hz;
 }
 
-// The first tick that is not before the frame.
+// Returns the first tick that is not before the frame.
 int first_tick_of(int frame) {
   return (frame * kTickRate_hz + kFrameRate_hz - 1) / kFrameRate_hz;
 }
@@ -75,7 +76,7 @@ Frame frame_of(const Lift& lift, int f) {
   return {f, time_s, time_s, lift.points[static_cast<std::size_t>(f)]};
 }
 
-// It rests until the next frame.
+// The device rests until the next frame.
 DeviceState device_at(const Lift& lift, int f) {
   if (f < kPressFrame) return {Vec3::Zero()};
   return {Vec3(0, lift.motion.surface_height(0, 0, frame_of(lift, f).captured_s) - kPressDepth_m, 0)};
@@ -105,7 +106,7 @@ std::vector<RenderOutput> answers(const Lift& lift, const Method& method, const 
   return outputs;
 }
 
-// --- are they right? ---
+// --- checks ---
 
 std::uint64_t bits(double x) {
   return std::bit_cast<std::uint64_t>(x);
@@ -113,7 +114,7 @@ std::uint64_t bits(double x) {
 std::array<std::uint64_t, 3> bits(const Vec3& v) {
   return {bits(v.x()), bits(v.y()), bits(v.z())};
 }
-// Names every member, so that one more does not compile until it is compared too.
+// Names every member, so that a new member does not compile until it is compared, too.
 auto bits(const RenderOutput& out) {
   const auto& [proxy, force, slave, state, normal, velocity, nearest, frame_correction, steps, converged,
                contacts, frame, status, tool, guidance] = out;
@@ -142,7 +143,7 @@ std::vector<RenderOutput> best_answers(const Lift& lift, const Method& method) {
   return answers(lift, method, kernels_for(best_isa()));
 }
 
-// While the cloud moves, the answers agree only nearly: the sheet measures its motion in steps of
+// The answers agree only nearly while the cloud moves: the sheet measures its motion in steps of
 // kMotionStep_rc, and does so already before the touch.
 bool nearly_same(const RenderOutput& p, const RenderOutput& q) {
   return (p.proxy_W - q.proxy_W).norm() < kMotionStep_rc * kRc_m && p.state == q.state &&
@@ -167,10 +168,10 @@ bool sheet_right(const Lift& lift) {
          (lift.noise_rc > kStandsNoise_rc || ends_above(lift));
 }
 
-// --- their times ---
+// --- times ---
 
-// Least time of each frame, and of all ticks between it and the next frame. Every lift is the same, so the
-// least of many times is that of the work alone. It is kept from one repetition to the next.
+// The least time of each frame, and of all ticks between it and the next frame. Every lift is the same, so
+// the least of many times is that of the work alone. It is kept from one repetition to the next.
 struct LeastTimes {
   std::array<double, kFrames> frame_ns, ticks_ns;
   LeastTimes() {

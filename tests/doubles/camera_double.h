@@ -1,5 +1,6 @@
-// The part that the test doubles of depth cameras' libraries share: the cameras behind the library. A test
-// sets their state and reads it. Each double exports them under the name camera_double. One thread only.
+// The cameras behind the library: the part that the test doubles of depth cameras' libraries share. A test
+// sets their state and reads it. Each double exports them under the name camera_double. Only one thread may
+// use them.
 //
 // They are test doubles: they have the vendors' signatures and none of their behaviour. A test that passes
 // with them shows what an adapter calls, not what a camera does.
@@ -38,16 +39,16 @@ class CameraDouble {
     std::function<double(int)> stamp_s = [](int number) { return 5 + number / 30.0; };
     std::function<int(int)> reported_number = [](int number) { return number; };
     std::function<bool(int)> has_depth = [](int) { return true; };
-    int silent_after = 0, lost_after = 0;  // number of frames before it; 0: never
+    int silent_after = 0, lost_after = 0;  // number of frames before it happens; 0: never
     int row_gap_bytes = 0, missing_bytes = 0, missing_rows = 0;
     int format = -1;  // wrong format of the frames, -1: the right one
 
     int fail_at = 0;        // the call of this number fails, from 1 on
-    std::string fail_name;  // and so do those of this name
+    std::string fail_name;  // and so do the calls of this name
     // The rest concerns the rs2 interface only.
     int version = 25605;
     int model = 4;          // lens model: Brown and Conrady
-    bool is_alone = false;  // depth comes by itself, not with other streams in one frame
+    bool is_alone = false;  // depth comes alone, not with other streams in one frame
     bool has_depth_sensor = true, sends_depth = true;
   };
 
@@ -72,12 +73,12 @@ class CameraDouble {
 
   // --- for the library ---
   Clock& clock() const { return simulated_ ? *simulated_ : steady_clock(); }
-  // True: the call has to fail.
+  // Returns true if the call has to fail.
   bool enter(const char* name) {
     calls_.emplace_back(name);
     return static_cast<int>(calls_.size()) == state.fail_at || name == state.fail_name;
   }
-  // A handle of that kind, to be given back once. Its content lives as long.
+  // Returns a handle of that kind, which must be given back once. Its content lives as long.
   void* hold(const char* kind, std::vector<std::uint8_t> content = {}) {
     auto* handle = new std::vector<std::uint8_t>(std::move(content));
     held_[handle] = {kind, std::unique_ptr<std::vector<std::uint8_t>>(handle)};
@@ -104,7 +105,7 @@ class CameraDouble {
   }
   void stop() { is_started_ = false; }
   bool is_lost() const { return state.lost_after > 0 && due() > state.lost_after; }
-  // The number of the newest frame that has come; 0: none.
+  // The number of the newest frame that has come, or 0 if there is none.
   int due() const {
     if (!is_started_) return 0;
     const double passed_s = 1e-9 * static_cast<double>(clock().now_ns() - start_ns_);
@@ -123,7 +124,7 @@ class CameraDouble {
   void take(int number) { last_ = number; }
 
   int stride() const { return 2 * state.lens.width + state.row_gap_bytes; }
-  // Gaps are full of ones.
+  // The gaps are full of ones.
   std::vector<std::uint8_t> image() {
     if (image_.empty()) draw();
     std::vector<std::uint8_t> bytes(

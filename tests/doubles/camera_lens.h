@@ -1,5 +1,5 @@
-// The lens of a camera double: that of Brown and Conrady, with a rational part. Written from the equations,
-// without the vendors' sources.
+// The lens of a camera double: that of Brown and Conrady, with a rational part. It is written from the
+// equations, without the vendors' sources.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct CameraLens {
     const Point at = distorted(ray);
     return Point(cx + fx * at.x(), cy + fy * at.y());
   }
-  // Solved by Newton's method with differences.
+  // Newton's method with differences solves it.
   std::optional<Point> ray_of(const Point& pixel) const {
     const Point wanted((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
     Point ray = wanted;

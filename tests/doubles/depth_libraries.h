@@ -15,18 +15,19 @@ struct DepthLibrary {
   const char* name;
   const char* double_file;
   const char* variable;  // environment variable that names the library
-  const char* library;   // first name tried without it
+  const char* library;   // first name that is tried if it is not set
   std::unique_ptr<DepthSource> (*open)(const std::string& address, Clock& clock);
   Availability (*availability)();
 };
 
-// gtest prints it in the names of tests.
+// GoogleTest prints it in the names of tests.
 void PrintTo(const DepthLibrary* library, std::ostream* out);  // NOLINT(readability-identifier-naming)
 
-// The third lacks what older versions of librealsense lack.
+// kOldRealSense lacks what older versions of librealsense lack.
 extern const DepthLibrary kK4a, kRealSense, kOldRealSense;
 
-// The library is its double, freshly set, as long as this lives: on a simulated clock, or on the steady one.
+// The library is replaced by its double, newly reset, as long as this object lives. The double uses a
+// simulated clock, or the steady one.
 class CameraInstalled {
  public:
   explicit CameraInstalled(const DepthLibrary& library, SimulatedClock* clock = nullptr);

@@ -1,4 +1,4 @@
-// The part that the test doubles of vendors' libraries share: the device behind the library. A test sets its
+// The device behind the library: the part that the test doubles of vendors' libraries share. A test sets its
 // state and reads it. Each double exports it under the name device_double.
 //
 // They are test doubles: they have the vendors' signatures and none of their behaviour. A test that passes
@@ -20,7 +20,7 @@ namespace remote_touch {
 
 class DeviceDouble {
  public:
-  // All in the vendor's units and axes.
+  // All values are in the vendor's units and axes.
   struct State {
     std::array<double, 3> position{}, velocity{}, turning{};
     std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
@@ -43,7 +43,7 @@ class DeviceDouble {
     std::array<double, 6> told;  // last force and torque sent to the library
     bool has_motors_on;
 
-    // Force that the device exerts: 0 while its motors are off.
+    // Returns the force that the device exerts, which is 0 while its motors are off.
     double force() const { return has_motors_on ? std::hypot(told[0], told[1], told[2]) : 0; }
   };
 
@@ -62,7 +62,7 @@ class DeviceDouble {
     const std::lock_guard<std::mutex> lock(mutex_);
     change(state_);
   }
-  // The next such call hangs until release(), and then does what it was called for.
+  // The next such call hangs until release(), and then does its work.
   enum Call { none, reports_force, switches_on };
   void hang_next(Call call) { hangs_ = true, hang_next_ = call; }
   void release() { hangs_ = false; }

@@ -9,9 +9,9 @@ DeviceDouble device;
 thread_local int last_error = 0;
 
 constexpr int kCommunication = 2, kNoDevice = 5;
-constexpr char kId = 7;  // no number of a device
+constexpr char kId = 7;  // a handle that no device number equals
 
-// 0 or, with the error kept, -1.
+// Returns 0 or, with the error kept, -1.
 int answer(char id, int error) {
   const DeviceDouble::State state = device.state();
   last_error = id != kId ? kNoDevice : state.is_unplugged ? kCommunication : error;

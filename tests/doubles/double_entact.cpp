@@ -1,6 +1,6 @@
-// A test double of Entact's EntactAPI: it has the vendor's signatures and none of its behaviour, but for two
-// things that its documentation tells: the state is that of the last force told, and there is none without
-// motors.
+// A test double of Entact's EntactAPI: it has the vendor's signatures and none of its behaviour, except for
+// two things that its documentation states. The state is that of the last force sent, and there is no state
+// while the motors are off.
 #include <cstring>
 
 #include "tests/doubles/device_double.h"

@@ -1,5 +1,6 @@
-// A test double of OpenHaptics' HD library: it has the vendor's signatures and none of its behaviour, but for
-// a thread that calls a thousand times a second, and the rule that a force counts at the end of its frame.
+// A test double of OpenHaptics' HD library: it has the vendor's signatures and none of its behaviour, except
+// for a thread that calls a thousand times a second, and the rule that a force counts at the end of its
+// frame.
 #include <cstring>
 #include <string>
 #include <thread>

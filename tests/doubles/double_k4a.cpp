@@ -14,7 +14,7 @@ constexpr int kDepth16 = 4;
 constexpr int kQueue = 4;  // frames that the library keeps
 constexpr std::size_t kCalibrationBytes = 1032;
 
-// The members in the order of the bytes in memory.
+// The members are in the order of the bytes in memory.
 struct Started {
   int colour_format, colour_resolution, depth_mode, rate;
   bool only_synchronized;
@@ -38,7 +38,7 @@ void set_mode(int mode) {
   camera.state.rate_hz = mode == 4 ? 15 : 30;
 }
 
-// The mode of the frames is that of the calibration.
+// The mode of the frames must be that of the calibration.
 bool is_possible(const Started& wanted) {
   constexpr int kWidths[5] = {0, 320, 640, 512, 1024};
   const int rate = wanted.depth_mode == 4 ? 1 : 2;
@@ -48,7 +48,7 @@ bool is_possible(const Started& wanted) {
          wanted.depth_delay == 0;
 }
 
-// The bytes that are handed out as a calibration; only this library understands them.
+// The bytes that are given out as a calibration. Only this library understands them.
 const std::vector<std::uint8_t>& calibration_bytes() {
   static const std::vector<std::uint8_t> bytes = [] {
     std::vector<std::uint8_t> filled(kCalibrationBytes);
@@ -70,7 +70,7 @@ int number_in(const void* capture) {
 const std::vector<std::uint8_t>& bytes_in(const void* image) {
   return *static_cast<const std::vector<std::uint8_t>*>(image);
 }
-// The number of the frame is behind its pixels.
+// The number of the frame is stored after its pixels.
 constexpr std::size_t kNumberBytes = sizeof(int);
 
 }  // namespace
@@ -143,7 +143,7 @@ void k4a_device_stop_cameras(void* device) {
   camera.stop();
 }
 
-// The oldest that it keeps first.
+// Returns the oldest kept capture first.
 int k4a_device_get_capture(void* device, void** capture, std::int32_t timeout_ms) {
   if (camera.enter("k4a_device_get_capture") || !camera.is_held("device", device) || !camera.is_started())
     return fail("capturesync stopped");

@@ -1,5 +1,5 @@
-// A test double of an OpenCL 1.2 library with one device. It runs the project's own kernels, compiled as C++
-// and one work item after the other, and fails where a test wants it to.
+// A test double of an OpenCL 1.2 library with one device. It runs the project's own kernels, compiled as C++,
+// one work item after the other. It fails if a test sets it to fail.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -68,7 +68,7 @@ cl_int text(const char* is, std::size_t room, void* to, std::size_t* bytes) {
   return CL_SUCCESS;
 }
 
-// Every object is one of these.
+// Every object of the library is a Thing.
 struct Thing {
   Thing() { ++settings.objects; }
   ~Thing() { --settings.objects; }

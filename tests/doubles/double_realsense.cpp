@@ -1,5 +1,5 @@
 // A test double of the rs2 interface of librealsense 2: it has the vendor's signatures and none of its
-// behaviour. With REMOTE_TOUCH_OLD_REALSENSE it lacks what version 2.27 lacked.
+// behaviour. If REMOTE_TOUCH_OLD_REALSENSE is defined, it lacks what version 2.27 lacked.
 #include "tests/doubles/camera_double.h"
 
 namespace {
@@ -44,7 +44,7 @@ void set_error(void** error, const std::string& message) {
   *error = camera.hold("error", std::move(text));
 }
 
-// True: the call can do its work.
+// Returns true if the call can do its work.
 bool begins(const char* name, void** error) {
   if (!camera.enter(name)) return true;
   set_error(error, std::string("the double's\ntext for ") + name);
@@ -70,7 +70,7 @@ void deleted(const char* name, const char* kind, const void* handle) {
 bool is_depth_frame(const void* frame) {
   return static_cast<const Bytes*>(frame)->back() == kDepthStream;
 }
-// The number, the pixels, and what it is.
+// The content of a frame is its number, its pixels, and its kind.
 void* frame_of(int number, int kind) {
   Bytes content = bytes_of(number);
   if (kind == kDepthStream) {
@@ -168,7 +168,7 @@ int rs2_device_hub_is_device_connected(const void* hub, const void* device, void
   return camera.is_held("device", device) && !camera.is_lost() ? 1 : 0;
 }
 
-// The first sensor is one of colour.
+// The first sensor is a colour sensor.
 void* rs2_query_sensors(const void* device, void** error) {
   return created("rs2_query_sensors", "device", device, "sensor list", 0, error);
 }
@@ -208,7 +208,7 @@ void* rs2_create_config(void** error) {
 void rs2_delete_config(void* config) {
   deleted("rs2_delete_config", "config", config);
 }
-// The config remembers which camera.
+// The config stores the index of the camera.
 void rs2_config_enable_device(void* config, const char* serial, void** error) {
   if (!begins("rs2_config_enable_device", "config", config, error)) return;
   const auto& serials = camera.state.serials;
@@ -278,7 +278,7 @@ void rs2_get_video_stream_intrinsics(const StreamDouble* stream, Intrinsics* giv
             {number(lens.k[0]), number(lens.k[1]), number(lens.p1), number(lens.p2), number(lens.k[2])}};
 }
 
-// Keeps only the newest.
+// Keeps only the newest frame.
 int rs2_pipeline_poll_for_frames(void* pipeline, void** frame, void** error) {
   if (!begins("rs2_pipeline_poll_for_frames", "pipeline", pipeline, error)) return 0;
   if (camera.sent() <= camera.last()) return 0;

@@ -33,7 +33,7 @@ using Web = beast::websocket::stream<tcp::socket, false>;
 struct HaplyService::Inside {
   boost::asio::io_context context;
   tcp::acceptor acceptor{context, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0)};
-  // Kept beside the objects of Boost, which are the thread's alone.
+  // The handle is kept beside the objects of Boost, which only the thread uses.
   const int listener = acceptor.native_handle();
   const int port = acceptor.local_endpoint().port();
 
@@ -93,7 +93,7 @@ void HaplyService::Inside::talk(Web& web) {
     std::unique_lock<std::mutex> lock(mutex);
     const bool has_to_wait = mood == Mood::hangs_in_the_middle;
     if (has_to_wait) {
-      // A text frame of 100 bytes, of which five come.
+      // A text frame of 100 bytes, of which only five come.
       const unsigned char half[] = {0x81, 100, '{', '"', 'i', 'n', 'v'};
       boost::asio::write(web.next_layer(), boost::asio::buffer(half), ec);
       misbehaves = true;

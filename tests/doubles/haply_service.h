@@ -1,5 +1,5 @@
 // A stand-in for Haply's Inverse service: the protocol of its documentation over a real WebSocket on a free
-// port of this machine, with a cursor and a handle that a test sets, and with what goes wrong.
+// port of this machine, with a cursor and a handle that a test sets, and with faults.
 #pragma once
 
 #include <sys/types.h>
@@ -21,13 +21,14 @@ class HaplyService {
   std::string address(const std::string& settings = "") const;
 
   void set(const HaplyWorld& world);
-  // No answer to a command from now on, or half of one, or control frames instead; the connection stays.
+  // The service sends no answer to a command from now on, or half of one, or control frames instead. The
+  // connection stays.
   void hang();
   void hang_in_the_middle();
   void ping_without_end();
   void resume();
   bool misbehaves() const;  // half an answer or a control frame has been sent
-  // Ends the connection and takes no other.
+  // Ends the connection and accepts no other.
   void die();
 
   std::vector<HaplyCommand> commands() const;
@@ -38,7 +39,7 @@ class HaplyService {
   std::unique_ptr<Inside> inside_;
 };
 
-// The same in a process of its own, to be killed, and to allocate where it is not counted.
+// The same service in a process of its own, which can be killed, and whose allocations are not counted.
 class HaplyServiceProcess {
  public:
   HaplyServiceProcess();

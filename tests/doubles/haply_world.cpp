@@ -18,7 +18,7 @@ json orientation_of(const Eigen::Quaterniond& q) {
 
 json device_of(const HaplyWorld& world, const std::string& id, const Vec3& given_N, bool with_config) {
   const json zeros = {{"a0", 0.0}, {"a1", 0.0}, {"a2", 0.0}};
-  // The cursor is the first device's; another stands elsewhere.
+  // The cursor belongs to the first device. Another device is at another position.
   const Vec3 at = id == world.devices.front() ? world.position_m : Vec3(9, 9, 9);
   json device = {{"device_id", id},
                  {"state",

@@ -10,22 +10,22 @@
 
 namespace remote_touch {
 
-// Functions that every frame calls. Others are not here: buffers are made only for the first frame of a size,
+// Functions that every frame calls. Others are left out: buffers are made only for the first frame of a size,
 // and clEnqueueWriteBufferRect is called only if depths are no integers.
 inline constexpr const char* kFrameFunctions[] = {"clEnqueueWriteBuffer",    "clSetKernelArg",
                                                   "clEnqueueNDRangeKernel",  "clEnqueueMapBuffer",
                                                   "clEnqueueUnmapMemObject", "clFinish"};
 
-// A thread that gives up a device calls the library while a test sets it anew, and still when the program
-// ends: all of it is atomic, and nothing is destroyed.
+// A thread that abandons a device may call the library while a test sets it anew, and even when the program
+// ends. All of it is therefore atomic, and nothing is destroyed.
 struct OpenClDouble {
-  // A literal: the function that fails from the given call on, 1 for its first, counted from reset(); "":
-  // none.
+  // A literal: the function that fails from call failing_call on. Its calls are counted from 1 since reset().
+  // "" means none.
   std::atomic<const char*> failing{""};
   std::atomic<int> failing_call{0};
   std::atomic<int> code{-5};              // error code that it returns: CL_OUT_OF_RESOURCES
   std::atomic<bool> hangs{false};         // it hangs until let_go before it returns
-  std::atomic<bool> is_imprecise{false};  // the device says that it flushes subnormal numbers
+  std::atomic<bool> is_imprecise{false};  // the device reports that it flushes subnormal numbers
   std::atomic<bool> is_wrong{false};      // the device's normals are a little off
   std::atomic<bool> let_go{false};
   std::atomic<int> calls{0};        // number of calls of the failing function

@@ -127,7 +127,7 @@ int32_t refuse_step(void*, const remote_touch_device*, double, remote_touch_outp
   return 1;
 }
 int32_t refuse_frame(void*, const remote_touch_frame*, char* problem, size_t size) {
-  std::memset(problem, 'x', size);  // no end of the text
+  std::memset(problem, 'x', size);  // the text has no end
   return 7;
 }
 int32_t unknown_state(void*, const remote_touch_device*, double, remote_touch_output* out, char*, size_t) {

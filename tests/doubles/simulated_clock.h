@@ -1,5 +1,5 @@
-// A clock that stands still until a thread sleeps. Events that happen beside the sleeper, in a real run in
-// other threads, happen during its sleep: in the same thread, at their own times, in the order in which they
+// A clock that stands still until a thread sleeps. Other threads of a real run act beside the sleeper. Here
+// their events happen during the sleep: in the same thread, at their own times, in the order in which they
 // are due.
 #pragma once
 
@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-// Begins at 0. Events that are due at the same moment happen in the order in which they were added, and
-// before a sleep that ends at that moment is over. An event may sleep itself; if its sleep ends later than
-// the sleep during which it happens, that one ends later too. One thread only.
+// The clock begins at 0. Events that are due at the same moment happen in the order in which they were added,
+// and before a sleep that ends at that moment is over. An event may sleep itself. If its sleep ends later
+// than the sleep during which it happens, that one ends later, too. Only one thread may use the clock.
 class SimulatedClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }
@@ -28,8 +28,8 @@ class SimulatedClock final : public Clock {
   }
 
   void at(double moment_s, std::function<void()> what) { add(ns(moment_s), {std::move(what), 0, 0}); }
-  // Calls what() at first_s and then every period_s. Calls that fall into a sleep of its own are skipped.
-  // Returns the number for cancel().
+  // Calls what() at first_s and then every period_s. Calls that are due while what() itself sleeps are
+  // skipped. Returns the number for cancel().
   int every(double period_s, double first_s, std::function<void()> what) {
     const int id = ++last_id_;
     repeated_.insert(id);
@@ -72,7 +72,7 @@ class SimulatedClock final : public Clock {
   std::set<int> repeated_;
 };
 
-// A moment of it.
+// A moment of the clock.
 constexpr std::int64_t ms(double time_ms) {
   return static_cast<std::int64_t>(1e6 * time_ms);
 }

@@ -21,12 +21,12 @@ class SimulatedHaply {
   };
 
   explicit SimulatedHaply(SimulatedClock& clock) : clock_(clock) {}
-  // Opens the adapter at this service. settings: appended to its address.
+  // Opens the adapter at this service. settings is appended to its address.
   std::unique_ptr<HapticDevice> open(const std::string& settings = "");
 
   HaplyWorld world;
   std::int64_t answers_after_ns = 200'000;
-  // No answer from now on; what was owed comes with resume().
+  // The service does not answer from now on. Answers that were due come with resume().
   void hang() { hangs_ = true; }
   void resume();
   // Ends the connection.

@@ -16,7 +16,7 @@ namespace remote_touch {
 
 namespace {
 
-// Four bits of a packet: the manufacturer's letters, whose lower halves are the values.
+// A packet holds four bits per character. The manufacturer's letters have the values as their lower halves.
 constexpr char kNibbles[] = "0AB3D56GH9:K<MN?";
 
 }  // namespace
@@ -34,15 +34,15 @@ SerialMouse::~SerialMouse() {
   ::close(handle_);
 }
 
-// The daemon asks for a Spaceball first, which this is not, and then for the version (vQ); what it sets is
-// told back to it. m3 switches the reports on.
+// The daemon first sends the commands of a Spaceball, which this mouse is not, and then requests the version
+// (vQ). It switches the reports on with m3, which the mouse repeats.
 void SerialMouse::answer() {
   std::string command;
   while (!is_over_) {
     pollfd one{handle_, POLLIN, 0};
     char c = 0;
     if (::poll(&one, 1, 20) <= 0 || (one.revents & POLLIN) == 0 || ::read(handle_, &c, 1) != 1) {
-      if ((one.revents & POLLHUP) != 0) ::usleep(1000);  // nobody has it open
+      if ((one.revents & POLLHUP) != 0) ::usleep(1000);  // no program has it open
       continue;
     }
     if (c != '\r') {

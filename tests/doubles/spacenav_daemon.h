@@ -1,5 +1,4 @@
-// The stock daemon spacenavd with a mouse: a pseudo-terminal that answers as a serial Magellan SpaceMouse
-// does.
+// The stock daemon spacenavd with a mouse: a pseudo-terminal that answers like a serial Magellan SpaceMouse.
 #pragma once
 
 #include <sys/types.h>
@@ -12,15 +11,15 @@
 
 namespace remote_touch {
 
-// Its frame is x to the right, y up, z towards the user: the axes of its packets.
+// The mouse's frame is x to the right, y up, z towards the user, which are the axes of its packets.
 class SerialMouse {
  public:
   SerialMouse();
   ~SerialMouse();
 
   const std::string& terminal() const { return terminal_; }  // terminal that the daemon opens
-  bool is_detected() const { return is_detected_; }          // the daemon has asked it to report motion
-  // Along and about x, y and z, in counts.
+  bool is_detected() const { return is_detected_; }          // the daemon has switched its reports on
+  // Deflects the mouse along and about x, y and z, in counts.
   void deflect(const std::array<int, 6>& counts);
   void press(unsigned buttons);  // buttons: one bit for each that is down
 
@@ -37,7 +36,7 @@ class SerialMouse {
 // Path of the installed daemon; empty if it is not installed.
 std::string spacenav_daemon_program();
 
-// Runs in a folder of its own, where it makes its socket.
+// The daemon runs in a folder of its own, where it makes its socket.
 class SpacenavDaemon {
  public:
   SpacenavDaemon(const std::filesystem::path& folder, const std::string& terminal);

@@ -1,4 +1,4 @@
-// The socket of a spacenavd that is not there: a test writes its frames.
+// The socket of a spacenavd that does not run. A test writes its frames.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,6 @@
 
 namespace remote_touch {
 
-// The socket of a daemon, of which the test writes the frames.
 class SpacenavSocket {
  public:
   explicit SpacenavSocket(const std::string& path)

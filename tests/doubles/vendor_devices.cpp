@@ -13,7 +13,7 @@ namespace remote_touch {
 
 namespace {
 
-// Vendors with x towards the user, y right and z up: the rows are these, in ours.
+// The vendor's frame has x towards the user, y right and z up. The rows are these axes in our frame.
 Eigen::Matrix3d user_right_up() {
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;

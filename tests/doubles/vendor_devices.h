@@ -1,4 +1,4 @@
-// The adapters of vendors' libraries with their test doubles, and what a test does with them.
+// The adapters of vendors' libraries with their test doubles, and the steps that their tests share.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct VendorDevice {
   const char* uri;  // address of the device on the command line
   const char* double_file;
   const char* variable;  // environment variable that names the library
-  const char* library;   // first name tried without it
+  const char* library;   // first name that is tried if it is not set
   std::unique_ptr<HapticDevice> (*open)(const std::string& address, Clock& clock);
   Availability (*availability)();
 
@@ -25,16 +25,16 @@ struct VendorDevice {
   double length_per_m, torque_per_Nm;
   bool has_buttons, drives_itself, has_motors_on_to_read;
   int error, fault_code;  // one of the vendor's codes, and the code in the fault
-  int unplugged_code;     // that of a fault of an unplugged device
+  int unplugged_code;     // the code in the fault of an unplugged device
 };
 
-// gtest prints it in the names of tests.
+// GoogleTest prints it in the names of tests.
 void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readability-identifier-naming)
 
 extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
 
-// The library of the vendor is its double, freshly set, as long as this lives: on a simulated clock, or on
-// the steady one.
+// The library of the vendor is replaced by its double, newly reset, as long as this object lives. The double
+// uses a simulated clock, or the steady one.
 class DoubleInstalled {
  public:
   explicit DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock = nullptr);

@@ -1,4 +1,4 @@
-// camera.json of a folder of depth images.
+// The file camera.json of a folder of depth images.
 #include "scenarios/recordings/recording.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"

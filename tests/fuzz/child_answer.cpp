@@ -8,7 +8,7 @@
 namespace remote_touch::fuzz::child_answer {
 namespace {
 
-// "an incomplete answer" is what the reader of the file says then, in its own words.
+// A refusal is the text that the reader of the file would report.
 template <class Unpack>
 void read_as(const std::string& bytes, Unpack unpack) {
   try {

@@ -1,4 +1,5 @@
-// Every seed of the corpus once through its target: what was found once stays mended, in every build.
+// Every seed of the corpus goes once through its target, so that a fault that was found once stays mended in
+// every build.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Addresses of devices and sensors: SCHEME:PLACE?KEY=VALUE&..., and where a Haply service is.
+// Addresses of devices and sensors, SCHEME:PLACE?KEY=VALUE&..., and the address of a Haply service.
 #include "runners/live/devices/device_address.h"
 
 #include "runners/live/devices/haply_place.h"

@@ -1,4 +1,4 @@
-// Experiments as JSON. What is accepted is written complete, and comes back the same.
+// Experiments as JSON. An accepted experiment is written complete, and comes back the same.
 #include "runners/experiment/catalog/experiment.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"

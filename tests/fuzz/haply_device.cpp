@@ -1,5 +1,5 @@
-// The adapter of Haply's Inverse3 with a service that sends anything: a line for each message, in the order
-// in which they are asked for; an empty line: no answer in time.
+// The adapter of Haply's Inverse3 with a service that sends anything. Each line is a message, in the order in
+// which they are read. An empty line means that no answer comes in time.
 #include <sstream>
 
 #include "runners/live/devices/haply.h"

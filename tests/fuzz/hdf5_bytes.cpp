@@ -1,5 +1,4 @@
-// Damaged and foreign HDF5 files. All that the HDF5 library may do with them happens in a child process with
-// limits.
+// Damaged and foreign HDF5 files. The HDF5 library reads them in a child process with limits.
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
@@ -10,7 +9,7 @@ namespace remote_touch::fuzz::hdf5_bytes {
 namespace {
 
 void read(std::string_view bytes) {
-  use_hdf5();  // begun before, not in each child
+  use_hdf5();  // it begins here, once, and not in each child
   const auto file = scratch_file("file.h5", bytes);
   accepts(bytes, [&] {
     const Hdf5Reader reader(file, run_in_child());

@@ -1,5 +1,5 @@
 // HDF5 files of other programs: sound, but with attributes and datasets of any type and shape. The bytes
-// choose them; the library makes the file, and the reader reads it in this process.
+// choose them, the library makes the file, and the reader reads it in this process.
 #include <hdf5.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class Choices {
  public:
   explicit Choices(std::string_view bytes) : bytes_(bytes) {}
   bool any() const { return at_ < bytes_.size(); }
-  // 0 .. count - 1; 0 at the end.
+  // Returns one of 0 .. count - 1, or 0 at the end.
   std::size_t of(std::size_t count) { return any() ? static_cast<unsigned char>(bytes_[at_++]) % count : 0; }
 
  private:
@@ -133,7 +133,7 @@ void add_dataset(hid_t file, const std::string& name, Choices& choose) {
   if (choose.of(4) == 3) add_attribute(data, "NAME", choose);
 }
 
-// The library refuses what cannot be; what was made up to then is a file.
+// The library refuses impossible objects. The objects before them make a file.
 void make(const std::filesystem::path& file, Choices& choose) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);

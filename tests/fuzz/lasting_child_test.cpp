@@ -1,4 +1,4 @@
-// A child that reads many files answers as one that is begun for each of them.
+// A child that reads many files answers like a child that begins anew for each of them.
 #include "tests/fuzz/shared/lasting_child.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ std::string told(const RunInChild& run, const std::string& question) {
   }
 }
 
-TEST(LastingChild, ReadsOnInOneProcess) {
+TEST(LastingChild, ReadsManyFilesInOneProcess) {
   LastingChild child;
   for (int i = 1; i < 4; ++i) EXPECT_EQ(told(std::ref(child), "count"), "answered " + std::to_string(i));
   EXPECT_EQ(told(std::ref(child), "throw"), "no such thing");
@@ -45,7 +45,7 @@ TEST(LastingChild, ReadsOnInOneProcess) {
   EXPECT_EQ(child.repeated(), 0);
 }
 
-TEST(LastingChild, ReportsEachEndAsAChildOfItsOwnDoes) {
+TEST(LastingChild, ReportsEachEndLikeAChildPerQuestion) {
   LastingChild child;
   const std::string long_text(1'000'000, 'x');  // more than a pipe takes at once
   for (const std::string& question :
@@ -53,12 +53,13 @@ TEST(LastingChild, ReportsEachEndAsAChildOfItsOwnDoes) {
         std::string("fill"), std::string("end")}) {
     SCOPED_TRACE(question.substr(0, 10));
     EXPECT_EQ(told(std::ref(child), question), told(in_own_child, question));
-    EXPECT_HAS(told(std::ref(child), "count"), "answered ");  // the next one is read as ever
+    EXPECT_HAS(told(std::ref(child), "count"), "answered ");  // the next question is read as ever
   }
   EXPECT_EQ(child.repeated(), 3);
 }
 
-// Through both the reader of meshes says the same of every seed: the mesh, or why there is none.
+// The reader of meshes reports the same about every seed through both children: the mesh, or why there is
+// none.
 TEST(LastingChild, ReadsEverySeedOfMeshesAsAChildOfItsOwn) {
   const TestFolder folder("lasting_child_test");
   LastingChild child;

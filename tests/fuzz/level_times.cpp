@@ -1,4 +1,5 @@
-// The measured times of the kernels' levels in the cache. What is read is sound, and is written as it was.
+// The measured times of the kernels' levels in the cache. A file that is read is sound, and is written as it
+// was.
 #include <cmath>
 
 #include "runners/experiment/provenance/kernel_choice.h"

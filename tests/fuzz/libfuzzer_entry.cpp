@@ -17,8 +17,8 @@ namespace {
 
 constexpr time_t kMaxTime_s = 1;
 
-// A child process may crash, hang and run out of memory: its parent has to answer then. So what a child does
-// is no finding, and it does not write one.
+// A child process may crash, hang and run out of memory, and its parent has to answer then. A child's failure
+// is therefore no finding, and the child does not write one.
 void be_quiet_in_children() {
   __sanitizer_set_death_callback(nullptr);
 }
@@ -29,8 +29,8 @@ void on_too_long(int) {
   std::abort();
 }
 
-// Processor time, which other programs on the machine do not change; libFuzzer's own limit is by the clock.
-// 0: no limit.
+// The limit is processor time, which other programs on the machine do not change. libFuzzer's own limit is by
+// the clock. 0 means no limit.
 void limit_time(time_t seconds) {
   const itimerval limit{{0, 0}, {seconds, 0}};
   ::setitimer(ITIMER_PROF, &limit, nullptr);

@@ -1,4 +1,4 @@
-// The list of baselines. What is accepted is written, and comes back the same.
+// The list of baselines. An accepted list is written, and comes back the same.
 #include "runners/evaluation/regression/manifest.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"

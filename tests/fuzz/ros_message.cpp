@@ -1,4 +1,4 @@
-// Messages of ROS: the first byte says of which type, and whether of ROS 1 or 2.
+// Messages of ROS. The first byte selects the type, and ROS 1 or 2.
 #include <cmath>
 
 #include "scenarios/recordings/bags/cloud_from_message.h"
@@ -20,7 +20,7 @@ void check_depth(const DepthImage& depth) {
 
 void check_rays(const MessageCursor& cursor, bool rectified) {
   const CameraInfoMessage info = read_camera_info(cursor);
-  constexpr std::uint64_t kMaxPixels = 100'000;  // more takes more than 1 s with sanitizers
+  constexpr std::uint64_t kMaxPixels = 100'000;  // more pixels take more than 1 s with sanitizers
   if (std::uint64_t{info.width} * info.height > kMaxPixels) return;
   const ImageRays rays(info, rectified, "m");
   const CameraIntrinsics& camera = rays.camera();

@@ -1,4 +1,4 @@
-// Methods and scenes of the scorecard as JSON; the first byte chooses.
+// Methods and scenes of the scorecard as JSON. The first byte selects one of them.
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

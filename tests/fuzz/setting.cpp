@@ -1,4 +1,4 @@
-// --set: each line is one key=value, applied to a whole experiment.
+// The option --set: each line is one key=value, applied to a whole experiment.
 #include <sstream>
 
 #include "runners/experiment/catalog/experiment.h"

@@ -1,4 +1,4 @@
-// Sphere trees of tools in the cache. What is read is written as it was.
+// Sphere trees of tools in the cache. A file that is read is written as it was.
 #include "runners/experiment/tool_files/spheres_cache.h"
 
 #include "tests/fuzz/shared/cache_target.h"

@@ -1,4 +1,4 @@
-// Sweeps as JSON. Every cell is checked, which takes minutes for millions of cells: only small sweeps are
+// Sweeps as JSON. Every cell is checked, which takes minutes for millions of cells, so only small sweeps are
 // read.
 #include "runners/sweep/sweep.h"
 
@@ -20,7 +20,7 @@ double number_in(const Json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-// NaN for what is no number of cells.
+// The result is NaN for a number that is no number of cells.
 double cells_of(const Json& json, double halved) {
   double cells = 1;
   for (const Json& axis : json["axes"]) {

@@ -1,5 +1,5 @@
 // Sweeps in result files, finished or not (content_text.h). A digest "right" is replaced by that of the
-// content, so that what comes behind its check is reached.
+// content, so that the code after its check is reached.
 #include "analysis/sweeps/sweep_file.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::vector<Value> values_of(const Content& content, const char* name) {
   return values ? *values : std::vector<Value>();
 }
 
-// Builds the result that read_sweep() would take from the content, unchecked.
+// Builds, unchecked, the result that read_sweep() would return for the content.
 SweepResult result_of(const Content& content) {
   SweepResult result;
   result.axes = listed(content, "axes"), result.measures = listed(content, "measures");

@@ -1,4 +1,4 @@
-// Tools in the cache. What is read is sound, and is written as it was.
+// Tools in the cache. A file that is read is sound, and is written as it was.
 #include "runners/experiment/tool_files/tool_cache.h"
 
 #include "core/dissertation/tool/shape/mesh_corners.h"

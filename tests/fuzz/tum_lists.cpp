@@ -1,4 +1,5 @@
-// depth.txt and rgb.txt of a recording in the layout of the TUM benchmark, parted by a line "---".
+// The files depth.txt and rgb.txt of a recording in the layout of the TUM benchmark, separated by a line
+// "---".
 #include "scenarios/recordings/recording.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"

@@ -1,5 +1,4 @@
-// Unfinished recordings: the bytes as they are, and with the numbers and checksums of the blocks as they
-// should be.
+// Unfinished recordings: the bytes as they are, and with corrected numbers and checksums of the blocks.
 #include "runners/experiment/sessions/unfinished_session.h"
 
 #include <unistd.h>
@@ -16,7 +15,7 @@
 namespace remote_touch::fuzz::unfinished_session {
 namespace {
 
-// Places in the header of a block, see block_journal.h.
+// Positions in the header of a block, see block_journal.h.
 constexpr std::size_t kNumber = 8, kSize = 16, kContentSum = 24, kHeaderSum = 28, kHeaderSize = 32;
 
 template <class Value>

@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// The values of a message one after the other, as ROS 2 (CDR, of either order of bytes) or ROS 1 stores them.
+// The values of a message one after the other, as ROS 2 (CDR, in either byte order) or ROS 1 stores them.
 class MessageBytes {
  public:
   enum class Format { cdr, cdr_big_endian, ros1 };
@@ -30,17 +30,17 @@ class MessageBytes {
   std::size_t origin_ = 0;
 };
 
-// An organised cloud of float32 x, y, z: pixel (u, v) at depth z_m of a pinhole with f = 10 and the centre in
-// the middle.
+// An organised cloud of float32 x, y, z: pixel (u, v) is at depth z_m of a pinhole with f = 10 and the
+// principal point in the middle.
 std::string cloud_message(MessageBytes::Format format, std::int64_t stamp_ns, int width, int height,
                           float z_m, const std::string& frame_id = "optical");
 std::string depth_message(std::int64_t stamp_ns, int width, int height, std::uint16_t millimetres);
-// fx = fy = 10, the centre in the middle.
+// The camera has fx = fy = 10 and the principal point in the middle.
 std::string camera_message(int width, int height, const std::vector<double>& distortion = {},
                            const std::string& model = "plumb_bob");
 
 struct BagMessage {
-  std::string topic, type;  // sensor_msgs/msg/PointCloud2
+  std::string topic, type;  // type is, for example, sensor_msgs/msg/PointCloud2
   std::int64_t logged_ns = 0;
   std::string bytes;
 };
@@ -51,7 +51,8 @@ struct McapLayout {
   std::size_t messages_per_chunk = 2;
 };
 std::string mcap_file(const std::vector<BagMessage>& messages, const McapLayout& layout = {});
-// compression: none, lz4 or bz2. Types are written without "/msg". Not closed: without an index at the end.
+// compression is none, lz4 or bz2. Types are written without "/msg". A file that is not closed has no index
+// at the end.
 std::string ros1_file(const std::vector<BagMessage>& messages, const std::string& compression = "none",
                       bool closed = true);
 void write_db3(const std::string& file, const std::vector<BagMessage>& messages);

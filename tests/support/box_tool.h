@@ -1,5 +1,5 @@
-// A box as a tool, written down in closed form: for tests that need a tool whose every number is known. And
-// clouds for it.
+// A box as a tool, written in closed form, for tests that need a tool whose every number is known. The file
+// also has clouds for it.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline TriangleMesh box_mesh(const Vec3& half_m) {
   return mesh;
 }
 
-// The sides are integers of voxels; the outermost layer inside is the shell.
+// The sides are integers of voxels. The outermost layer inside is the shell.
 inline std::shared_ptr<const VoxelTool> box_tool(const Vec3& half_m, double voxel_m = 5e-4) {
   auto tool = std::make_shared<VoxelTool>();
   tool->mesh = box_mesh(half_m);
@@ -61,7 +61,7 @@ inline std::shared_ptr<const VoxelTool> box_tool(const Vec3& half_m, double voxe
   return tool;
 }
 
-// Points so dense that one disk can stand for many: 100 x 100 in the plane y = 0, 0.3 mm apart, with normals.
+// Points so dense that one disk can replace many: 100 x 100 in the plane y = 0, 0.3 mm apart, with normals.
 inline PointCloud dense_plane() {
   PointCloud cloud;
   for (int j = 0; j < 100; ++j)

@@ -1,5 +1,5 @@
-// Depth images with known surfaces: what a camera would see of planes, spheres and steps, with noise and
-// holes. Test data only: the bits of noise need not be the same everywhere.
+// Depth images with known surfaces: a camera's view of planes, spheres and steps, with noise and holes. They
+// are test data only: the bits of noise need not be the same everywhere.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace remote_touch::scenes {
 
-// The surface's normals are towards the camera, in its frame.
+// The surface's normals point towards the camera, in its frame.
 struct DepthScene {
   CameraIntrinsics camera;
   DepthImage depth;
@@ -26,7 +26,7 @@ inline Vec3 ray(const CameraIntrinsics& camera, int u, int v) {
   return unproject(camera, u, v, 1);
 }
 
-// surface(ray) gives depth and normal; a depth that is NaN is a hole.
+// surface(ray) returns depth and normal. A depth that is NaN is a hole.
 template <class Surface>
 DepthScene seen(const CameraIntrinsics& camera, const Surface& surface) {
   DepthScene scene{camera, {camera.width, camera.height, {}}, {}};
@@ -45,7 +45,7 @@ inline DepthScene plane(const CameraIntrinsics& camera, const Vec3& direction, d
   return seen(camera, [=](const Vec3& r) { return std::pair(n.z() * z_m / n.dot(r), n); });
 }
 
-// A sphere with no background: NaN where a ray misses it.
+// A sphere without a background: the depth is NaN if a ray misses it.
 inline DepthScene sphere(const CameraIntrinsics& camera, const Vec3& centre, double radius) {
   return seen(camera, [=](const Vec3& r) {
     const double b = r.dot(centre), root = b * b - r.squaredNorm() * (centre.squaredNorm() - radius * radius);
@@ -55,7 +55,7 @@ inline DepthScene sphere(const CameraIntrinsics& camera, const Vec3& centre, dou
   });
 }
 
-// A wall of waves, z = z_m + height cos(x k) cos(y k): found by fixed-point steps, exact to rounding.
+// A wall of waves, z = z_m + height cos(x k) cos(y k). Fixed-point steps find it, exact to rounding.
 inline DepthScene waves(const CameraIntrinsics& camera, double z_m, double height, double length) {
   const double k = 2 * 3.14159265358979323846 / length;
   return seen(camera, [=](const Vec3& r) {
@@ -68,7 +68,7 @@ inline DepthScene waves(const CameraIntrinsics& camera, double z_m, double heigh
   });
 }
 
-// Two walls that face the camera: the one on the right is `step` farther.
+// Two walls that face the camera. The right one is `step` farther away.
 inline DepthScene step(const CameraIntrinsics& camera, double z_m, double step_m) {
   return seen(camera,
               [=](const Vec3& r) { return std::pair(r.x() < 0 ? z_m : z_m + step_m, Vec3(0, 0, 1)); });
@@ -80,7 +80,7 @@ inline void add_noise(DepthImage& depth, double sigma_m, unsigned seed) {
   for (double& z : depth.z_m) z += normal(random);
 }
 
-// A share of the pixels, each with one of the values that mean no measurement.
+// A share of the pixels are holes. Each has one of the values that mean no measurement.
 inline void add_holes(DepthImage& depth, double fraction, unsigned seed, const std::vector<double>& values) {
   std::mt19937 random(seed);
   for (double& z : depth.z_m) {

@@ -1,4 +1,4 @@
-// A cloud as renderers read it: a tree, or tiles.
+// A cloud in the form that renderers read: a tree, or tiles.
 #pragma once
 
 #include <memory>

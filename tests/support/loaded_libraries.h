@@ -1,4 +1,4 @@
-// This header asks which libraries the process has loaded.
+// This header finds which libraries the process has loaded.
 #pragma once
 
 #include <link.h>

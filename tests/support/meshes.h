@@ -1,4 +1,4 @@
-// Meshes for tests, and what is true of a mesh by looking at every triangle.
+// Meshes for tests, and properties of a mesh that are found from every triangle.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline TriangleMesh tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, con
   return {{a, b, c, d}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};  // outwards for (b-a)x(c-a).(d-a) > 0
 }
 
-// A rotation about no axis in particular.
+// A rotation about no special axis.
 inline Eigen::Matrix3d rotated() {
   Eigen::Matrix3d about_x, about_y;
   about_x << 1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8;
@@ -71,7 +71,7 @@ inline double winding(const TriangleMesh& mesh, const Vec3& p) {
   return angle / (4 * 3.14159265358979323846);
 }
 
-// True if nothing of the polygon is left after clipping at the six sides of the box.
+// True if nothing of the polygon remains after it is clipped at the six sides of the box.
 inline bool clipped_away(std::vector<Vec3> polygon, const Vec3& low, const Vec3& high) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {1.0, -1.0}) {

@@ -1,4 +1,4 @@
-// A mistake of each kind that a sanitizer has to see: `mistake address` reads behind the end of a vector,
+// A mistake of each kind that a sanitizer must find: `mistake address` reads behind the end of a vector,
 // `mistake thread` changes one number in two threads.
 #include <cstddef>
 #include <string_view>

@@ -14,13 +14,13 @@ extern const TextAttributes kProvenance;
 // A trace of numbers that a careless writer would change.
 Trace awkward_trace(int ticks);
 
-// Also of the sign of zero and of NaN; names and units are not compared.
+// Compares also the sign of zero and of NaN. Names and units are not compared.
 bool same_bits(const Column& a, const Column& b);
 
-// Null where there is no such dataset.
+// Null if there is no such dataset.
 const Column* find(const Hdf5Content& content, const std::string& path);
 
-// "no attribute ..." where there is none.
+// Returns "no attribute ..." if there is none.
 std::string attribute(const Hdf5Content& content, const std::string& wanted);
 
 }  // namespace remote_touch

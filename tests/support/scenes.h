@@ -10,7 +10,8 @@
 
 namespace remote_touch::scenes {
 
-// Uniform in a cube around the origin. Test data only: its bits need not be the same everywhere.
+// The points are uniform in a cube around the origin. They are test data only: their bits need not be the
+// same everywhere.
 inline PointCloud random_cloud(int count, double half_width, unsigned seed) {
   std::mt19937 random(seed);
   const auto coordinate = [&] { return half_width * (random() / 2147483648.0 - 1.0); };

@@ -52,7 +52,7 @@ inline std::size_t measured(const PointCloud& cloud) {
   return count;
 }
 
-// A share of so many draws, within five standard deviations.
+// Expects that share of the draws, within five standard deviations.
 inline void expect_fraction(double count, double of, double fraction) {
   EXPECT_NEAR(count / of, fraction, 5 * std::sqrt(fraction * (1 - fraction) / of));
 }

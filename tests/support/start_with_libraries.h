@@ -9,8 +9,8 @@
 
 namespace remote_touch {
 
-// Starts the program again with this folder before the others, once: the loader reads LD_LIBRARY_PATH only
-// when a program starts. Works from ctest and by hand alike.
+// Starts the program again, once, with this folder before the others, because the loader reads
+// LD_LIBRARY_PATH only when a program starts. It works both from ctest and by hand.
 inline void start_with_libraries(const std::string& folder, char** argv) {
   const char* variable = std::getenv("LD_LIBRARY_PATH");
   const std::string others = variable ? variable : "";

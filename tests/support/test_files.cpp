@@ -16,8 +16,8 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// The process id keeps tests apart that run at the same time. A folder of that name may exist nevertheless: a
-// test was killed, or runs in another container with the same temporary folder.
+// The process id separates tests that run at the same time. A folder of that name may exist nevertheless,
+// because a test was killed or runs in another container with the same temporary folder.
 TestFolder::TestFolder(const std::string& name) {
   const fs::path wanted = fs::temp_directory_path() / (name + "_" + std::to_string(::getpid()));
   path_ = wanted;
@@ -84,7 +84,7 @@ std::string xyz_header(const std::string& points, const std::string& data) {
   return pcd_header("x y z", "4 4 4", "F F F", "1 1 1", points, "1", points, data);
 }
 
-// A run has at most 32 bytes, behind a byte that holds its length - 1.
+// A run has at most 32 bytes, after a byte that holds its length - 1.
 std::string lzf_literals(const std::string& bytes) {
   std::string block;
   for (std::size_t i = 0; i < bytes.size(); i += 32) {

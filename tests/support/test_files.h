@@ -18,7 +18,7 @@ namespace remote_touch {
 bool contains(const std::string& text, const std::string& part);
 #define EXPECT_HAS(text, part) EXPECT_PRED2(contains, text, part)
 
-// The message of the InputError that call throws, which must be one line.
+// Returns the message of the InputError that call throws, which must be one line.
 template <class Call>
 std::string refusal(Call call) {
   try {
@@ -31,7 +31,7 @@ std::string refusal(Call call) {
   return "no InputError";
 }
 
-// An empty folder of this process, removed with all that is in it at the end. Names are relative to it.
+// An empty folder of this process, which is removed at the end with its content. Names are relative to it.
 class TestFolder {
  public:
   explicit TestFolder(const std::string& name);
@@ -42,11 +42,11 @@ class TestFolder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
 
-  // Folders in the name are made; returns the file.
+  // Makes the folders in the name, and returns the file.
   std::filesystem::path write(const std::string& name, const std::string& bytes) const;
 
-  // Rows of samples in the order of the format, e.g. PNG_FORMAT_LINEAR_Y: one 16-bit grey sample a pixel.
-  // Only formats with a colour map have a palette.
+  // The samples are rows in the order of the format, e.g. PNG_FORMAT_LINEAR_Y: one 16-bit grey sample per
+  // pixel. Only formats with a colour map have a palette.
   std::filesystem::path write_png(const std::string& name, int width, int height, std::uint32_t format,
                                   const void* samples, const void* palette = nullptr,
                                   int palette_size = 0) const;
@@ -61,10 +61,10 @@ class TestFolder {
 
 std::string bytes_of(const std::filesystem::path& file);
 
-// The names of what is in a folder, in order.
+// Returns the names of the entries of a folder, in order.
 std::vector<std::string> files_in(const std::filesystem::path& folder);
 
-// The bytes of a value as they are in memory.
+// Returns the bytes of a value as they are in memory.
 template <class Value>
 std::string raw(Value value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
@@ -78,14 +78,14 @@ std::string pcd_header(const std::string& fields, const std::string& size, const
 // Header of an unorganised cloud of the float fields x, y, z.
 std::string xyz_header(const std::string& points, const std::string& data);
 
-// An LZF block of literal runs only, as a compressor writes what does not repeat.
+// An LZF block of literal runs only, as a compressor writes data that does not repeat.
 std::string lzf_literals(const std::string& bytes);
 
 // Body of a PCD file with DATA binary_compressed: both sizes in bytes, then the block.
 std::string compressed(const std::string& block, std::uint32_t raw_size);
 
 // An organised binary PCD file: a slanted plane as floats, with holes at the points 0, 5 and 7 (each marked
-// in another way); shift_px moves point 11 sideways.
+// in another way). shift_px moves point 11 sideways.
 std::string organised_pcd(const CameraIntrinsics& camera, double shift_px);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Names of parameters as GoogleTest takes them: of letters, digits and underscores.
+// Names of parameters as GoogleTest accepts them: with letters, digits and underscores only.
 #pragma once
 
 #include <cctype>

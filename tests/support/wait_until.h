@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// This limit only ends a test that hangs: no result depends on it, however busy the machine is. ctest waits
+// This limit only ends a test that hangs. No result depends on it, however busy the machine is. ctest waits
 // longer.
 constexpr double kPatience_s = 600;
 

@@ -1,5 +1,5 @@
-// The commands that tests compile with other compilers and options; figures, live runs and CLI11 are left
-// out.
+// The commands that tests compile with other compilers and options. They leave out figures, live runs and
+// CLI11.
 #include <string>
 #include <vector>
 

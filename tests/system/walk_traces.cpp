@@ -1,5 +1,6 @@
-// Writes two traces of random walks, as hard to compress as a trace can be: FOLDER/a.h5 and FOLDER/b.h5,
-// whose force differs from the middle on. Usage: walk_traces FOLDER TICKS
+// Writes two traces of random walks, which are as hard to compress as a trace can be. The traces are
+// FOLDER/a.h5 and FOLDER/b.h5, whose forces differ from the middle on.
+// Usage: walk_traces FOLDER TICKS
 #include <charconv>
 #include <cstdio>
 #include <cstring>

@@ -24,7 +24,7 @@ TEST(Within, ZeroToleranceAcceptsOnlyEqualNumbers) {
   EXPECT_TRUE(within(exact, 0.0, -0.0));
 }
 
-TEST(Within, IsAbsolutePlusRelativeToTheBaseline) {
+TEST(Within, the) {
   const Tolerance both = {0.5, 0.25};
   EXPECT_TRUE(within(both, 2, 3));
   EXPECT_FALSE(within(both, 2, 3.0001));
@@ -132,7 +132,7 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
 }
 
 // A table of a figure may be empty, for example if it lists events that did not happen.
-TEST(CompareColumns, TwoWithoutRowsAreTheSame) {
+TEST(CompareColumns, TwoEmptyColumnsAreTheSame) {
   EXPECT_TRUE(compare_columns(numbers({}), numbers({}), {}).is_same());
   EXPECT_FALSE(compare_columns(numbers({}, 3), numbers({}), {}).is_same());
 }

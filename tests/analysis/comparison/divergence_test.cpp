@@ -225,7 +225,7 @@ TEST(Rows, ShowTheTickBeforeAndTheTickItself) {
 
 // A column is left out, and does not affect the cause, if one trace lacks it, has too few rows of it or has
 // another type.
-TEST(Rows, AreOfColumnsThatBothHave) {
+TEST(Rows, ShowOnlyColumnsThatBothHave) {
   const std::size_t tick = quiet_tick();
   for (const char* odd : {"state", "frame_index", "frame_hash", "status"}) {
     Columns baseline = lift(), another_kind = lift(), shorter = lift();

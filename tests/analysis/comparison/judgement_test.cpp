@@ -132,7 +132,7 @@ TEST(JudgedInPairs, RunsWithAnotherOutcomeAreJudgedByThatAlone) {
 }
 
 // Heights of both signs that all come nearer to the surface.
-TEST(JudgedInPairs, NearerToZero) {
+TEST(JudgedInPairs, NearerToZeroIsBetter) {
   SweepResult a = map(), b = a;
   for (std::size_t run = 0; run < 5396; ++run) {
     depth(a)[run] = run % 3 == 0 ? -3e-3 : 2e-3;

@@ -26,7 +26,7 @@ TEST(PairedVerdictOf, FewRunsDecideNothing) {
   EXPECT_EQ(c.paired, PairedVerdict::undecided);
 }
 
-TEST(PairedVerdictOf, PassesFromTheRunsOnThatItSays) {
+TEST(PairedVerdictOf, PassesFromTheDocumentedNumberOfRuns) {
   const auto with_one_flip = [](std::size_t runs) {
     SweepResult a = row(runs), b = a;
     flip(a, b, 0, false);

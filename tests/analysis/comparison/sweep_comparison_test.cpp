@@ -96,7 +96,7 @@ TEST(CompareSweeps, ANumberAgainstNoneIsNeverAPass) {
     }
 }
 
-TEST(CompareSweeps, AnEventThatIsNeitherIsNoPass) {
+TEST(CompareSweeps, AnEventThatIsNeither0Nor1IsNoPass) {
   SweepResult a = map();
   event(a)[6] = 1;
   SweepResult b = a;
@@ -198,7 +198,7 @@ TEST(CompareSweeps, SaysWhyTheyAreNotComparable) {
   EXPECT_EQ(problems([](auto& b) { b.axes[0].units = "m", b.measures.clear(); }).size(), 3u);
 }
 
-TEST(CompareSweeps, RefusesToCompareNothing) {
+TEST(CompareSweeps, RefusesAnUnknownToleranceAndASweepWithoutMeasures) {
   SweepResult a = row(6);
   EXPECT_EQ(compare(a, a, {{"force", {1, 0}}}).problems,
             Texts{"a tolerance is given for force, which the baseline does not measure"});

@@ -263,7 +263,7 @@ TEST(CompareHashes, EqualRowsHaveEqualHashes) {
 
 // --- bisection, as by hand between two machines ---
 
-TEST(Bisection, TakesALogarithmOfLooksAndFindsTheSameTick) {
+TEST(Bisection, FindsTheTickWithALogarithmicNumberOfQueries) {
   const TestFolder folder("tick_hashes_test");
   std::mt19937_64 random(7);
   const std::vector<Column> columns = walk();

@@ -78,7 +78,7 @@ TEST(CompareTraces, AVectorsDeviationIsALength) {
   EXPECT_NEAR(found.deviation, 5, 1e-12);
 }
 
-TEST(CompareTraces, TheFirstTickAndTheLast) {
+TEST(CompareTraces, FindsTheFirstTickAndTheLast) {
   const Divergence first = divergence(after([](Columns& c) { proxy_x(c, 0) += 1; }));
   EXPECT_EQ(first.tick, 0u);
   EXPECT_EQ(first.time_s, 0);
@@ -225,7 +225,7 @@ TEST(CompareTraces, NoRowsAreNotTheSame) {
 // --- files ---
 
 // Files, read in pieces, give the same comparison as columns in memory; 5000 ticks are stored in chunks.
-TEST(CompareTraces, FilesAreAsGoodAsMemory) {
+TEST(CompareTraces, FilesGiveTheSameResultAsMemory) {
   const TestFolder folder("trace_comparison_test");
   const Columns baseline = simulate(Experiment::load("fig4.14", {"duration_s=5"})).columns();
   ASSERT_EQ(baseline.front().length(), 5000u);

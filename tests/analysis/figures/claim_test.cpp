@@ -13,7 +13,7 @@ Verdict differs(double measured) {
   return claim_differs("1.1", "speed", "16", measured, 28, 30, "m/s").verdict;
 }
 
-TEST(Claim, DiffersWhereItIsKnownToDiffer) {
+TEST(Claim, DiffersIfItIsInTheKnownRange) {
   EXPECT_EQ(differs(29), Verdict::differs);
   EXPECT_EQ(differs(28), Verdict::differs);
   EXPECT_EQ(differs(16), Verdict::fail) << "what the paper prints is no longer different: to be looked at";

@@ -96,7 +96,7 @@ TEST(FigureFile, ScenesAreStored) {
   for (const double value : {0.25, 0.625, 0.375, 0.0625}) EXPECT_HAS(bytes, raw(value));
 }
 
-TEST(FigureFile, EveryStyleHasItsName) {
+TEST(FigureFile, checks) {
   const TestFolder folder("figure_file_test");
   Figure figure = small_figure();
   for (const auto& [style, name] :

@@ -21,7 +21,7 @@ void expect_unreadable(const fs::path& file) {
   EXPECT_HAS(message, "expected");
 }
 
-TEST(ReadHdf5, MissingOrAnotherKindOfFile) {
+TEST(ReadHdf5, RefusesAMissingFileAndOtherKindsOfFiles) {
   const TestFolder folder("hdf5_reading_test");
   expect_unreadable(folder / "missing.h5");
   expect_unreadable(folder.path());
@@ -36,7 +36,7 @@ TEST(ReadHdf5, MissingOrAnotherKindOfFile) {
   expect_unreadable(folder / "loop");
 }
 
-TEST(ReadHdf5, TruncatedAnywhere) {
+TEST(ReadHdf5, RefusesATruncatedFile) {
   const TestFolder folder("hdf5_reading_test");
   write_trace(folder / "whole.h5", awkward_trace(50), kProvenance, {});
   const std::string bytes = bytes_of(folder / "whole.h5");
@@ -46,7 +46,7 @@ TEST(ReadHdf5, TruncatedAnywhere) {
 }
 
 // Long columns carry a checksum.
-TEST(ReadHdf5, DamagedChunk) {
+TEST(ReadHdf5, RefusesADamagedChunk) {
   const TestFolder folder("hdf5_reading_test");
   write_trace(folder / "whole.h5", awkward_trace(20000), kProvenance, {});
   std::string bytes = bytes_of(folder / "whole.h5");

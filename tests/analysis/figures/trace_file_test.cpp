@@ -60,7 +60,7 @@ TEST(TraceFile, TraceSurvivesBitForBit) {
   for (const int ticks : {1, 33, 4096, 4097, 10000}) expect_round_trip(ticks);
 }
 
-TEST(TraceFile, EmptyTrace) {
+TEST(TraceFile, AnEmptyTraceSurvives) {
   expect_round_trip(0);
 }
 
@@ -96,7 +96,7 @@ TEST(TraceFile, TimingIsStoredOutsideTheDigest) {
 }
 
 // A configuration with thousands of waypoints is longer than an attribute of old HDF5 files may be.
-TEST(TraceFile, LongConfiguration) {
+TEST(TraceFile, StoresALongConfiguration) {
   const TestFolder folder("trace_file_test");
   const std::string config = "[" + std::string(1 << 20, ' ') + "]";
   write_trace(folder / "long.h5", awkward_trace(2), {{"config", config}, {"isa", "x86-64"}}, {});

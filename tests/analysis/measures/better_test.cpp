@@ -34,7 +34,7 @@ double nothing(const Trace&) {
   return 0;
 }
 
-TEST(BetterOfMeasures, IsNeitherWhereAProgramDoesNotSay) {
+TEST(BetterOfMeasures, IsNeitherIfAProgramGivesNone) {
   EXPECT_EQ((Measure{"own", "1", "a measure of a program", MeasuredRuns::all, nothing}.better),
             Better::neither);
 }
@@ -49,7 +49,7 @@ TEST(Badness, IsSmallerWhereItIsBetter) {
   EXPECT_EQ(badness(1, Better::not_negative), badness(2, Better::not_negative));
 }
 
-TEST(DirectionOf, AnUnknownMeasureIsNone) {
+TEST(DirectionOf, AnUnlistedMeasureHasNoDirection) {
   const Directions directions = {{"x", Better::larger}};
   EXPECT_EQ(direction_of(directions, "x"), Better::larger);
   EXPECT_EQ(direction_of(directions, "y"), Better::neither);

@@ -55,7 +55,7 @@ TEST(ContactMeasures, HeightIsThatOfTheRenderedSurfaceOverTheTrueOne) {
   EXPECT_EQ(height_sd_m(trace_of({above})), 0);
 }
 
-TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
+TEST(ContactMeasures, DistanceNeedsAForceButNoPoints) {
   Tick near{0.004, 0.002}, far{0.008, std::numeric_limits<double>::infinity()}, silent{0.5, 0.1},
       dark{kUnknown};
   near.force_N = far.force_N = dark.force_N = {0, 1, 0};
@@ -76,14 +76,14 @@ TEST(ContactMeasures, EqualTicksHaveNoScatter) {
   EXPECT_NEAR(distance_sd_m(trace_of({same, same, same})), 0, 1e-15);
 }
 
-TEST(ContactMeasures, TheEndIsTheLastTick) {
+TEST(ContactMeasures, EndDistanceIsThatOfTheLastTick) {
   EXPECT_EQ(end_distance_m(trace_of({{-0.01, 0.005}, {0.004, 0.005}})), 0.004);
   EXPECT_EQ(end_distance_m(trace_of({{0.01, 0.005}, {-0.004, 0.005}})), -0.004);
   EXPECT_TRUE(std::isnan(end_distance_m(trace_of({{0.01, 0.005}, {kUnknown, 0.005}}))));
   EXPECT_TRUE(std::isnan(end_distance_m(Trace())));
 }
 
-TEST(ContactMeasures, TicksWithAForce) {
+TEST(ContactMeasures, CountTicksWithAForce) {
   const Trace trace = trace_of({pushed(0, 0), pushed(1e-12, 0), pushed(-2, 1), pushed(0, 1), pushed(0, 2)});
   EXPECT_EQ(force_fraction(trace), 0.4);
   EXPECT_EQ(last_force_time_s(trace), 0.02);

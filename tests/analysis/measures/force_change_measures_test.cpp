@@ -52,7 +52,7 @@ TEST(ForceChange, IsTheLengthOfTheDifferenceWhenTheForceTurns) {
   EXPECT_EQ(max_force_jump_N(trace_of({{{3, 0, 0}, 0}, {{0, 0, 4}, 1}})), 5);
 }
 
-TEST(ForceChange, IsUnknownWhereNothingCanBeCompared) {
+TEST(ForceChange, IsNanIfNoChangeCounts) {
   for (const auto& ticks : {std::vector<Tick>{}, {pushed(1, 0)}, {pushed(0, 0), pushed(0, 1), pushed(0, 1)}})
     for (const auto measure : {max_force_jump_N, rms_force_jump_N, force_noise_N})
       EXPECT_TRUE(std::isnan(measure(trace_of(ticks)))) << ticks.size();
@@ -60,7 +60,7 @@ TEST(ForceChange, IsUnknownWhereNothingCanBeCompared) {
   EXPECT_TRUE(std::isnan(force_noise_N(trace_of({pushed(1, 0), pushed(2, 1)}))));
 }
 
-TEST(ForceChange, TheSameOfTheTorqueOfATool) {
+TEST(ForceChange, TheTorqueOfAToolIsMeasuredLikeTheForce) {
   const Trace trace = trace_of(kTicks, true);
   EXPECT_EQ(max_torque_jump_Nm(trace), 7);
   EXPECT_NEAR(rms_torque_jump_Nm(trace), std::sqrt((25.0 + 9 + 16 + 49) / 4), 1e-15);

@@ -42,7 +42,7 @@ TEST(LateralForce, IsTheRatioOfTheTwoPartsAndTheAngleBetween) {
 }
 
 // 100 ticks with the ratios 0.01 to 1, in another order: 95 of them lie below 0.96.
-TEST(LateralForce, HasAPercentile) {
+TEST(LateralForce, The95thPercentileIsAbove95PercentOfTheTicks) {
   std::vector<Tick> ticks;
   for (int i = 0; i < 100; ++i) ticks.push_back({{0.01 * (1 + (37 * i) % 100), 1, 0}});
   EXPECT_NEAR(lateral_force_95(trace_of(ticks)), 0.96, 1e-15);
@@ -74,7 +74,7 @@ TEST(LateralForce, IsTheSameInATurnedWorld) {
   EXPECT_NEAR(mean_force_angle_rad(trace_of(turned)), mean_force_angle_rad(trace_of(level)), 1e-12);
 }
 
-TEST(LateralForce, IsJudgedInContactWithAForceAndAKnownNormal) {
+TEST(LateralForce, UsesTicksInContactWithAForceAndAKnownNormal) {
   const Tick counts{{1, 2, 0}};
   const Trace trace = trace_of({counts,
                                 {{9, 1, 0}, Vec3::UnitY(), ContactState::free},
@@ -102,7 +102,7 @@ TEST(LateralForce, IsThatOfContactWithoutGuidance) {
   EXPECT_EQ(mean_force_angle_rad(trace), std::atan2(1, 2));
 }
 
-TEST(LateralForce, MeansNothingWhereTheTrueNormalIsNotKnown) {
+TEST(LateralForce, IsNanIfTheTrueNormalIsNotKnown) {
   Trace not_computed;
   not_computed.append(0, {}, {}, {});
   int found = 0;

@@ -94,7 +94,7 @@ TEST(Measures, MaxForceIsOfAllTicks) {
   EXPECT_EQ(max_force_N(trace_of({tick(1, 0), tick(5, 0), tick(-7, 1)})), 7);
 }
 
-TEST(Measures, StepsAndConvergence) {
+TEST(Measures, CountStepsAndTicksWithoutConvergence) {
   Tick quick, slow;
   quick.steps = 2, slow.steps = 30, slow.converged = false;
   const Trace trace = trace_of({quick, quick, slow, quick});

@@ -52,7 +52,7 @@ TEST(PassivityMeasures, EnergyIsForceTimesDisplacementOfTheHand) {
 }
 
 // A torque of 0.5 N m turns the hand by 0.2 rad about an axis at 60 degrees to it, and 2 N push it by 1 cm.
-TEST(PassivityMeasures, WorkHasTorqueInIt) {
+TEST(PassivityMeasures, WorkIncludesTheTorque) {
   const Vec3 axis_W(0.5, std::sqrt(0.75), 0);
   Trace trace;
   for (int i = 0; i < 2; ++i) {
@@ -80,7 +80,7 @@ TEST(PassivityMeasures, WorkIsThatOfTheMotors) {
   EXPECT_NEAR(max_energy_injected_J(trace), 0.02, 1e-17);
 }
 
-TEST(PassivityMeasures, TheLargestIsThatOfAnyTime) {
+TEST(PassivityMeasures, MaxEnergyIsTheMaximumOverTime) {
   // 2 J to the hand, then 5 J from it.
   const Trace trace = trace_of({{1, 0}, {1, 2}, {1, -3}});
   EXPECT_EQ(max_energy_injected_J(trace), 2);

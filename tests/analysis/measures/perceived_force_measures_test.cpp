@@ -30,7 +30,7 @@ Trace trace_along(int ticks, Force&& newtons) {
   return trace_of(force_N, 10);
 }
 
-TEST(PerceivedForce, JumpsAreThoseAboveTheFractionOfTheForceBefore) {
+TEST(PerceivedForce, AJumpExceedsTheFractionOfTheForceBefore) {
   // Every tick has a frame update. The force changes by 5 % (4 to 4.2), 7.1 % (to 4.5) and -11 % (to 4),
   // ends, and begins again. The pair without any force (0 to 0) does not count.
   const Trace trace =
@@ -81,7 +81,7 @@ TEST(PerceivedForce, AForceThatEndsIsSentOnceAndNoMore) {
   EXPECT_TRUE(std::isnan(deadband_packets_per_s(trace_along(1, [](int) { return 1.0; }), 0.1)));
 }
 
-TEST(PerceivedForce, AreInTheTableAtThreeFractions) {
+TEST(PerceivedForce, MeasuresAreInTheTableAtThreeFractions) {
   const Trace trace = trace_along(200, [](int i) { return 1 + 0.01 * (i / 10) * (i % 20 < 10 ? 1 : -1); });
   const auto value = [&](const std::string& name) {
     for (const Measure& measure : built_in_measures())

@@ -15,7 +15,7 @@ const std::vector<char> kPicked{1, 1, 1, 0, 1, 0, 0, 0};
 const std::vector<char> kOfClass{1, 1, 0, 1, 1, 1, 0, 0};
 const std::vector<char> kDepth{1, 1, 1, 1, 0, 0, 1, 0};
 
-TEST(Segmentation, CountsPixelsWithDepthAndThoseWithoutApart) {
+TEST(Segmentation, CountsPixelsWithoutDepthSeparately) {
   const SegmentationScore score = score_segmentation(kPicked, kOfClass, kDepth);
   EXPECT_EQ(score.found, 2);
   EXPECT_EQ(score.missed, 1);
@@ -37,7 +37,7 @@ TEST(Segmentation, FramesAddUp) {
   EXPECT_EQ(sum.of_class_without_depth, 2);
 }
 
-TEST(Segmentation, SharesOfNoPointsAreNan) {
+TEST(Segmentation, FractionsOfNoPixelsAreNan) {
   const SegmentationScore none = score_segmentation({}, {}, {});
   EXPECT_TRUE(std::isnan(none.recall()) && std::isnan(none.precision()) && std::isnan(none.depth_fraction()));
   const SegmentationScore unpicked = score_segmentation({0, 0}, {1, 0}, {1, 1});

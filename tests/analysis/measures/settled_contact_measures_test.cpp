@@ -54,7 +54,7 @@ TEST(SettledContact, TheFirstTenthOfASecondIsNotJudged) {
   EXPECT_EQ(max_contact_error_m(trace_of(std::vector<Tick>(6, {0.001}))), 0.001);
 }
 
-TEST(SettledContact, EndsWhereTheHandLeavesTheSurfaceAndSettlesAnew) {
+TEST(SettledContact, SettlingStartsAgainAfterTheHandLeavesTheSurface) {
   std::vector<Tick> ticks(6, {0.001});
   for (const double outside : {0.0, 0.01, kUnknown}) {
     std::vector<Tick> all = ticks;
@@ -77,13 +77,13 @@ TEST(SettledContact, TicksWithoutATruthAreLeftOutAndCounted) {
   EXPECT_EQ(contact_known_fraction(dark), 0);
 }
 
-TEST(SettledContact, AForceIsAskedForInSettledTicksOnly) {
+TEST(SettledContact, ForceFractionUsesSettledTicksOnly) {
   EXPECT_EQ(contact_force_fraction(settled({{0}, {0, -0.01, false}, {0}, {0}})), 0.75);
   EXPECT_TRUE(std::isnan(contact_force_fraction(trace_of({{0}, {0}}))));
   EXPECT_TRUE(std::isnan(contact_known_fraction(trace_of({{0}, {0}}))));
 }
 
-TEST(SettledContact, MeansNothingWhereTheContactWasNotComputed) {
+TEST(SettledContact, IsNanIfTheContactWasNotComputed) {
   Trace trace;
   trace.append(0, {}, {}, {});
   int found = 0;

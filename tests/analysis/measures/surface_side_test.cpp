@@ -33,7 +33,7 @@ TEST(SurfaceSide, CrossesFromTheFrontToTheBack) {
   EXPECT_EQ(crossings({0.1, 0, -0.1, -0.2, 0.1, -0.1}), (std::vector<std::size_t>{2, 5}));
 }
 
-TEST(SurfaceSide, HasNotCrossedWhatItBeganBehind) {
+TEST(SurfaceSide, AProxyThatBeginsBehindHasNotPoppedThrough) {
   EXPECT_EQ(popped_through({-0.03, -0.002, -0.03}), 0);
   EXPECT_TRUE(crossings({-0.03, -0.002, -0.03}).empty());
   EXPECT_EQ(popped_through({-0.03, 0.002, -0.03}), 1) << "it was in front in between";
@@ -46,7 +46,7 @@ TEST(SurfaceSide, APositionOnTheSurfaceIsHeldUpToADepth) {
   EXPECT_EQ(crossings({0.01, -0.001, 0.001, -0.003}, 0.0025), std::vector<std::size_t>{3});
 }
 
-TEST(SurfaceSide, IsUnknownIfTheWayToTheBackIs) {
+TEST(SurfaceSide, ResultIsNanIfTheWayToTheBackIsUnknown) {
   EXPECT_TRUE(std::isnan(popped_through({})));
   EXPECT_TRUE(std::isnan(popped_through({0.01, -0.01, kUnknown})));
   EXPECT_TRUE(std::isnan(popped_through({0.01, kUnknown, -0.01}))) << "round the border";

@@ -77,7 +77,7 @@ TEST(ToolMeasures, AreMeansAndMaximaOfTheTicks) {
   EXPECT_NEAR(max_tool_lag_rad(trace), 0.3, 1e-15);
 }
 
-TEST(ToolMeasures, AClearanceThatNeverWasIsUnknown) {
+TEST(ToolMeasures, ClearanceIsNanWithoutANearestPoint) {
   Tick alone;
   alone.gap_m = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(min_clearance_m(trace_of({alone, alone}))));

@@ -51,7 +51,7 @@ TEST(CardNumbers, ATableThatIsDamagedIsRefused) {
   EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
 }
 
-TEST(CardNumbers, WithinTheIntervalsTheyAgree) {
+TEST(CardNumbers, AgreeWithinTheIntervals) {
   CardNumbers now = numbers();
   now.counts[1].successes = {7, 10, 0.7, 0, 1};
   now.counts[2].successes = {2, 10, 0.2, 0, 1};

@@ -11,7 +11,7 @@ namespace {
 
 using namespace made_cards;
 
-TEST(Overview, NoiseFreeRunsAreAColumnOfTheirOwn) {
+TEST(Overview, CountsNoiseFreeRunsSeparately) {
   const Scorecard card = card_of({{sweep_of(false, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
                                   {sweep_of(true, 10, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)}});
   const Successes& own = card.scenes[0].success[0];
@@ -72,7 +72,7 @@ TEST(Weaknesses, NameTheFirstOfSeveralMethodsAhead) {
   EXPECT_EQ(list[0].p, card.scenes[0].ranking.against[2][0].p);
 }
 
-TEST(Weaknesses, PossibleChanceIsListedApart) {
+TEST(Weaknesses, ListsInsignificantDifferencesSeparately) {
   const Scorecard card = card_of({{sweep_of(false, 17, 1), sweep_of(true, 18, 1), sweep_of(true, 20, 1)}});
   const auto list = weaknesses(card, kOwnMethod);
   ASSERT_EQ(list.size(), 2u);

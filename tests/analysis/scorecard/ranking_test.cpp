@@ -32,7 +32,7 @@ std::vector<double> twice(std::vector<double> values) {
   return values;
 }
 
-TEST(Standings, TheEndsAreMarkedWhereThePairsTellThemApart) {
+TEST(Standings, MarksBestAndWorstIfThePairsShowIt) {
   // The methods are 0.2 apart and the spread is 1, so only the comparison of pairs shows the difference.
   const std::vector<PairedValues> three = {values_around(0.2, 0), values_around(0, 1), values_around(0.4, 2)};
   const Ranking smaller = ranking(three, Better::smaller, false);
@@ -44,7 +44,7 @@ TEST(Standings, TheEndsAreMarkedWhereThePairsTellThemApart) {
   EXPECT_FALSE(reported.has_best || reported.has_worst);
 }
 
-TEST(Standings, NoDifferenceIsSaidAsSuch) {
+TEST(Standings, EqualMethodsHaveNoBestAndNoWorst) {
   const PairedValues one = values_around(0, 0);
   const Ranking same = ranking({one, one, values_around(0, 0)}, Better::smaller, false);
   EXPECT_FALSE(same.has_best || same.has_worst);
@@ -66,7 +66,7 @@ TEST(Standings, FewFlippedEventsAreNoDifference) {
   EXPECT_EQ(success.top_group, (std::vector<std::size_t>{2, 1}));
 }
 
-TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
+TEST(Standings, BestNeedsPairsThatAgreeWithTheOrder) {
   // The first method has values only at the easy level, so its own mean is the best, but it is worse in every
   // pair.
   const PairedValues early = {twice({1, 1.1, 0.9, 1, 1.1, 0.9}), std::vector<double>(12, kNan)};
@@ -93,7 +93,7 @@ TEST(Standings, TheBestIsApartFromAllOthers) {
   EXPECT_FALSE(reverse.has_worst);
 }
 
-TEST(Standings, TooFewCommonPairsAreNoVerdict) {
+TEST(Standings, TooFewCommonPairsGiveNoVerdict) {
   PairedValues one(1, std::vector<double>(20, 1)), other(1, std::vector<double>(20, 2)),
       rest(1, std::vector<double>(20, 3));
   std::fill_n(other[0].begin(), 8, kNan);
@@ -118,7 +118,7 @@ TEST(Standings, TooFewCommonPairsAreNoVerdict) {
 
 // About ten of 200 comparisons of equal methods show a difference if they are not corrected. Corrected
 // together, hardly ever one does.
-TEST(Standings, AreCorrectedForAllThatIsLookedAt) {
+TEST(Standings, IsCorrectedForAllComparisons) {
   std::vector<Ranking> rankings;
   int found = 0;
   for (std::uint32_t k = 0; k < 200; ++k) {
@@ -149,7 +149,7 @@ TEST(Standings, AreCorrectedForAllThatIsLookedAt) {
   EXPECT_EQ(rankings.back().against[0][1].p, rankings.back().against[1][0].p);
 }
 
-TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
+TEST(Standings, ARepeatedRunCountsOnce) {
   // Level 0 repeats one run 20 times. The other level shows no difference.
   PairedValues up(2, std::vector<double>(20, 1)), down = up;
   down[0].assign(20, 0);
@@ -164,13 +164,13 @@ TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
   EXPECT_EQ(ranking({low, high}, Better::smaller, false, {{true}, {true}}).ranked, 0u);
 }
 
-TEST(Standings, NearZeroIsAboutMagnitudes) {
+TEST(Standings, NearZeroComparesMagnitudes) {
   const PairedValues low(1, twice({-5, -4, -6, -5, -4, -6})), high(1, twice({1, 2, 1, 2, 1, 2}));
   EXPECT_EQ(ranking({low, high}, Better::near_zero, false).order.front(), 1u);
   EXPECT_EQ(ranking({low, high}, Better::smaller, false).order.front(), 0u);
 }
 
-TEST(Standings, AMethodWithoutNumbersHasNoPlace) {
+TEST(Standings, AMethodWithoutNumbersIsNotRanked) {
   const PairedValues none(1, std::vector<double>(12, kNan)), good(1, twice({1, 2, 1.5, 1, 2, 1.5})),
       bad(1, twice({9, 10, 9.5, 9, 10, 9.5}));
   const Ranking result = ranking({none, bad, good}, Better::smaller, false);

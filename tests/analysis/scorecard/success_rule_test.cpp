@@ -27,7 +27,7 @@ SweepResult sweep_of(const std::vector<double>& depth, const std::vector<double>
 
 const std::vector<Bound> kBounds = {{"depth", -1}, {"time", 2, 3}};
 
-TEST(SuccessRule, EveryBoundIsKeptEndsIncluded) {
+TEST(SuccessRule, EveryBoundMustHoldIncludingItsEnds) {
   const SweepResult sweep =
       sweep_of({-1, -1.01, 5, kNan, 0, 0, 0, 0, 0, 0}, {2, 2, 3, 2, kNan, 3.01, 1.99, 2.5, 2, 3});
   EXPECT_EQ(successes(sweep, kBounds),

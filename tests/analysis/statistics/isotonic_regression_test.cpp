@@ -8,7 +8,7 @@
 namespace remote_touch::isotonic_regression_test {
 namespace {
 
-TEST(FallingCurve, LeavesAFallingOneAsItIs) {
+TEST(FallingCurve, KeepsADecreasingCurve) {
   const std::vector<double> values = {1, 0.9, 0.9, 0.2, 0};
   EXPECT_EQ(isotonic_falling(values, {1, 2, 3, 4, 5}), values);
 }
@@ -43,7 +43,7 @@ TEST(FallingCurve, IsTheNearest) {
   }
 }
 
-TEST(FallingCurve, Crossing) {
+TEST(FallingCurve, CrossesALevelByInterpolation) {
   const std::vector<double> x = {0, 10, 20};
   EXPECT_DOUBLE_EQ(crossing(x, {1, 0.75, 0.25}, 0.5), 15);
   EXPECT_DOUBLE_EQ(crossing(x, {1, 0.5, 0.25}, 0.5), 10);

@@ -40,7 +40,7 @@ TEST(PairedBootstrap, QuantilesAreThoseOfAllDraws) {
   EXPECT_EQ(drawn.pairs, 6);
 }
 
-TEST(PairedBootstrap, GroupsAreDrawnEachByItself) {
+TEST(PairedBootstrap, DrawsEachGroupSeparately) {
   // All numbers of a group are equal and the groups lie far apart, so every draw has the same mean.
   const MeanDifference mean = bootstrap_mean({{1, 1, 1}, {100, 100}}, 1);
   EXPECT_EQ(mean.low, mean.mean);
@@ -48,7 +48,7 @@ TEST(PairedBootstrap, GroupsAreDrawnEachByItself) {
   EXPECT_NEAR(mean.mean, 203.0 / 5, 1e-14);
 }
 
-TEST(PairedBootstrap, HasTheSameBitsForTheSameKeyAlone) {
+TEST(PairedBootstrap, OnlyTheSameKeyGivesTheSameBits) {
   const std::vector<double> group = {0.1, 3, -2, 7, 0.4, 1.5, -0.2, 2};
   const MeanDifference once = bootstrap_mean({group}, 3), again = bootstrap_mean({group}, 3);
   EXPECT_EQ(once.low, again.low);

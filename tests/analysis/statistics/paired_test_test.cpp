@@ -77,7 +77,7 @@ TEST(SignTest, IsNormalForLargeCounts) {
     }
 }
 
-TEST(SignTest, EndsAtZeroWithoutFaults) {
+TEST(SignTest, UnderflowsToZero) {
   EXPECT_EQ(sign_test(0, 10000000), 0);
   EXPECT_EQ(sign_test(4000000, 10000000), 0);
   EXPECT_EQ(sign_test(10000000, 10000000), 1);
@@ -108,7 +108,7 @@ TEST(SymmetryTest, BoundsThePOfAllSigns) {
   }
 }
 
-TEST(SymmetryTest, SeesFewLargeOnesAmongManySmallOnes) {
+TEST(SymmetryTest, DetectsFewLargeDifferencesAmongManySmallOnes) {
   std::vector<double> d(5000, 1e-12);
   for (std::size_t i = 0; i < d.size(); i += 2) d[i] = -1e-12;
   EXPECT_EQ(symmetry_test(d), 1);
@@ -186,7 +186,7 @@ TEST(MeanDifference, IsMeanAndStandardErrorByHand) {
   EXPECT_NEAR(m.high, 3 + kTwoSided95 * std::sqrt(14.0 / 12), 1e-14);
 }
 
-TEST(MeanDifference, SaysWhatTooFewPairsCannotTell) {
+TEST(MeanDifference, IsNanWithTooFewPairs) {
   const MeanDifference none = mean_difference({kNaN}), one = mean_difference({4});
   EXPECT_EQ(none.pairs, 0);
   EXPECT_TRUE(std::isnan(none.mean) && std::isnan(none.low) && std::isnan(none.high));
@@ -198,7 +198,7 @@ TEST(MeanDifference, SaysWhatTooFewPairsCannotTell) {
 
 // The adjusted values are 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, which is raised to the value before
 // it.
-TEST(HolmAdjusted, IsTheExampleByHand) {
+TEST(HolmAdjusted, EqualsAnExampleComputedByHand) {
   const std::vector<double> adjusted = holm_adjusted({0.01, 0.04, 0.03, 0.005});
   const double expected[] = {0.03, 0.06, 0.06, 0.02};
   ASSERT_EQ(adjusted.size(), 4u);

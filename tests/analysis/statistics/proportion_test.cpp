@@ -53,7 +53,7 @@ TEST(WilsonInterval, IsSymmetric) {
     }
 }
 
-TEST(WilsonInterval, MoreRunsTellMore) {
+TEST(WilsonInterval, NarrowsWithMoreRuns) {
   EXPECT_EQ(wilson_interval(0, 0), std::make_pair(0.0, 1.0));
   double before = 1;
   for (const int runs : {4, 8, 20, 100, 10000, 1000000}) {

@@ -29,7 +29,7 @@ TEST(Student, TheDistributionIsThatOfTheTables) {
   EXPECT_NEAR(student_quantile(0.05, 100000), 1.95999, 5e-5);
 }
 
-TEST(Student, TheIntervalOfOneGroupIsTheTextbooks) {
+TEST(Student, IntervalOfOneGroupEqualsTheTextbook) {
   // Mean 3, sum of squares 10, s^2 = 2.5: 2.7764 sqrt(2.5 / 5).
   const MeanDifference mean = student_mean({{1, 2, kNan, 3, 4, 5}});
   EXPECT_EQ(mean.pairs, 5);
@@ -66,7 +66,7 @@ TEST(MeanTest, IsStudentsTestForSymmetricNumbers) {
   EXPECT_EQ(mean_test({kNan, kNan}), 1);
 }
 
-TEST(MeanTest, NoPairsShowMoreThanAllOfTheirSignsCould) {
+TEST(MeanTest, PIsAtLeastThatOfTheExactSignFlipTest) {
   EXPECT_EQ(mean_test({2, 2, 2, 2}), 0.125);  // t would be infinite, as there is no scatter
   EXPECT_EQ(mean_test({2, 2, 2, 2.0000001}), 0.125);
   EXPECT_EQ(mean_test(std::vector<double>(12, -1)), std::exp2(-11));
@@ -141,7 +141,7 @@ TEST(MeanTest, BearsSkewedDifferences) {
 
 // The percentile bootstrap is not used to decide, because it finds a false difference at least twice as often
 // as intended.
-TEST(MeanTest, TheBootstrapOfAFewPairsFindsTwiceAsMany) {
+TEST(MeanTest, TheBootstrapOfAFewPairsHasTwiceTheFalseRate) {
   const auto drawn_again = [](const auto& d) { return is_apart_from_0(bootstrap_mean({d}, 1, 200)); };
   EXPECT_GE(false_rate(Shape::normal, 6, 1000, drawn_again), 0.1);
   EXPECT_GE(false_rate(Shape::exponential, 6, 1000, drawn_again), 0.14);

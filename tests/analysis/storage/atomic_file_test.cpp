@@ -32,7 +32,7 @@ void expect_unwritable(const fs::path& file) {
   EXPECT_HAS(message, ": expected a writable folder");
 }
 
-TEST(WriteTrace, PlacesThatCannotBeWritten) {
+TEST(WriteTrace, RefusesPathsThatCannotBeWritten) {
   const TestFolder folder("atomic_file_test");
   folder.write("file", "as it was");
   fs::create_directory(folder / "folder");
@@ -63,7 +63,7 @@ class PermissionsOfAnyUser {
   std::array<__user_cap_data_struct, 2> before_{};
 };
 
-TEST(WriteTrace, FolderWithoutPermission) {
+TEST(WriteTrace, RefusesAFolderWithoutPermission) {
   const TestFolder folder("atomic_file_test");
   fs::create_directory(folder / "locked");
   fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
@@ -210,7 +210,7 @@ TEST(MoveIntoPlace, RemovesAFileThatCannotBeMoved) {
 
 // Rare results of a system call: an interrupted call is repeated, and a call that writes no byte means a full
 // disk.
-TEST(WriteWholeFile, CallsThatWriteNothing) {
+TEST(WriteWholeFile, RepeatsInterruptedCallsAndReportsAFullDisk) {
   const TestFolder folder("atomic_file_test");
   {
     const AnswersOfWrite once{{-1, EINTR}, {-1, EINTR}};
@@ -226,7 +226,7 @@ TEST(WriteWholeFile, CallsThatWriteNothing) {
   EXPECT_EQ(bytes_of(folder / "file"), "text");
 }
 
-TEST(RemoveLeftovers, BesideTheFileThatALinkLeadsTo) {
+TEST(RemoveLeftovers, RemovesThemBesideTheFileThatALinkLeadsTo) {
   const TestFolder folder("atomic_file_test");
   fs::create_directory(folder / "there");
   fs::create_symlink("there/x.h5", folder / "link.h5");

@@ -231,7 +231,7 @@ TEST(BlockJournal, RefusesToReadOtherFiles) {
   EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
 }
 
-TEST(BlockJournal, IsNamedToWhoeverWantsTheFile) {
+TEST(BlockJournal, IsNamedInTheErrorIfItsFileIsMissing) {
   const TestFolder folder("block_journal");
   write(folder);
   EXPECT_HAS(refusal([&] { require_no_journal(folder / "x"); }),

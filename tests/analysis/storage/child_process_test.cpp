@@ -37,7 +37,7 @@ TEST(ChildProcess, ChangesNothingHere) {
   EXPECT_EQ(changed, 0);
 }
 
-TEST(ChildProcess, HandsOnWhatWentWrong) {
+TEST(ChildProcess, PassesOnTheErrorMessage) {
   EXPECT_EQ(failure_of([]() -> std::string { throw std::runtime_error("no such thing"); }), "no such thing");
 }
 

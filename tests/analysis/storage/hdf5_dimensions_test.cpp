@@ -48,7 +48,7 @@ TEST(Hdf5Dimensions, AreNoColumns) {
   EXPECT_EQ(Hdf5Reader(folder / "a.h5").datasets(), columns());
 }
 
-TEST(Hdf5Dimensions, AllHaveANameAndAllEnumerations) {
+TEST(Hdf5Dimensions, AllDimensionsAndEnumerationsHaveNames) {
   const TestFolder folder("hdf5_dimensions");
   write_file(folder / "a.h5");
   const Handle file(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

@@ -203,7 +203,7 @@ TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data has its values in another file");
 }
 
-TEST(ForeignDatasets, AreNamedIfTheyAreOfOtherKinds) {
+TEST(ForeignDatasets, AreRefusedByNameIfTheyAreOfOtherKinds) {
   const TestFolder folder("hdf5_foreign_test");
   add_dataset(new_file(folder / "x.h5"), "data", H5T_STD_REF_OBJ, {{3}});
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data is neither numbers nor texts of one length");

@@ -54,7 +54,7 @@ TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
 }
 
 // The folder of the third target disappears before the files are renamed.
-TEST(NewFiles, OneThatCannotAppearTakesTheOthersBack) {
+TEST(NewFiles, AFailedRenameRestoresAllFiles) {
   const TestFolder folder("new_files");
   folder.write("b", "old");
   {

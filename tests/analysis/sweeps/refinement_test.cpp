@@ -59,7 +59,7 @@ TEST(Tally, CountsOnlyRunsWithAKnownOutcome) {
   EXPECT_EQ(counted.runs, 2);
 }
 
-TEST(NextRound, AsksForNothingWhereAllIsCertainAndAgrees) {
+TEST(NextRound, RequestsNothingIfAllCellsAreCertainAndAgree) {
   for (const int events : {0, 4}) {
     SweepResult result = empty_grid({5, 3}, 8);
     for (const std::size_t cell : {0, 2, 12, 14}) sample(result, cell, events, 4);
@@ -102,7 +102,7 @@ TEST(NextRound, CellsDisagreeAboutOneHalf) {
   EXPECT_TRUE(half_way(120, 80));
 }
 
-TEST(NextRound, AnUncertainCellGetsReplicatesUpToItsRoom) {
+TEST(NextRound, AnUncertainCellGetsReplicatesUpToTheMaximum) {
   SweepResult result = empty_grid({1}, 6);
   sample(result, 0, 1, 2);
   EXPECT_EQ(next_round(result, rule({1}, 3)), all_of(result, {0}, 2, 5));
@@ -241,7 +241,7 @@ TEST(Refinement, IsTheSameWhenTheWorldIsMirroredOrTurned) {
 
 // Every continuation of a result requests the same runs, however often it is continued and whatever else the
 // result holds.
-TEST(Refinement, IsAFunctionOfWhatIsDone) {
+TEST(Refinement, DependsOnTheFinishedRunsOnly) {
   SweepResult result = empty_grid({kSide, kSide}, 6);
   const RefinementRule r = rule({16, 16}, 3, 150);
   for (const std::size_t cell : {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1})

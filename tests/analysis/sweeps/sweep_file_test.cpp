@@ -158,7 +158,7 @@ TEST(SweepFile, TheDigestIsOfEveryValue) {
   EXPECT_EQ(write_sweep(folder / "y.h5", awkward(), {{"command", "another"}}), sum);
 }
 
-TEST(SweepInProgress, IsReadAsFarAsItIs) {
+TEST(SweepInProgress, ItsFinishedRunsAreRead) {
   const TestFolder folder("sweep_file_test");
   SweepResult result = awkward();
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
@@ -222,7 +222,7 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
 }
 
 // A run that no round requested stays not sampled, whatever its bytes are.
-TEST(SweepInProgress, DamageAsksForNoRuns) {
+TEST(SweepInProgress, DamageRequestsNoRuns) {
   const TestFolder folder("sweep_file_test");
   SweepResult result = awkward();
   result.state[4] = RunState::not_sampled, result.round[4] = -1;
@@ -340,7 +340,7 @@ TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
 }
 
 // 2^64 runs are 0 in 64-bit arithmetic.
-TEST(SweepFile, AxesNamedMoreOftenThanTheyAreThereAreRefused) {
+TEST(SweepFile, AxesThatAreNamedRepeatedlyAreRefused) {
   const TestFolder folder("sweep_file_test");
   const auto why = [&](int times, const std::vector<double>& values) {
     std::string axes = "a";

@@ -120,7 +120,7 @@ TEST(BallClosing, NeverBelowTheProfileAndNoHigherThanItsTop) {
 }
 
 // A second closing changes nothing that the ball can feel: exact for samples, up to rounding.
-TEST(BallClosing, Idempotent) {
+TEST(BallClosing, IsIdempotent) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const std::vector<double> once = closed(rough_profile(seed)), twice = closed(once);
     for (std::size_t i = 0; i < once.size(); ++i) ASSERT_NEAR(twice[i], once[i], kRounding) << i;
@@ -135,7 +135,7 @@ TEST(BallClosing, HigherProfileIsNeverFeltLower) {
   for (std::size_t i = 0; i < high.size(); ++i) ASSERT_GE(felt_high[i], felt_low[i]);
 }
 
-TEST(BallClosing, MirroredAndShiftedWithTheProfile) {
+TEST(BallClosing, IsMirroredAndShiftedWithTheProfile) {
   const std::vector<double> heights = rough_profile(6);
   std::vector<double> mirrored(heights.rbegin(), heights.rend()), shifted(heights.begin() + 5, heights.end());
   const std::vector<double> got = closed(heights), got_mirrored = closed(mirrored),

@@ -22,7 +22,7 @@ std::vector<LiftUpdate> lift(const std::vector<std::string>& overrides) {
 // Everything is known without noise: v_j from the definition of the lift, v_hat_j = v_{j-1}, n_hat = n, and
 // the proxy rests on the four points around it, whose square of 1.5 mm has the half diagonal 0.75 sqrt(2) mm.
 // A tick ends when a step changes no bit, so all of it holds within rounding.
-TEST(LiftUpdates, QuantitiesOfALiftWithoutNoise) {
+TEST(LiftUpdates, AreExactWithoutNoise) {
   const auto updates = lift({"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=3"});
   ASSERT_EQ(updates.size(), 25u);
   for (const LiftUpdate& update : updates) {
@@ -111,7 +111,7 @@ TEST(NoiseEffect, HasNoScatterOfASingleUpdate) {
 }
 
 // The figures on lifts state the experiment's numbers; they must be those of the experiment.
-TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
+TEST(LiftUpdates, FiguresStateTheNumbersOfTheirExperiment) {
   const std::string json = Experiment::load("fig4.12").to_json();
   const auto holds = [&](const std::string& part) { return json.find(part) != std::string::npos; };
   EXPECT_TRUE(holds("\"r1_m\":0.00499,") && holds("\"r2_m\":0.00501,")) << json;

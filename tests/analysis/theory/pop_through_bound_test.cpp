@@ -26,7 +26,7 @@ TEST(Bound, SolvesTheInequality) {
   EXPECT_EQ(bound_acceleration(kLift, -1, 0), 0);
 }
 
-TEST(Bound, PrintedFitsAtOneHundredthOfAMetre) {
+TEST(Bound, PrintedFitsHaveKnownValuesAtOneCentimetre) {
   EXPECT_NEAR(printed_thickness().at(0.01), 0.0101, 5e-5);
   EXPECT_NEAR(printed_normal_error().at(0.01), 0.26, 1e-9);
   EXPECT_NEAR(printed_normal_error().digits_band(0.01), 0.205, 1e-9);

@@ -33,7 +33,7 @@ TEST(Fingerprint, CloudHashDependsOnEveryBitButNotOnTheOrder) {
 }
 
 // The chain that the header describes, computed by hand.
-TEST(Fingerprint, RunningHashIsWhatTheHeaderSays) {
+TEST(Fingerprint, EqualsTheChainComputedByHand) {
   const std::vector<Column> columns = {{"a", "1", "", std::vector<double>{0.5, 2}, 1, {}},
                                        {"b", "1", "", std::vector<std::int32_t>{-1, 7, 8, 9}, 2, {}}};
   const std::uint64_t row0 = mixed(mixed(mixed(0, 0x3fe0000000000000u), ~std::uint64_t{0}), 7);

@@ -72,7 +72,7 @@ TEST(TraceColumns, AreAsWideAsTheirValues) {
   EXPECT_EQ(find(columns, "tool_orientation").width, 4);
 }
 
-TEST(TraceColumns, ARunHasThoseOfItsParts) {
+TEST(TraceColumns, ARunHasTheColumnsOfItsParts) {
   const std::size_t always = names(one_tick(false, false, false).columns()).size();
   EXPECT_EQ(always, 19u);
   EXPECT_EQ(names(one_tick(true, false, false).columns()).size(), always + 9);
@@ -80,7 +80,7 @@ TEST(TraceColumns, ARunHasThoseOfItsParts) {
   EXPECT_EQ(names(one_tick(false, false, true).columns()).size(), always + 5);
 }
 
-TEST(TraceColumns, HoldWhatTheTickWas) {
+TEST(TraceColumns, HoldTheValuesOfTheTick) {
   const Trace trace = one_tick(true, true, true);
   EXPECT_EQ(values<double>(trace, "time"), std::vector<double>{0.25});
   EXPECT_EQ(values<double>(trace, "proxy_position"), (std::vector<double>{1, 2, 3}));
@@ -105,7 +105,7 @@ std::optional<Trace> again(const std::vector<Column>& columns) {
 }
 
 // The last column is the hash of all others, so equal hashes show that all values were restored.
-TEST(TraceColumns, MakeTheTraceAgain) {
+TEST(TraceColumns, RestoreTheTrace) {
   for (const bool tool : {false, true})
     for (const bool guidance : {false, true})
       for (const bool hand : {false, true}) {
@@ -117,7 +117,7 @@ TEST(TraceColumns, MakeTheTraceAgain) {
       }
 }
 
-TEST(TraceColumns, MakeNoTraceWhereOneIsMissingOrAnother) {
+TEST(TraceColumns, RestoreNoTraceIfOneIsMissingOrWrong) {
   const std::vector<Column> all = one_tick(true, true, true).columns();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     std::vector<Column> columns = all;

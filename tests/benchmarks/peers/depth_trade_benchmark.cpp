@@ -1,6 +1,6 @@
 // The error of normals against the time that they take: this project's settings, PCL, OpenCV, 3F2N and D2NT
-// on one scene with noise of 0.5, 1 and 2 mm, in planes, at creases and at limbs apart. Every method has its
-// answer checked on a plane without noise before it is timed: within 0.5 degrees.
+// on one scene with noise of 0.5, 1 and 2 mm. Planes, creases and limbs are counted separately. The answer of
+// every method is checked on a plane without noise before it is timed: it must be within 0.5 degrees.
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
@@ -45,8 +45,8 @@ const std::vector<Setting> kSettings = {
     {"ours_9_9_step_2_sharp", {true, 9, 0.025, 9, 0.02, 2, kInverse, true}},
     {"ours_fast", kFastDepthPipeline}};
 
-// The pixels of each kind, and all of them, that have a normal: root of the mean square of the angle to the
-// truth, and their fraction of all.
+// The error of the pixels of each kind, and of all pixels, that have a normal: the root of the mean square of
+// the angle to the truth, and the fraction of these pixels.
 struct Errors {
   std::array<double, 4> squares{}, count{}, all{};
 

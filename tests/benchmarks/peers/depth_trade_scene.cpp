@@ -15,7 +15,8 @@ Box box(const Vec3& centre_m, const Vec3& axis, double angle_rad, const Vec3& ha
           half_m};
 }
 
-// z along the ray (z = 1 at its head) where it enters and leaves the box, with the faces' normals.
+// The values of z along the ray (z = 1 at its head) at which it enters and leaves the box, with the faces'
+// normals.
 struct Crossing {
   double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
   Vec3 enter_normal = Vec3::UnitZ(), leave_normal = Vec3::UnitZ();
@@ -40,7 +41,7 @@ struct Seen {
   Vec3 normal;
 };
 
-// The nearest box, else the room's wall: the room is a box seen from inside.
+// Returns the nearest box, or the room's wall if the ray meets no box. The room is a box seen from inside.
 Seen nearest(const Box& room, const std::vector<Box>& boxes, const Vec3& ray_C) {
   const Crossing wall = crossing(room, ray_C);
   Seen seen{wall.leave, wall.leave_normal};
@@ -51,8 +52,8 @@ Seen nearest(const Box& room, const std::vector<Box>& boxes, const Vec3& ray_C) 
   return seen;
 }
 
-// Two neighbouring pixels see the same plane, two planes that meet, or a surface and what it hides: the plane
-// of either then misses the other's point by more than 1 cm.
+// Two neighbouring pixels see the same plane, two planes that meet, or a surface and another that it hides.
+// If it hides the other, the plane of either misses the other's point by more than 1 cm.
 PixelKind between(const TradeScene& scene, std::size_t i, std::size_t j) {
   const int width = scene.seen.camera.width;
   const auto point = [&](std::size_t k) {

@@ -1,5 +1,5 @@
-// A room with boxes in it, whose normals are known exactly, and of what kind each pixel is: for the error of
-// normals in planes, at creases and at limbs apart.
+// A room with boxes, whose normals are known exactly, and the kind of each pixel. The error of normals is
+// found separately in planes, at creases and at limbs.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace remote_touch::benchmarks {
 
-// A limb is where one surface hides another, a crease where two planes meet.
+// A limb is the edge of a surface that hides another. A crease is the line at which two planes meet.
 enum class PixelKind : std::uint8_t { plane, crease, limb, rim };
 inline constexpr int kNearPixels = 6;  // distance of the last pixel that still counts as crease or limb
 inline constexpr int kRimPixels = 16;  // width of the border of the image, whose pixels are not judged

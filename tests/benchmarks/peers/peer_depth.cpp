@@ -35,7 +35,7 @@ std::vector<float> numbers(const Normals& normals) {
 
 using Integral = pcl::IntegralImageNormalEstimation<pcl::PointXYZ, pcl::Normal>;
 
-// Smoothing over 10 pixels and 0.02 as in PCL's own example.
+// The smoothing over 10 pixels and 0.02 is that of PCL's own example.
 Peer integral_image(const std::string& name, Integral::NormalEstimationMethod method,
                     const Points::Ptr& points) {
   const auto normals = std::make_shared<Normals>();
@@ -51,7 +51,7 @@ Peer integral_image(const std::string& name, Integral::NormalEstimationMethod me
           [=] { return numbers(*normals); }};
 }
 
-// A radius of 8.5 mm: 81 points or so, as many as in a window of 9 x 9 pixels at 0.8 m.
+// The radius of 8.5 mm holds about 81 points, as many as a window of 9 x 9 pixels at 0.8 m.
 Peer organised_search(const Points::Ptr& points) {
   const auto normals = std::make_shared<Normals>();
   return {
@@ -74,7 +74,7 @@ std::vector<float> numbers(const cv::Mat& image) {
   return {image.ptr<float>(), image.ptr<float>() + image.total() * 3};
 }
 
-// Its tables for the camera are made before.
+// The estimation makes its tables for the camera before it is timed.
 Peer fals(int window, const OrganisedPoints& from) {
   const cv::Mat camera = (cv::Mat_<float>(3, 3) << from.focal, 0, from.cx, 0, from.focal, from.cy, 0, 0, 1);
   const auto estimation = std::make_shared<cv::rgbd::RgbdNormals>(
@@ -96,7 +96,7 @@ std::vector<Peer> normals_of_others(const OrganisedPoints& from) {
           fals(5, from), fals(7, from)};
 }
 
-// sigma_f = 0.025 m; of the pixels' own distance the dissertation's filter knows nothing.
+// The filters use sigma_f = 0.025 m. The dissertation's filter does not use the distance between pixels.
 std::vector<Peer> filters_of_others(const OrganisedPoints& from) {
   cv::setNumThreads(1);
   const Points::Ptr points = pcl_points(from);

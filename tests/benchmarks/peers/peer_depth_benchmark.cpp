@@ -1,6 +1,7 @@
-// Filters and normals next to those of PCL and OpenCV: one scene with known normals and 1.5 mm of noise, and
-// beside the time of each the rms angle to the truth. raw: every one is given the points as measured (ours
-// without its filter); filtered: all are given our filtered points; ours: both of ours.
+// Filters and normals compared with those of PCL and OpenCV: one scene with known normals and 1.5 mm of
+// noise. The rms angle to the truth is reported beside each time. raw: every method receives the points as
+// measured (ours without its filter); filtered: all receive our filtered points; both: our filter and our
+// normals.
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
@@ -20,9 +21,10 @@ namespace remote_touch::benchmarks {
 namespace {
 
 const RigidTransform kIdentity = RigidTransform::Identity();
-constexpr int kRim = 12;  // pixels at the image's border that are not judged
+constexpr int kRim = 12;  // width of the image's border, whose pixels are not judged
 
-// Root of the mean square of error(i) over the pixels away from the rim where it is a number; how many.
+// Reports the root of the mean square of error(i) over the pixels inside the rim that have a number, and
+// their fraction.
 template <class Error>
 void report(benchmark::State& state, const CameraIntrinsics& camera, const std::string& unit,
             const Error& error) {

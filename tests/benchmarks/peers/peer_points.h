@@ -8,7 +8,7 @@
 
 namespace remote_touch::benchmarks {
 
-// Angle between a normal and the true one; the sign of the normal does not matter.
+// Returns the angle between a normal and the true one. The sign of the normal does not matter.
 inline double angle_deg(const Vec3& n, const Vec3& truth) {
   return std::atan2(n.cross(truth).norm(), std::abs(n.dot(truth))) * 180 / 3.14159265358979323846;
 }

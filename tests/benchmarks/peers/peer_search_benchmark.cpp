@@ -1,5 +1,6 @@
-// The 1 cm radius query next to those of PCL and nanoflann: the same clouds, the same moving centres, a list
-// of indices as the answer. Every search is compared with the plain loop over all points before it is timed.
+// The 1 cm radius query compared with those of PCL and nanoflann: the same clouds, the same moving centres, a
+// list of indices as the answer. Every search is compared with the plain loop over all points before it is
+// timed.
 #include <benchmark/benchmark.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_cloud.h>
@@ -21,8 +22,8 @@
 namespace remote_touch {
 namespace {
 
-// PCL keeps points in float, so a point that near to the sphere may be on either side; nanoflann excludes the
-// sphere itself. All other points have to be the same.
+// PCL keeps points in float, so a point this near to the sphere may be on either side. nanoflann excludes the
+// sphere itself. All other points must be the same.
 constexpr double kUndecided_m = 1e-6;
 
 bool mismatch = false;
@@ -55,7 +56,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr pcl_cloud(const PointCloud& cloud) {
   return points;
 }
 
-// Search: OrganizedNeighbor or KdTreeFLANN.
+// Search is OrganizedNeighbor or KdTreeFLANN.
 template <class Search>
 class Pcl {
  public:
@@ -122,8 +123,8 @@ bool same(std::vector<std::uint32_t> found, const std::vector<std::uint32_t>& ex
   });
 }
 
-// make() builds the search and returns a pointer to it. Building is timed too, for every frame of a stream
-// needs it again; it includes the copy of the cloud into the search's own form.
+// make() builds the search and returns a pointer to it. Building is timed too, because every frame of a
+// stream needs it again. It includes the copy of the cloud into the search's own form.
 template <class Make>
 void add(const std::string& peer, const naive::Queries& queries, Make make) {
   const auto search = make();

@@ -23,7 +23,8 @@ using Vector = Eigen::Vector3d;
 
 // --- Bullet: a triangle around every point, all of them one mesh ---
 
-// Millimetres: Bullet compares lengths and areas with constants that are meant for bodies of about 1.
+// The unit is the millimetre, because Bullet compares lengths and areas with constants that are meant for
+// bodies of about 1.
 constexpr double kBulletUnits_per_m = 1000;
 
 btScalar number(double x) {
@@ -34,7 +35,8 @@ btVector3 place(const Place& p) {
   return kBulletUnits_per_m * btVector3(number(p[0]), number(p[1]), number(p[2]));
 }
 
-// Its corners run counter-clockwise seen from where the normal points: the other side is inside for GImpact.
+// The corners run counter-clockwise seen from the side to which the normal points. The other side is inside
+// for GImpact.
 std::vector<Place> triangle_around(const Place& point, const Place& normal, double side_m) {
   const Vector p(point.data()), n(normal.data()), a = n.unitOrthogonal(), b = n.cross(a);
   std::vector<Place> corners;
@@ -52,8 +54,8 @@ struct GImpactBody {
   btCollisionObject object;
 
   void add(const Place& a, const Place& b, const Place& c) { mesh.addTriangle(place(a), place(b), place(c)); }
-  // The margin is 0. With a margin, the tree would also find triangles that are merely near, and take much
-  // longer.
+  // The margin is 0. A larger margin would also make the tree find triangles that are only near, and take
+  // much longer.
   void make_tree() {
     shape = std::make_unique<btGImpactMeshShape>(&mesh);
     shape->setMargin(0);
@@ -116,7 +118,8 @@ double max_diagonal(const MeshAndPoints& from) {
   return max_length;
 }
 
-// It finds pairs of triangles whose boxes meet and that reach behind each other: more than those that cross.
+// GImpact finds pairs of triangles whose boxes meet and that reach behind each other. These are more than the
+// pairs that cross.
 ToolPeer gimpact(const std::string& name, const MeshAndPoints& from, double side_m) {
   const double radius = side_m / std::sqrt(3.0);
   ToolPeer peer{name, {}, radius, std::sqrt(3.0) * radius + max_diagonal(from), true, {}, {}};
@@ -199,7 +202,7 @@ class Octree {
   std::unordered_map<std::intptr_t, std::vector<std::size_t>> points_in_;  // keyed by FCL's cell index
 };
 
-// Pairs of cell and triangle alone, without the places of contact: ours are alone too.
+// The peer finds pairs of cell and triangle without the points of contact, as our list does.
 ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t max_contacts) {
   const auto collision = std::make_shared<Octree>(from);
   const double diagonal = std::sqrt(3.0) * kCell_m;
@@ -215,7 +218,7 @@ ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t 
 
 std::vector<ToolPeer> tool_peers(const MeshAndPoints& from) {
   constexpr std::size_t kMaxContacts = 1'000'000;
-  // Triangles as wide as a voxel of ours, and as wide as the points are apart.
+  // The triangles are as wide as a voxel of ours, and as wide as the points are apart.
   return {gimpact("bullet_gimpact_0.5mm", from, 5e-4), gimpact("bullet_gimpact_2mm", from, 2e-3),
           octree("fcl_octree_all", from, kMaxContacts), octree("fcl_octree_first", from, 1)};
 }

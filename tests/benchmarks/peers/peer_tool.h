@@ -1,5 +1,5 @@
-// Collision detection of others between the mesh of a tool and points, behind plain numbers: their headers
-// and ours want different settings of Eigen.
+// Collision detection of other libraries between the mesh of a tool and points, behind plain numbers, because
+// their headers and ours need different settings of Eigen.
 #pragma once
 
 #include <array>
@@ -22,19 +22,20 @@ struct Pose {
   std::array<double, 9> R_WT;  // row by row
 };
 
-// Others have no points, only bodies, so each point gets a small one around it.
+// Other libraries have no points, only bodies, so each point gets a small body around it.
 struct ToolPeer {
   std::string name;
   std::vector<std::vector<Place>> bodies_W;  // corners of the convex body of every point
   // Largest distance from the surface, outside and inside, of a point whose body is found.
   double max_outside_m, max_inside_m;
   bool all;  // false: the search ends at the first contact
-  // The work that is timed; returns the number of contacts. A body has one with each triangle that it meets.
+  // Does the work that is timed, and returns the number of contacts. A body has one with each triangle that
+  // it meets.
   std::function<std::size_t(const Pose&)> touch;
   std::function<std::vector<std::size_t>()> touched;  // points of the last touch(), some more than once
 };
 
-// One thread each. Trees are made here, not in touch().
+// Each peer uses one thread. Trees are made here, not in touch().
 std::vector<ToolPeer> tool_peers(const MeshAndPoints& from);
 
 }  // namespace remote_touch::peers

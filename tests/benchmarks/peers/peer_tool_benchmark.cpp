@@ -1,13 +1,14 @@
-// The collision list next to the collision detection of Bullet, FCL and a voxmap with a pointshell: 2500
-// points, and the tool touching them and pressed in. Others find what the surface passes through, ours what
-// is in shell and interior voxels, so there is no one right list; each is judged by the exact distance of the
-// points to the mesh, in poses that are raised, lowered and shifted:
+// The collision list compared with the collision detection of Bullet, FCL and a voxmap with a pointshell.
+// There are 2500 points, and the tool touches them and is pressed in. Other libraries find the points that
+// the surface passes through, and ours finds those in shell and interior voxels, so there is no one right
+// list. Each is judged by the exact distance of the points to the mesh, in poses that are raised, lowered and
+// shifted:
 // - ours has every point that is more than half a voxel's diagonal inside and none that is as far outside,
 //   and is the list of the plain loop over all points;
 // - others find every body with corners on both sides of the surface, and none whose point is farther from
-//   the surface than ToolPeer says;
+//   the surface than ToolPeer states;
 // - the first contact alone is one of those, and there is one as soon as any body has corners on both sides;
-// - away from the points all find nothing.
+// - all find nothing away from the points.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -32,7 +33,7 @@ namespace {
 constexpr double kUndecided_m = 1e-5;  // others compute in float, or iterate up to 1e-6
 constexpr double kPressed_m = 2e-3;
 constexpr double kSpacing_m = 2e-3, kDiskOfSpacing = 0.75;
-constexpr int kMinCrossing = 100;  // bodies in all poses, or the comparison says too little
+constexpr int kMinCrossing = 100;  // bodies in all poses; the comparison shows too little with fewer
 
 peers::Place place(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -58,7 +59,7 @@ ToolPose lowered(ToolPose pose, double by_m) {
   return pose;
 }
 
-// --- what is right ---
+// --- references ---
 
 // The reference: distances to the mesh itself, without voxels and without the distance field.
 class Surface {
@@ -80,7 +81,7 @@ class Surface {
   }
   const ToolScene& scene() const { return scene_; }
 
-  // Poses from just above the points to 4 mm into them, each over other points.
+  // Poses from slightly above the points to 4 mm into them, each over other points.
   std::vector<ToolPose> poses() const {
     std::vector<ToolPose> all;
     for (int i = 0; i < 12; ++i) {
@@ -97,11 +98,11 @@ class Surface {
 
 bool ours_right(const TouchFinder& finder, const Surface& surface) {
   const ToolScene& scene = surface.scene();
-  // A voxel is one side or the other by the field in its centre, which is exact to a tenth of a voxel.
+  // A voxel is on one side or the other by the field in its centre, which is exact to a tenth of a voxel.
   const double undecided = (std::sqrt(3.0) / 2 + 0.1) * scene.tool->grid.size_m;
   for (const ToolPose& pose : surface.poses()) {
     if (!list_right(finder, scene, pose)) return false;
-    // The same points by their numbers in the cloud, which the finder does not keep.
+    // These are the same points by their numbers in the cloud, which the finder does not keep.
     const std::vector<std::uint32_t> list = naive_list(*scene.tool, scene.cloud, pose);
     const std::set<std::uint32_t> found(list.begin(), list.end());
     for (std::uint32_t i = 0; i < scene.cloud.size(); ++i) {
@@ -166,9 +167,9 @@ void add_peer(const peers::ToolPeer& peer, const Surface& surface, const std::st
       });
 }
 
-// Its points are of the tool, so the list cannot be the same: it is compared with a plain search in the list
-// of its own surface voxels, and its shell with the mesh. A point on the border of two voxels may count for
-// either.
+// The voxmap's points are those of the tool, so the list cannot be the same. It is compared with a plain
+// search in the list of its own surface voxels, and its shell with the mesh. A point on the border of two
+// voxels may count for either.
 bool voxmap_right(VoxmapPointshell& voxmap, const Surface& surface) {
   std::size_t touched = 0;
   for (const ToolPose& pose : surface.poses()) {

@@ -39,7 +39,7 @@ namespace {
 struct Rows {
   const float* z;
   std::ptrdiff_t width;
-  float focal, ray_y, step;  // step: 1 / focal
+  float focal, ray_y, step;  // step is 1 / focal
   float cx;
   float at(int u, int i, int j) const { return z[u + i + j * width]; }
 };
@@ -51,7 +51,7 @@ void order(float& a, float& b) {
   b = std::max(a, b), a = low;
 }
 
-// The mean of the two in the middle, by Batcher's network of 19 exchanges.
+// Returns the mean of the two values in the middle, by Batcher's network of 19 exchanges.
 float median(float x[8]) {
   constexpr int kExchanges[19][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6},
                                      {5, 7}, {1, 2}, {5, 6}, {0, 4}, {3, 7}, {1, 5}, {2, 6},
@@ -130,7 +130,7 @@ void bend_row(const std::vector<float>& z_m, std::ptrdiff_t width, std::ptrdiff_
     bend_m[u] = std::abs(z[u - 1] + z[u + 1] + z[u - width] + z[u + width] - 4 * z[u]);
 }
 
-// Writes for each pixel the offset, in the image's index, to the least bent among the pixel and its 4
+// Writes for each pixel the offset, in the image's index, to the least bent pixel among the pixel and its 4
 // neighbours.
 void best_of_row(const float* above, const float* here, const float* below, int width, int* away) {
 #pragma omp simd

@@ -57,8 +57,8 @@ void VoxmapPointshell::make_map(const PointCloud& cloud, double disk_m) {
   for (const Voxel& v : surface_) at(v[0], v[1], v[2]) = kSurface;
 }
 
-// One point for each voxel of the tool's grid, of this size, that its surface passes: the field's nearest
-// place of the surface to the centre.
+// Makes one point for each voxel, of this size, of the tool's grid that its surface passes: the point of the
+// surface that is nearest to the centre by the field.
 void VoxmapPointshell::make_shell(const VoxelTool& tool) {
   const Vec3 reach = Vec3::Constant(tool.reach_m);
   const int cells = static_cast<int>(2 * tool.reach_m / voxel_m_) + 1;
@@ -94,7 +94,7 @@ void VoxmapPointshell::add_force(std::size_t point, const Eigen::Matrix3d& R_WT,
   all.torque_W += (at_W - origin_W).cross(depth_m * n_W);
 }
 
-// The lookups of all points in one loop, then the few that touch.
+// One loop finds the voxels of all points. A second one handles the few that touch.
 VoxmapPointshell::Touch VoxmapPointshell::touch(const ToolPose& pose) {
   const Eigen::Matrix3d R = pose.q_WT.toRotationMatrix();
   const Vec3 from = pose.p_W - origin_W_;

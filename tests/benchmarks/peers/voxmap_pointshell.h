@@ -1,6 +1,6 @@
-// Collision detection of McNeely, Puterbaugh and Troy (1999), written from the paper: the environment, here a
-// cloud, as a map of voxels, and the tool as a shell of points with inward normals, one for each voxel of its
-// surface. For the comparison only.
+// The collision detection of McNeely, Puterbaugh and Troy (1999), written from the paper. The environment,
+// here a cloud, is a map of voxels, and the tool is a shell of points with inward normals, one for each voxel
+// of its surface. It is for the comparison only.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ namespace remote_touch::benchmarks {
 
 class VoxmapPointshell {
  public:
-  // Surface voxels are those that a disk around a point meets, so that the map has no holes: it is sampled at
-  // half voxels, up to disk_m around the point in the plane of its normal. Around them lies one layer of
-  // proximity, as in the paper.
+  // Surface voxels are those that a disk around a point meets, so that the map has no holes. The disk is
+  // sampled at half voxels, up to disk_m around the point in the plane of its normal. One layer of proximity
+  // is around them, as in the paper.
   VoxmapPointshell(const VoxelTool& tool, const PointCloud& cloud, double voxel_m, double disk_m);
 
-  // The number of shell points in surface voxels, and the sum of the tangent-plane forces for a stiffness of
-  // 1 N/m and their torque about the tool's origin: a point pushes back along its inward normal by how far
-  // the centre of its voxel lies behind it.
+  // The number of shell points in surface voxels, the sum of the tangent-plane forces for a stiffness of 1
+  // N/m, and their torque about the tool's origin. A point pushes back along its inward normal by the depth
+  // of its voxel's centre behind it.
   struct Touch {
     std::size_t points = 0;
     Vec3 force_W = Vec3::Zero(), torque_W = Vec3::Zero();
   };
   Touch touch(const ToolPose& pose);
-  // The same plainly, from the list of surface voxels.
+  // Finds the same plainly, from the list of surface voxels.
   Touch plain_touch(const ToolPose& pose) const;
 
   std::size_t shell_size() const { return count_; }
-  // Largest distance of a shell point to the tool's surface, by the tool's distance field.
+  // Returns the largest distance of a shell point to the tool's surface, by the tool's distance field.
   double shell_error_m() const { return shell_error_m_; }
 
  private:

@@ -29,7 +29,7 @@ TEST(Colour, TheCornersOfTheCubeAreKnown) {
   expect_colour(0xFFFFFF, 0, 0, 1);
 }
 
-// PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. As floats, those from 0xFF800001 on are NaN.
+// PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. The values from 0xFF800001 on are NaN as floats.
 TEST(Colour, AFloatHoldsAColourOrNone) {
   for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00001u, 0xFFFFFFu})
     for (const std::uint32_t alpha : {0x00u, 0xFFu}) EXPECT_EQ(colour_of_float(alpha << 24 | rgb), rgb);
@@ -83,8 +83,8 @@ TEST(Colour, ComesBackFromHueSaturationAndLightness) {
       }
 }
 
-// A colour's angle around the grey axis is another measure of hue: the same at every sixth, in between by at
-// most 1.2 degrees another.
+// A colour's angle around the grey axis is another measure of hue. Both are equal at every sixth of the
+// circle and differ by at most 1.2 degrees in between.
 TEST(Colour, HueIsNearlyTheAngleAroundTheGreyAxis) {
   for (int red = 0; red < 256; red += 15)
     for (int green = 0; green < 256; green += 15)

@@ -68,7 +68,7 @@ void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& 
     if (cloud.stiffness_N_per_m.empty()) continue;
     weights += psi, stiffness += psi * cloud.stiffness_N_per_m[i];
   }
-  // Beside the grid, psi and the unit vector of a point carry a few roundings of their own.
+  // psi and the unit vector of a point carry a few roundings of their own, in addition to those of the grid.
   const double rounding = static_cast<double>(cloud.size()) * (kOnGrid + 2e-15);
   EXPECT_NEAR(got.nearest, static_cast<double>(nearest), 1e-17);
   EXPECT_EQ(got.touching_count, touching);
@@ -90,17 +90,17 @@ TEST(ContactQuery, AgreesWithTheEquations) {
     }
 }
 
-TEST(ContactQuery, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
+TEST(ContactQuery, HasTheSameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
   const PointCloud cloud = random_points(601, 0.012, 3, true, true), at = scenes::random_cloud(20, 0.01, 4);
   const GatheredPoints plain = columns(cloud);
-  std::vector<std::size_t> order(640);  // the last ones stand for far points
+  std::vector<std::size_t> order(640);  // the last ones mean points far away
   std::iota(order.begin(), order.end(), 0u);
   for (unsigned seed = 0; seed < 5; ++seed) {
     std::shuffle(order.begin(), order.end(), std::mt19937(seed));
     PointCloud mixed;
     for (const std::size_t i : order) {
       const bool far = i >= cloud.size();
-      if (far && seed == 0) continue;  // once without
+      if (far && seed == 0) continue;  // the first order has none
       mixed.append(far ? Vec3(0.03 * static_cast<double>(i), -0.5, 1) : cloud.point(i));
       mixed.fixture_radius_m.push_back(far ? 0.001 : cloud.fixture_radius_m[i]);
       mixed.stiffness_N_per_m.push_back(far ? 600 : cloud.stiffness_N_per_m[i]);
@@ -118,8 +118,8 @@ TEST(ContactQuery, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
   }
 }
 
-// A point without a stiffness of its own is one with the renderer's, bit for bit.
-TEST(ContactQuery, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
+// A point without a stiffness of its own counts with the renderer's, bit for bit.
+TEST(ContactQuery, ANanStiffnessMeansTheRenderersOwn) {
   const PointCloud at = scenes::random_cloud(20, 0.01, 4);
   for (const bool with_radius : {false, true}) {
     PointCloud some = random_points(601, 0.012, 3, with_radius, true), filled = some;
@@ -174,7 +174,7 @@ TEST(ContactQuery, TouchingIncludesR2) {
     EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching_count, 4);
 }
 
-// Roots of |x - p - d u| = r by the quadratic formula, which long double can afford.
+// Roots of |x - p - d u| = r by the quadratic formula, which is accurate enough in long double.
 struct Roots {
   bool real;
   Real along, near, far;
@@ -189,7 +189,7 @@ Roots roots(const Vec3& x, const Vec3& p, const Vec3& u, Real r) {
   return {d >= 0, b, (b - root) / a, (b + root) / a};
 }
 
-TEST(FirstHit, ClosedFormsForOnePoint) {
+TEST(FirstHit, AgreesWithTheClosedFormForOnePoint) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto hit = [&](const Vec3& x, double r_f = 0) {
       return kernels->proxy.first_hit(columns(one_point(x, r_f)).view(), kOrigin.data(),
@@ -205,7 +205,7 @@ TEST(FirstHit, ClosedFormsForOnePoint) {
   }
 }
 
-TEST(WayOut, ClosedFormsForOnePoint) {
+TEST(WayOut, AgreesWithTheClosedFormForOnePoint) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto exit_distance = [&](const Vec3& x, double r_f = 0) {
       return kernels->proxy.exit_distance(columns(one_point(x, r_f)).view(), kOrigin.data(),
@@ -220,7 +220,7 @@ TEST(WayOut, ClosedFormsForOnePoint) {
   }
 }
 
-TEST(Roots, SmallestAheadAndLargestWithinR1OfManyPoints) {
+TEST(Roots, AreTheSmallestAheadAndTheLargestWithinR1) {
   const PointCloud at = scenes::random_cloud(200, 0.06, 6), displacement = scenes::random_cloud(200, 1, 7);
   int hits = 0, entrenched = 0;
   for (const bool with_radius : {false, true}) {
@@ -272,8 +272,8 @@ TEST(FirstHit, LandsOnTheContactRadiusFromAMetreAway) {
     }
 }
 
-// Every length around the lanes and the chunks, appended behind points already there.
-TEST(AppendWithin, SamePointsAsAPlainLoop) {
+// Lengths around multiples of the lanes and the chunks. The points are appended behind points already there.
+TEST(AppendWithin, FindsThePointsOfAPlainLoop) {
   PointCloud cloud = random_points(200, 0.01, 13, true, true);
   for (std::size_t i = 4; i < cloud.size(); i += 9)
     (i % 3 == 0 ? cloud.x : i % 3 == 1 ? cloud.y : cloud.z)[i] = std::nan("");

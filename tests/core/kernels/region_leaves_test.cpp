@@ -44,7 +44,7 @@ double gap_m(const double leaf[4], const Sphere& region) {
   return (Vec3(leaf[0], leaf[1], leaf[2]) - region.centre).norm() - leaf[3] - region.radius_m;
 }
 
-TEST(NearRegions, SameAsAPlainLoopOnEveryLevel) {
+TEST(NearRegions, AgreeWithAPlainLoopOnEveryLevel) {
   const int regions = 203;
   for (const Kernels* kernels : supported_kernels())
     for (const double margin : {-0.01, 0.0, 0.004, 0.1})
@@ -73,7 +73,8 @@ TEST(NearRegions, SameAsAPlainLoopOnEveryLevel) {
       }
 }
 
-// Around the patch, at the margin that leaves the nearest region just so, no box hides it.
+// A margin equal to the gap of the nearest region must still find that region, from any position around the
+// patch.
 TEST(NearRegions, TheNearestIsFoundAtItsOwnGap) {
   Patch patch(203);
   const PointCloud places = scenes::random_cloud(2000, 0.2, 23);
@@ -101,7 +102,7 @@ TEST(NearRegions, NoneAreNearNanOrANegativeRadius) {
   }
 }
 
-// A choice among the regions near a leaf, by plain loops over all of them, none of which moves.
+// The choice among the regions near a leaf by plain loops over all of them, without moving any of them.
 struct PlainChoice {
   struct Region {
     double gap;
@@ -109,7 +110,7 @@ struct PlainChoice {
     bool gone = false;
   };
   std::vector<Region> regions;
-  std::size_t count = 0;  // number of regions that are not gone
+  std::size_t count = 0;  // number of regions that were not removed
 
   PlainChoice(const Patch& patch, std::size_t found) : count(found) {
     for (std::size_t i = 0; i < found; ++i)
@@ -133,9 +134,10 @@ struct PlainChoice {
   }
 };
 
-// Regions are kept from the deepest to the shallowest, and each kept region removes those it stands for. All
-// levels give the same bits, from columns that close up, for all lengths around the number of lanes.
-TEST(NearRegions, KeptRegionsStandForTheRemovedOnes) {
+// Regions are kept from the deepest to the shallowest, and each kept region removes those that it represents.
+// All levels give the same bits while the columns are compacted, for lengths around multiples of the number
+// of lanes.
+TEST(NearRegions, KeptRegionsRepresentTheRemovedOnes) {
   const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
   std::size_t closed_up = 0;
   for (const Kernels* kernels : supported_kernels())
@@ -167,7 +169,8 @@ TEST(NearRegions, KeptRegionsStandForTheRemovedOnes) {
   EXPECT_GT(closed_up, 100u);
 }
 
-// Equally deep regions around a leaf in the order in which they were found, and as many as stand for nothing.
+// Equally deep regions around a leaf, none of which represents another, are kept in the order in which they
+// were found.
 TEST(NearRegions, TheFirstOfEquallyDeepOnesIsNext) {
   for (const Kernels* kernels : supported_kernels())
     for (const std::size_t count : {1, 8, 13, 64, 99}) {

@@ -1,4 +1,4 @@
-// The same problem given to the SLSQP of NLopt.
+// Solves the same problem with the SLSQP of NLopt.
 #pragma once
 
 #include <nlopt.h>

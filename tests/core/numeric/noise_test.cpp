@@ -35,7 +35,7 @@ Words philox(Words c, Key key) {
   return c;
 }
 
-// The counter that gives these words: each round undone, the multipliers being odd.
+// Returns the counter that gives these words. Each round can be undone because the multipliers are odd.
 Words philox_inverse(Words w, const Key& key) {
   std::uint32_t inverse[2];
   for (int k = 0; k < 2; ++k) {
@@ -77,7 +77,7 @@ std::vector<std::uint32_t> first_points(std::size_t count) {
 // A normal is at most 6.7 and comes from a few double operations of 1e-15 each at that size.
 constexpr double kRounding = 1e-14;
 
-TEST(Noise, OracleMeetsTheKnownAnswersOfRandom123) {
+TEST(Noise, ReferenceHasTheKnownValuesOfRandom123) {
   EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   EXPECT_EQ(philox({~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}),
             (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
@@ -87,7 +87,7 @@ TEST(Noise, OracleMeetsTheKnownAnswersOfRandom123) {
 
 TEST(Noise, IsPhiloxAndBoxMullerOfTheKey) {
   std::vector<std::uint32_t> index = first_points(2000);
-  for (std::size_t i = 0; i < index.size(); ++i) index[i] *= 2147483u;  // all the range, wrapping round
+  for (std::size_t i = 0; i < index.size(); ++i) index[i] *= 2147483u;  // the whole range, wrapping round
   const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
   for (const NoiseUse use : {NoiseUse::point_position, NoiseUse::depth})
     for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
@@ -102,7 +102,8 @@ TEST(Noise, IsPhiloxAndBoxMullerOfTheKey) {
       }
 }
 
-// Words at the seams of the logarithm and of the quarter turns, met through the inverse generator.
+// Words at the seams of the logarithm and of the quarter turns. The inverse generator gives the counters that
+// produce them.
 TEST(Noise, IsRightAtTheEndsAndSeamsOfItsFunctions) {
   const Key key{1, 2};
   std::vector<std::uint32_t> lengths{0, 1, 2, 0x55555554, 0x55555555, 0x7fffffff, 0x80000000, ~0u - 1, ~0u};
@@ -133,7 +134,7 @@ TEST(Noise, BoundIsTightAndHolds) {
   EXPECT_GT(max[0][0], kMaxNormal - 1e-3);
 }
 
-TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
+TEST(Noise, HasTheSameBitsForAnySubsetInAnyOrderOnEveryLevel) {
   const NoiseStream stream = noise_stream({3, 1, 4}, NoiseUse::point_position, 9);
   const Normals all = draw(stream, first_points(1000));
   std::vector<std::uint32_t> shuffled = first_points(1000);
@@ -201,7 +202,7 @@ TEST(Uniforms, AreTheWordsOfPhilox) {
     }
 }
 
-TEST(Uniforms, LieBetweenNothingAndOneAtTheEndsToo) {
+TEST(Uniforms, LieBetweenZeroAndOneAlsoAtTheEnds) {
   const Key key{7, 8};
   for (const std::uint32_t word : {0u, ~0u}) {
     const Words counter = philox_inverse({word, word, word, word}, key);

@@ -1,5 +1,5 @@
-// Plain ways to solve what QuadraticProgram solves, sharing nothing with it: the references of its tests and
-// benchmarks.
+// Plain solvers for the problems of QuadraticProgram, which share no code with it: the references of its
+// tests and benchmarks.
 #pragma once
 
 #include <Eigen/Dense>
@@ -38,8 +38,8 @@ struct Problem {
   }
 };
 
-// Every set of at most N rows as equations: the solution is the nearest of their solutions that fulfils all
-// rows. Empty where none does. slack: what a row may be violated by.
+// Solves every set of at most N rows as equations. The answer is the nearest of the solutions that fulfil all
+// rows. Returns nullopt if none does. slack: the violation of a row that is still accepted.
 template <int N>
 std::optional<Vector<N>> nearest_of_all_subsets(const Problem<N>& problem, double slack = 1e-10) {
   std::optional<Vector<N>> best;
@@ -57,7 +57,7 @@ std::optional<Vector<N>> nearest_of_all_subsets(const Problem<N>& problem, doubl
     Vector<N> y = problem.target;
     if (k > 0) {
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a * a.transpose());
-      if (qr.rank() < k) return;  // nor do larger sets that hold this one say anything new
+      if (qr.rank() < k) return;  // larger sets that contain this one add nothing either
       y += a.transpose() * qr.solve(missing);
     }
     if (problem.violation(y) <= slack &&
@@ -84,8 +84,8 @@ struct ConePoint {
 
 // Returns the point of a cone nearest to x (Wilhelmsen 1976). It adds the generator that points most towards
 // x, moves to the nearest point of the span of the added ones, and drops those whose weight falls to 0 on the
-// way. may_return: a dropped generator may be added again. Without that, as in published code, the answer can
-// be wrong.
+// way. may_return: a dropped generator may be added again. If it may not, as in published code, the answer
+// can be wrong.
 inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen::VectorXd& x,
                                  bool may_return = true) {
   const Eigen::Index count = generators.cols();
@@ -126,7 +126,6 @@ inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen:
   return cone;
 }
 
-// Least distance programming (Lawson and Hanson 1974): y - target follows from the point of the cone of the
 // Least distance programming (Lawson and Hanson 1974): y - target follows from the point nearest to (0, 1) of
 // the cone of the columns (row, bound - row . target). If that point is (0, 1) itself, no y fulfils all rows,
 // and its weights are Farkas' proof. gap: distance of the point from (0, 1), in 0 .. 1.

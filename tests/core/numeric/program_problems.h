@@ -55,7 +55,7 @@ Vector<N> contact(Random& random, double curved) {
   return row;
 }
 
-// About unit size, with rows of lengths from 1/1000 to 1000.
+// Returns a random problem of about unit size whose rows have lengths from 1/1000 to 1000.
 template <int N>
 Problem<N> problem(Kind kind, int count, Random& random) {
   Problem<N> p;
@@ -107,7 +107,7 @@ Problem<N> problem(Kind kind, int count, Random& random) {
   return p;
 }
 
-// Necessary and sufficient for the nearest point, whoever found it: Karush, Kuhn and Tucker.
+// Checks the conditions of Karush, Kuhn and Tucker, which are necessary and sufficient for the nearest point.
 template <int N>
 void expect_proof(const Problem<N>& p, const ProgramResult<N>& result) {
   EXPECT_LT(p.violation(result.y), 1e-12);

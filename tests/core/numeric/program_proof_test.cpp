@@ -1,4 +1,4 @@
-// Answers of QuadraticProgram to thousands of problems: proved, and held against other ways to find them.
+// Answers of QuadraticProgram to thousands of problems: proved, and compared with other ways to find them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ TEST(QuadraticProgram, ProvesTenThousandAnswersOfSevenVariables) {
   expect_all_right<7>();
 }
 
-// --- against others ---
+// --- comparison with other solvers ---
 
 template <int N>
 void expect_the_best_of_all_subsets() {
@@ -67,7 +67,7 @@ void expect_the_best_of_all_subsets() {
     const auto best = peers::nearest_of_all_subsets(p);
     ASSERT_EQ(result.status == ProgramStatus::optimal, best.has_value()) << i;
     (best ? found : infeasible) += 1;
-    // Rows at small angles move a corner by their rounding over the angle.
+    // The rounding of rows at small angles moves a corner by the rounding divided by the angle.
     if (best) {
       ASSERT_LT((result.y - *best).norm(), kKinds[i % 9] == Kind::wedge ? 1e-8 : 1e-11) << i;
     }
@@ -99,8 +99,8 @@ void expect_no_better_answer_of_nlopt() {
       EXPECT_GT(p.violation(theirs), 1e-9) << i << ": NLopt fulfils what we call infeasible";
       continue;
     }
-    // Whatever accuracy SLSQP reached, a point that fulfils the rows is not nearer than ours, but for what
-    // the multipliers give for its violation.
+    // A point of SLSQP that fulfils the rows is not nearer than ours, whatever its accuracy. A point that
+    // violates them may be nearer by the multipliers times its violation.
     double force = 0;
     for (int j = 0; j < result.active_count; ++j) force += result.multiplier[j];
     const double ours = (result.y - p.target).squaredNorm() / 2,
@@ -125,7 +125,7 @@ TEST(QuadraticProgram, NloptFindsNothingNearerInTwentyThousandProblems) {
 // --- rows that leave and come back ---
 
 // Rows through the origin: y - target is the point of their cone nearest to -target. Short lever arms, three
-// small coordinates, make the cone narrow, so that many rows are taken in too early.
+// small coordinates, make the cone narrow, so that many rows are added too early.
 Problem<6> cone_problem(Random& random) {
   Problem<6> p;
   p.target = vector<6>(random);
@@ -162,7 +162,7 @@ TEST(QuadraticProgram, RowsThatLeftComeBackUnlikeInPublishedWilhelmsen) {
   EXPECT_GT(wrong, 50) << "problems in which rows are violated for good";
 }
 
-// The row that is violated most at the target is needed at the end, and not in between.
+// The row that is violated most at the target is active at the end, but not in between.
 TEST(QuadraticProgram, TheFirstRowLeavesAndComesBack) {
   Random random(4);
   int seen = 0;

@@ -30,7 +30,8 @@ TEST(QuadraticProgram, SmallViolationsCount) {
   EXPECT_EQ(result.y[1], 1);
 }
 
-// Walls that meet at a millionth of a radian: what a step rounds is a million times larger far away.
+// Walls that meet at a millionth of a radian. The corner is far away, where the rounding of a step is a
+// million times larger.
 TEST(QuadraticProgram, SharpWedgesHoldTheirRows) {
   Random random(11);
   int found = 0;
@@ -151,8 +152,8 @@ TEST(QuadraticProgram, RefusesRowsThatAreNotFiniteOrHaveNoRoom) {
   EXPECT_EQ(program.nearest(Vector<6>::Zero()).y, axis(5));
 }
 
-// Usual rows are taken all at once, with the bits of one after the other; where one is not, none is.
-TEST(QuadraticProgram, AllRowsAtOnceAreAsOneAfterTheOther) {
+// add_all() gives the bits of adding the rows one after the other. If one row cannot be used, it adds none.
+TEST(QuadraticProgram, AddingAllRowsAtOnceEqualsAddingEachRow) {
   Random random(12);
   for (const int count : {1, 2, 3, 8, 21, 40}) {
     const Problem<6> p = problem<6>(Kind::fulfillable, count, random);
@@ -225,8 +226,8 @@ TEST(QuadraticProgram, ASolutionAllocatesNothing) {
 
 // --- elastic use: a tool in a wedge that closes ---
 
-// Two walls, y0 >= 1 and -y0 >= 1 say, have no answer. One variable more, z >= 0, lets all of them give way
-// by kappa z; it is drawn to -w, so that it stays 0 as long as the walls push by less than w / kappa.
+// Two walls such as y0 >= 1 and -y0 >= 1 have no answer. One more variable, z >= 0, lets all walls give way
+// by kappa z. Its target is -w, so it stays 0 as long as the walls push by less than w / kappa.
 struct Elastic {
   double kappa = 1, w = 10;
   ProgramResult<7> nearest(const std::vector<std::pair<Vector<6>, double>>& rows, const Vector<6>& target) {
@@ -247,7 +248,7 @@ TEST(QuadraticProgram, OneSlackLetsAWedgeGiveWayAsLittleAsItCan) {
   for (const double shut : {1.0, 0.01, 0.0}) {
     const ProgramResult<7> result = Elastic().nearest({{axis(0), shut}, {axis(0, -1), shut}}, target);
     ASSERT_EQ(result.status, ProgramStatus::optimal);
-    // Half way between the walls, each violated by as much; free along them.
+    // The answer lies half way between the walls and violates each by as much. It is free along them.
     EXPECT_NEAR(result.y[0], 0, 1e-14);
     EXPECT_EQ(result.y[1], -2);
     EXPECT_NEAR(result.y[6], shut, 1e-14);

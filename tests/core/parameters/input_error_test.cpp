@@ -17,7 +17,7 @@ TEST(Printable, IsOneLine) {
   EXPECT_EQ(printable("a\nb\tc\r\nd"), "a b c  d");
 }
 
-TEST(Printable, ShowsWhatNobodyCanRead) {
+TEST(Printable, ShowsUnprintableBytesAsEscapes) {
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
 }
@@ -72,7 +72,7 @@ TEST(Printable, ShortensLinesOfManyWords) {
   EXPECT_EQ(printable(euros).find("\\x"), std::string::npos);  // no character is cut
 }
 
-// A message is C's: a zero would end it.
+// The message is a C string, so a zero byte would end it.
 TEST(InputErrorTest, KeepsItsWholeMessage) {
   EXPECT_STREQ(InputError(std::string("a\0b", 3), "expected c").what(), "a\\x00b: expected c");
   EXPECT_STREQ(InputError("a\xff: expected\nb").what(), "a\\xff: expected b");

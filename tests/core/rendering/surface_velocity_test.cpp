@@ -11,7 +11,7 @@ namespace {
 const Vec3 kUp = Vec3::UnitY();
 constexpr double kInterval = 1.0 / 32;  // exact in binary, so that sums of it are too
 
-TEST(SurfaceVelocity, FirstFrameNeitherMovesTheProxyNorTeachesAnything) {
+TEST(SurfaceVelocity, FirstFrameNeitherMovesTheProxyNorChangesTheEstimate) {
   SurfaceVelocity velocity(1);
   EXPECT_EQ(velocity.on_frame(7, kUp), Vec3(0, 0, 0));
   velocity.on_step(0.003 * kUp);
@@ -41,7 +41,7 @@ TEST(SurfaceVelocity, EvenMotionIsKnownAfterOneUpdate) {
     if (frame >= 2) {
       EXPECT_NEAR(step, 0, 1e-16) << frame;
     }
-    velocity.on_step({0.5, step, -0.25});  // the tangential part says nothing
+    velocity.on_step({0.5, step, -0.25});  // the tangential part gives no information
     proxy = surface;
     EXPECT_NEAR(velocity.m_per_s(), frame == 0 ? 0 : v, 1e-15) << frame;
   }
@@ -91,7 +91,7 @@ TEST(SurfaceVelocity, OnlyTheFirstStepAfterAFrameCounts) {
   EXPECT_NEAR(velocity.m_per_s(), 0.003 / kInterval, 1e-15);
 }
 
-TEST(SurfaceVelocity, NeverNegativeAndNeverReset) {
+TEST(SurfaceVelocity, IsNeverNegativeAndNeverReset) {
   SurfaceVelocity velocity(1);
   velocity.on_frame(0, kUp);
   velocity.on_frame(kInterval, kUp);
@@ -151,7 +151,8 @@ TEST(SurfaceVelocity, IsTrustedForAFrameIntervalOfASlowStream) {
   for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(kInterval), 0.1);
 }
 
-// Estimated and measured, with frames after these intervals, the first frame before them.
+// Returns the horizon after a first frame and frames at these intervals. The estimated and the measured
+// velocity must agree on it.
 double horizon_after(std::initializer_list<double> intervals_s) {
   SurfaceVelocity estimated(0.1), measured(0.1);
   double time_s = 3;

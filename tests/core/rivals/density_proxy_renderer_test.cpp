@@ -10,7 +10,7 @@
 namespace remote_touch::density_proxy_renderer_test {
 namespace {
 
-// Output after the HIP was pressed 2 cm deep into a grid of this spacing.
+// Returns the output after the HIP was pressed 2 cm deep into a grid of this spacing.
 RenderOutput press(const DensityProxyParameters& p, double spacing_m) {
   DensityProxyRenderer r(p, 1000, scenes::kernels());
   r.on_frame(scenes::frame(scenes::flat_grid(40, spacing_m)));

@@ -1,4 +1,4 @@
-// Averages over frames against their recursions, and what they do to a point that is missing.
+// Averages over frames compared with their recursions, and their treatment of a missing point.
 #include "core/rivals/frame_average.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The heights that one point of a grid is shown at when it is measured at these; NaN: missing.
+// Returns the heights at which one point of a grid is shown if it is measured at these heights. NaN: missing.
 std::vector<double> shown(const FrameAverageSettings& s, const std::vector<double>& measured) {
   FrameAverage average(s, scenes::kernels());
   std::vector<double> heights;
@@ -48,7 +48,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
   }
 }
 
-TEST(FrameAverage, ExponentialIsTheRecursionBelowTheThresholdAndTheNewDepthFromItOn) {
+TEST(FrameAverage, ExponentialFollowsTheRecursionBelowTheThresholdAndTheNewDepthAboveIt) {
   expect_same(shown({}, {0, 0.01, 0.01, 0.05, 0.04}), {0, 0.004, 0.0064, 0.05, 0.046});
 }
 
@@ -66,7 +66,7 @@ TEST(FrameAverage, MeanIsThatOfTheLastFramesInWhichThePointWasMeasured) {
   expect_same(shown(s, {0, 0.003, 0.006, 0.009, kNaN, 0.012}), {0, 0.0015, 0.003, 0.006, kNaN, 0.0105});
 }
 
-// Along the ray, so that a point of an image stays in its pixel.
+// The point moves along its ray, so it stays in its pixel.
 TEST(FrameAverage, APointOfAnImageMovesAlongItsRay) {
   const CameraIntrinsics camera{32, 32, 100, 100, 15.5, 15.5};
   FrameAverage average({}, scenes::kernels());
@@ -155,7 +155,7 @@ TEST(AveragedProxy, IsTheProxyOnASurfaceAtRestAndLagsBehindOneThatMoves) {
       const DeviceState device{Vec3(0, std::max(0.02 - 0.0002 * tick, -0.01), 0)};
       a = plain.step(device, 0.001 * tick), b = averaged.step(device, 0.001 * tick);
     }
-    // Depth that rises by v per frame is shown (1 - alpha) / alpha v too low.
+    // Depth that rises by v per frame is drawn (1 - alpha) / alpha v too low.
     EXPECT_NEAR(a.proxy_W.y() - b.proxy_W.y(), 1.5 * speed / 30, 2e-5) << speed;
   }
 }

@@ -50,7 +50,7 @@ TEST(GodObject, IsTheFootOfTheHipOnATiltedPlane) {
   EXPECT_TRUE(out.converged);
 }
 
-// Two planes hold it: the bottom of the valley is as low as it gets, and the HIP's place along it is kept.
+// Two planes hold the proxy at the bottom of the valley. Its position along the valley is that of the HIP.
 TEST(GodObject, TwoPlanesHoldItInAValley) {
   GodObjectRenderer r = over(surface([](double x, double) { return std::abs(x); }));
   const RenderOutput out = go(r, {0.004, 0.03, 0}, {0.001, -0.01, 0.0037}, 100);
@@ -115,7 +115,7 @@ TEST(GodObject, NeverPassesAMeshThatRests) {
   mesh.assign(points, 60, {Vec3::Zero(), 1});
   const PointCloud goals = scenes::random_cloud(60, 0.02, 11);
   Vec3 hip(0, 0.02, 0), proxy = r.step({hip}, 0).proxy_W;
-  const auto is_above = [&](const Vec3& p) {  // crossings of a way straight up, in a mesh that may overhang
+  const auto is_above = [&](const Vec3& p) {  // parity of the crossings straight up: the mesh may overhang
     int count = 0;
     Vec3 from = p;
     while (const auto hit = mesh.first_crossing(from, Vec3(p.x(), 0.1, p.z()))) {
@@ -146,7 +146,7 @@ TEST(GodObject, FallsThroughAHole) {
   EXPECT_TRUE(out.force_N.isZero(0));
 }
 
-// The stated limit: nothing tells how the surface moved.
+// The stated limit of the method: the motion of the surface is not known.
 TEST(GodObject, AMeshThatPassesOverItLeavesItBehind) {
   GodObjectRenderer r = over(scenes::flat_grid(60));
   EXPECT_GT(go(r, {0, 0.02, 0}, {0, -0.01, 0}).force_N.y(), 5);
@@ -161,7 +161,7 @@ TEST(GodObject, AFrameThatFallsBackIsFollowed) {
   EXPECT_NEAR(r.step({Vec3(0, -0.01, 0)}, 0.05).proxy_W.y(), -0.003 + kOffset_m, 1e-9);
 }
 
-TEST(GodObject, AFrameInNoOrderIsNone) {
+TEST(GodObject, AFrameOfUnorganisedPointsIsNotUsed) {
   PointCloud cloud = scenes::flat_grid(60);
   cloud.grid_columns = 0;
   GodObjectRenderer r = over(cloud);

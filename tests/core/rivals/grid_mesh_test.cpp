@@ -1,4 +1,4 @@
-// The triangles of an organised frame, and the nearest place over planes.
+// The triangles of an organised frame, and the nearest position that obeys planes.
 #include "core/rivals/grid_mesh.h"
 
 #include <gtest/gtest.h>
@@ -44,14 +44,14 @@ double area(const GridMesh& mesh) {
   return sum;
 }
 
-TEST(GridMesh, TwoTrianglesForEveryFourNeighbours) {
+TEST(GridMesh, HasTwoTrianglesForEveryFourNeighbours) {
   const GridMesh mesh = mesh_of(BruteForceSearch(scenes::flat_grid(8, 0.0015)));
   EXPECT_EQ(mesh.triangles().size(), 2u * 7 * 7);
   EXPECT_NEAR(area(mesh), 49 * 0.0015 * 0.0015, 1e-15);
   for (const Triangle& t : mesh.triangles()) EXPECT_EQ(std::abs(t.normal.y()), 1);
 }
 
-// Six triangles meet in a point; three of the squares around it keep one of another cut.
+// Each square at a missing point keeps the triangle of its other three corners, so half of its area is lost.
 TEST(GridMesh, AMissingPointTakesHalfOfEachSquareAroundIt) {
   const double square = 0.0015 * 0.0015;
   for (const std::size_t inner : {27u, 36u, 18u})
@@ -122,7 +122,7 @@ TEST(GridMesh, HasNoGapBetweenTriangles) {
 
 // --- planes ---
 
-TEST(PlaneConstraints, OneTwoAndThreePlanes) {
+TEST(PlaneConstraints, AreObeyedForOneTwoAndThreePlanes) {
   PlaneConstraints planes(1e-12);
   EXPECT_EQ(planes.nearest({1, 2, 3}).place, Vec3(1, 2, 3));
   EXPECT_EQ(planes.nearest({1, 2, 3}).active_planes, 0);
@@ -138,7 +138,7 @@ TEST(PlaneConstraints, OneTwoAndThreePlanes) {
   EXPECT_EQ(planes.nearest({2.5, -2, 3}).active_planes, 3);
 }
 
-// The nearest of all: no random place that obeys the planes is nearer.
+// No random position that obeys the planes is nearer to the goal.
 TEST(PlaneConstraints, IsNearestAmongThoseThatObey) {
   constexpr std::size_t kPlanes = PlaneConstraints::kMaxCount;
   const PointCloud normals = scenes::random_cloud(kPlanes * 40, 1, 9),
@@ -164,7 +164,7 @@ TEST(PlaneConstraints, IsNearestAmongThoseThatObey) {
   }
 }
 
-TEST(PlaneConstraints, PlanesThatLeaveNoRoom) {
+TEST(PlaneConstraints, FindNoPointIfThePlanesContradictEachOther) {
   PlaneConstraints planes(1e-12);
   planes.add(Vec3::UnitY(), Vec3::Zero(), 1);
   planes.add(-Vec3::UnitY(), Vec3::Zero(), 1);

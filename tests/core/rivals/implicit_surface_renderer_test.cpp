@@ -115,7 +115,7 @@ TEST(ImplicitSurfaceRenderer, LeavesWithoutAForce) {
   }
 }
 
-// A jump of the HIP to the far side in one tick: the way there is looked at.
+// The HIP jumps to the far side in one tick. The renderer checks the way there.
 TEST(ImplicitSurfaceRenderer, DoesNotJumpThrough) {
   for (const Settings& p : kAll) {
     ImplicitSurfaceRenderer r = over(scenes::flat_grid(60), p);
@@ -141,7 +141,8 @@ TEST(ImplicitSurfaceRenderer, DoesNotJumpThroughPointsWithRegions) {
   }
 }
 
-// A cloud that jumps less than the support is followed, one that jumps far beyond it is lost.
+// A jump of the cloud that is shorter than the support radius is followed. After a jump far beyond it, the
+// contact is lost.
 TEST(ImplicitSurfaceRenderer, IsBroughtBackFromASmallJumpOfTheCloudOnly) {
   for (const Settings& p : kAll) {
     for (const double jump : {0.003, 0.03}) {
@@ -171,9 +172,10 @@ TEST(ImplicitSurfaceRenderer, AFrameWithTheSamePointsChangesNothing) {
   }
 }
 
-// Sliding over the wave of 4.3.3 and pressing in slowly: the largest change of the force in a tick, as a
-// multiple of what a spring to a fixed place would make of the HIP's motion. The surface that is felt lies
-// off_m above the points. Deeper under a ridge than its radius every proxy changes sides at once.
+// Slides over the wave of 4.3.3 and presses in slowly. Returns the largest change of the force in a tick,
+// divided by the change that a spring to a fixed position would give for the same motion of the HIP. The
+// surface that is felt lies off_m above the points. The HIP must not be deeper under a ridge than the ridge's
+// radius, because every proxy changes sides at once there.
 double roughest(Renderer& r, const TriangleWave& wave, double off_m) {
   r.on_frame({0, 0, 0, wave.points(0)});
   Vec3 last_hip = Vec3::Zero(), last_force = Vec3::Zero();

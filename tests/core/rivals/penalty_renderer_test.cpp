@@ -27,7 +27,7 @@ PointCloud point_at(const Vec3& p) {
   return cloud;
 }
 
-// Over a point of a dense plane the nearest distance is the height, and the normal points up.
+// The nearest distance over a point of a dense plane is the height, and the normal points up.
 TEST(PenaltyRenderer, PushesByHowFarTheNearestPointIsInTheBall) {
   PenaltyRenderer r = over(scenes::flat_grid(61, 0.0005));
   for (const double height : {0.0005, 0.002, 0.0045}) {
@@ -121,7 +121,7 @@ TEST(PenaltyRenderer, SlaveIsNotSentAnywhereBeforeTheHipIsKnown) {
   EXPECT_EQ(r.step({lost}, 0.002).slave_W, hip) << "the last command is repeated";
 }
 
-TEST(PenaltyRenderer, TheBallMustBeSmallerThanWhereNormalsComeFrom) {
+TEST(PenaltyRenderer, RefusesABallLargerThanTheNeighbourhoodOfNormals) {
   PenaltyParameters p;
   EXPECT_EQ(validate(p), "");
   p.contact_radius_m = p.r3_m;

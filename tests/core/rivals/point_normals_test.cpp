@@ -68,7 +68,7 @@ TEST(NearestPoints, AreAllIfThereAreFewPoints) {
 }
 
 // A corner node of a grid has its third neighbour across the square, a node of a side at one spacing.
-TEST(MeanSpacing, IsThatOfASquareGridButForTheCorners) {
+TEST(MeanSpacing, IsThatOfASquareGridExceptForTheCorners) {
   constexpr int kSide = 20;
   constexpr double kSpacing_m = 0.003;
   const auto search = make_search(scenes::flat_grid(kSide, kSpacing_m));

@@ -75,7 +75,7 @@ TEST(PointSurface, GradientsOfMetaballsAreThoseOfFiniteDifferences) {
   }
 }
 
-// A tilted plane is what surfels find exactly, and there their gradient is that of f.
+// Surfels reproduce a tilted plane exactly, and their gradient is that of f there.
 TEST(PointSurface, SurfelsOfAPlaneAreThePlane) {
   const Vec3 normal = Vec3(0.3, 0.9, -0.2).normalized(), u = normal.cross(Vec3::UnitX()).normalized(),
              v = normal.cross(u);

@@ -45,8 +45,8 @@ TEST(SurfelRenderer, APlaneHoldsTheProxyOnItAndTheSpringDoesTheRest) {
   EXPECT_TRUE(out.converged);
 }
 
-// f < 0 at the HIP is enough: nothing has crossed the surface on the way.
-TEST(SurfelRenderer, TakesHoldOfAHipThatAFramePutBehindTheSurface) {
+// f < 0 at the HIP is enough for a contact: the HIP has not crossed the surface on its way.
+TEST(SurfelRenderer, HoldsAHipThatAFramePutBehindTheSurface) {
   SurfelRenderer r = over(scenes::flat_grid(60, 0.0015, -0.05), {});
   EXPECT_EQ(rest(r, Vec3::Zero()).state, ContactState::free);
   r.on_frame(scenes::frame(scenes::flat_grid(60, 0.0015, 0.006), 1));
@@ -62,7 +62,8 @@ TEST(SurfelRenderer, LosesAHipThatIsFartherBehindThanTheRadius) {
   EXPECT_TRUE(rest(r, Vec3::Zero()).force_N.isZero(0));
 }
 
-// The side is the sensor's, not that from which the HIP comes: it is drawn to the front.
+// The front is the side of the sensor, not that from which the HIP comes. The HIP is therefore drawn to the
+// front.
 TEST(SurfelRenderer, TheBackOfASheetPullsTheHandThrough) {
   SurfelRenderer r = over(scenes::flat_grid(60), {});
   for (double y = -0.02; y < -0.002; y += 0.0005) r.step({Vec3(0, y, 0)}, 0);
@@ -77,9 +78,9 @@ TEST(SurfelRenderer, TheBackOfASheetPullsTheHandThrough) {
 TEST(SurfelRenderer, ACameraTurnsTheNormals) {
   const CameraIntrinsics camera{64, 64, 200, 200, 31.5, 31.5};
   DepthImage image{64, 64, std::vector<double>(64 * 64, 0.5)};
-  RigidTransform X_WC = RigidTransform::Identity();  // looks along +z
+  RigidTransform X_WC = RigidTransform::Identity();  // the camera faces +z
   SurfelParameters p;
-  p.view_direction = {0, 0, -1};  // the other way round: not used
+  p.view_direction = {0, 0, -1};  // opposite direction: must not be used
   SurfelRenderer r = over(cloud_from_depth(image, camera, X_WC), p);
   for (double z = 0.47; z < 0.505; z += 0.0005) r.step({Vec3(0, 0, z)}, 0);
   EXPECT_NEAR(rest(r, {0, 0, 0.505}).force_N.z(), -600 * 0.005, 1e-5);
@@ -140,7 +141,7 @@ TEST(SurfelRenderer, TheDefaultRadiusOfTheAuthorsIsThreeSpacings) {
   EXPECT_GT(rest(r, {0, 0.0055, 0}).contact_count, 0);
 }
 
-// Two frames of half of the points each, joined, hold as the whole does.
+// Two frames with half of the points each, fused, hold the proxy as the whole cloud does.
 TEST(SurfelRenderer, FusesTheNewestFrames) {
   const PointCloud whole = scenes::flat_grid(60);
   PointCloud halves[2];
@@ -159,7 +160,8 @@ TEST(SurfelRenderer, FusesTheNewestFrames) {
   }
 }
 
-// (5.8) of the points around the proxy, those of both frames: stiff ones to the right, soft ones to the left.
+// (5.8) uses the points around the proxy from both frames. Stiff points lie to the right, soft ones to the
+// left.
 TEST(SurfelRenderer, PointsOfAllFramesGiveTheirStiffness) {
   const PointCloud whole = scenes::flat_grid(60);
   PointCloud halves[2];

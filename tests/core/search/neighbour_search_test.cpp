@@ -47,7 +47,8 @@ PointCloud image_cloud() {
   return cloud_from_depth(depth, camera, X_WC);
 }
 
-// Most points with a small region or none, a few with a wide one: the widest must not widen the others.
+// Most points have a small region or none, and a few have a wide one. The widest must not widen the search
+// for the others.
 PointCloud with_regions(PointCloud cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     cloud.fixture_radius_m.push_back(i % 97 == 0  ? 0.1
@@ -109,7 +110,7 @@ TEST(NeighbourSearch, ImageWindowFindsTheSameSet) {
   expect_same_sets(cloud, ImageWindowSearch(cloud), 0.6);
 }
 
-TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
+TEST(NeighbourSearch, EachPointIsFoundByTheRadiusOfItsOwnRegion) {
   const PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
   expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
   for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
@@ -118,7 +119,7 @@ TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
   expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
 }
 
-// The list comes from another order of the points: the columns must follow it.
+// The search stores the points in another order. The columns must follow it.
 TEST(NeighbourSearch, KeepsARegionWithItsPoint) {
   PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));
@@ -160,7 +161,7 @@ TEST(NeighbourSearch, OutliersDoNotBlowUpTheGrid) {
   EXPECT_EQ(found(search, ball, scenes::kernels()), (std::vector<std::uint32_t>{500}));
 }
 
-TEST(NeighbourSearch, EmptyAndMissingPoints) {
+TEST(NeighbourSearch, HandlesEmptyCloudsAndMissingPoints) {
   PointCloud missing;
   missing.append({std::nan(""), std::nan(""), std::nan("")});
   const Ball ball{Vec3::Zero(), 10};
@@ -170,7 +171,7 @@ TEST(NeighbourSearch, EmptyAndMissingPoints) {
   EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball, scenes::kernels()).empty());
 }
 
-TEST(NeighbourSearch, ABallThatIsNowhereHoldsNoPoint) {
+TEST(NeighbourSearch, ABallAtANanPositionHoldsNoPoint) {
   const PointCloud cloud = image_cloud(), unordered = scenes::random_cloud(500, 0.05, 2);
   for (int axis = 0; axis < 3; ++axis) {
     Ball ball{Vec3::Zero(), 10};
@@ -181,7 +182,7 @@ TEST(NeighbourSearch, ABallThatIsNowhereHoldsNoPoint) {
   }
 }
 
-TEST(NeighbourSearch, ChosenByTheCloud) {
+TEST(NeighbourSearch, IsChosenByTheKindOfCloud) {
   EXPECT_NE(dynamic_cast<ImageWindowSearch*>(make_search(image_cloud()).get()), nullptr);
   EXPECT_NE(dynamic_cast<BruteForceSearch*>(make_search(scenes::random_cloud(10, 1, 1)).get()), nullptr);
   EXPECT_NE(dynamic_cast<UniformGridSearch*>(make_search(scenes::random_cloud(1000, 1, 1)).get()), nullptr);

@@ -37,7 +37,7 @@ TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
   }
 }
 
-// One wide region far off: the list does not take in the points between.
+// A wide region far away must not add the points in between to the list.
 TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
   PointCloud cloud = scenes::random_cloud(4000, 0.05, 21);
   const auto size_with = [&](double radius) {
@@ -54,7 +54,7 @@ TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
   EXPECT_EQ(size_with(0.295), size_with(0) + 1);
 }
 
-// Through hops as through the whole cloud at once, regions beside the tube included.
+// The first hit found in hops equals that of the whole cloud at once, including regions beside the tube.
 TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   const auto points = cloud_with_fixtures();
   GatheredPoints all;
@@ -76,8 +76,8 @@ TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   EXPECT_GT(hits, 200);
 }
 
-// The list that is there may be of a place elsewhere, even of the one on the other side of the origin.
-TEST(Neighbourhood, FirstHitDoesNotAskAListOfAnotherPlace) {
+// The list at hand may belong to another position, even to the one on the other side of the origin.
+TEST(Neighbourhood, FirstHitDoesNotUseTheListOfAnotherPosition) {
   PointCloud cloud;
   const Vec3 p(0.1, 0.08, -0.06), u = Vec3::UnitX();
   cloud.append(p + 0.0105 * u);

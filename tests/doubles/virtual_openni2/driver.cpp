@@ -1,12 +1,12 @@
-// A camera that exists only here, as a driver for the run-time library of OpenNI 2: it shows pattern.h at 30
-// Hz. The environment variable VIRTUAL_CAMERA tells it what to do, as words with commas between them:
+// A camera that exists only here, as a driver for the run-time library of OpenNI 2. It shows pattern.h at 30
+// Hz. The environment variable VIRTUAL_CAMERA controls it, with words that are separated by commas:
 //   absent           no camera is plugged in
 //   stop_after=N     sends no frame after frame N, which is not missing
 //   small_after=N    depth after frame N has half of the rows
-//   stays_mirrored   shows a mirrored image, whatever it is told
+//   stays_mirrored   shows a mirrored image, whatever mirroring is set
 //   unregistered     does not register depth to colour
-//   flat=N           shows a wall N mm ahead, in place of the pattern
-// The library's own headers need allocation macros that no package ships; these are enough.
+//   flat=N           shows a wall N mm ahead, instead of the pattern
+// The library's own headers need allocation macros that no package ships. The two below are enough.
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
 #define XN_DELETE(pointer) delete (pointer)
 #include <Driver/OniDriverAPI.h>
@@ -29,7 +29,7 @@ namespace {
 std::atomic<int> sent{0};  // the number of the newest frame; 0: none since the camera was opened
 std::atomic<bool> is_unplugged{false};
 
-// The number behind the word; without one 1; without the word 0.
+// Returns the number after the word, 1 if the word has no number, and 0 if the word is missing.
 int told(const std::string& word) {
   const char* variable = std::getenv("VIRTUAL_CAMERA");
   const std::string text = std::string(",") + (variable ? variable : "") + ",";
@@ -55,7 +55,7 @@ OniDeviceInfo device_info() {
   return info;
 }
 
-// A mode that is never to be chosen comes first, as it does for real cameras.
+// A mode that is never to be chosen comes first, as real cameras have one.
 OniVideoMode depth_modes[] = {{ONI_PIXEL_FORMAT_SHIFT_9_2, kWidth, kHeight, kRate_hz},
                               {ONI_PIXEL_FORMAT_DEPTH_1_MM, kWidth / 2, kHeight / 2, kRate_hz},
                               {ONI_PIXEL_FORMAT_DEPTH_1_MM, kWidth, kHeight, kRate_hz},
@@ -143,7 +143,7 @@ class Device : public oni::driver::DeviceBase {
     (is_depth ? depth_ : colour_) = stream;
     if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   }
-  // No frame of the stream is on its way when this returns.
+  // When this returns, no frame of the stream is being sent.
   void remove(const Stream* stream) {
     const std::lock_guard lock(mutex_);
     if (depth_ == stream) depth_ = nullptr;
@@ -164,8 +164,8 @@ class Device : public oni::driver::DeviceBase {
   std::thread thread_;
 };
 
-// A frame that it is too late for is missing, as with a real camera: frame n is due n / 30 s after the first
-// one.
+// A frame for which it is too late is missing, as with a real camera. Frame n is due n / 30 s after the
+// start.
 void Device::run() {
   using Clock = std::chrono::steady_clock;
   const int stop_after = told("stop_after");
@@ -225,7 +225,7 @@ OniStatus Stream::setProperty(int property, const void* data, int) {
   return ONI_STATUS_OK;
 }
 
-// Draws only what it was asked for: 640 x 480 pixels, and colour only where depth is registered to it.
+// Starts only the modes that can be drawn: 640 x 480 pixels, and colour only if depth is registered to it.
 OniStatus Stream::start() {
   const bool is_drawn =
       mode_.resolutionX == kWidth && mode_.resolutionY == kHeight &&
@@ -306,7 +306,7 @@ class Driver : public oni::driver::DriverBase {
 
 ONI_EXPORT_DRIVER(remote_touch::virtual_camera::Driver)
 
-// virtual_camera.h calls them by these names.
+// These are the names by which virtual_camera.h calls the functions.
 extern "C" int virtual_camera_sent() {
   return remote_touch::virtual_camera::sent;
 }

@@ -1,5 +1,5 @@
 // The pattern that the virtual camera sees. Every pixel of every frame has a value of its own, so that a
-// frame that is torn, turned round, repeated or shifted differs from the frame that its number belongs to.
+// frame that is torn, turned round, repeated or shifted differs from the frame of its number.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 namespace remote_touch::virtual_camera {
 
 constexpr int kWidth = 640, kHeight = 480, kRate_hz = 30;
-// The recorder's codec takes depth up to the value that the driver tells as the largest.
+// The recorder's codec accepts depth up to the largest value that the driver reports.
 constexpr int kMaxDepth = 10000;
 constexpr float kDepthAcross_rad = 1.0f, kDepthDown_rad = 0.8f;
 constexpr float kColourAcross_rad = 1.1f, kColourDown_rad = 0.85f;
 
-// The first pixel holds the number; some of the others nothing.
+// The first pixel holds the number. Some of the others hold no measurement.
 inline std::uint16_t depth_at(int number, int u, int v) {
   if (u == 0 && v == 0) return static_cast<std::uint16_t>(number);
   if ((u + 3 * v + number) % 61 == 0) return 0;

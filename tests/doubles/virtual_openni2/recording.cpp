@@ -27,8 +27,8 @@ std::string record(const std::string& file, int frames) {
     openni::VideoFrameRef frame;
     if (depth.readFrame(&frame) != openni::STATUS_OK) return "no frame";
   }
-  // First, since the library's recorder and a frame that comes while it ends can wait for each other for
-  // ever.
+  // The stream stops first, because the library's recorder and a frame that comes while it ends can wait for
+  // each other for ever.
   depth.stop();
   recorder.stop();
   return "";

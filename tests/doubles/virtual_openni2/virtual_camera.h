@@ -1,5 +1,5 @@
-// Reads the number of frames that the virtual camera has sent, and unplugs it, for tests that must not depend
-// on how long anything takes.
+// Functions that read how many frames the virtual camera has sent, and that unplug it, for tests that must
+// not depend on how long anything takes.
 #pragma once
 
 #include <dlfcn.h>
@@ -20,8 +20,8 @@ Result call_driver([[maybe_unused]] const char* function) {
   return Result();
 }
 
-// Returns the number of the newest frame, depth and colour, that the library has received from the driver; 0
-// if it has received none since the camera was opened.
+// Returns the number of the newest frame, depth and colour, that the library has received from the driver, or
+// 0 if it has received none since the camera was opened.
 inline int sent_frames() {
   return call_driver<int>("virtual_camera_sent");
 }

@@ -9,7 +9,7 @@
 namespace remote_touch::fuzz {
 
 void read_bag(const std::string& name, std::string_view bytes) {
-  // Zeros compress to almost nothing: such a message is read, but takes more than 1 s as a cloud, with
+  // Zeros compress to almost nothing. Such a message is read, but its cloud takes more than 1 s with
   // sanitizers.
   constexpr std::size_t kMaxMessages = 100, kMaxDecoded = 100'000;
   std::size_t longest = 0;

@@ -6,7 +6,7 @@
 
 namespace remote_touch::fuzz {
 
-// name: name of the file, with the ending of its kind.
+// name is the name of the file, with the ending of its kind.
 void read_bag(const std::string& name, std::string_view bytes);
 
 }  // namespace remote_touch::fuzz

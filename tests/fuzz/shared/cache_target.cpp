@@ -11,7 +11,7 @@
 namespace remote_touch::fuzz {
 
 std::filesystem::path cache_folder(const std::string& kind, int version, std::string_view bytes) {
-  ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // the user may have set it, and what is written would be removed
+  ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // a limit that the user has set would remove the files
   const std::string name = "cache/" + std::string(kCacheKey) + "." + kind;
   const std::string_view rest = bytes.substr(std::min<std::size_t>(1, bytes.size()));
   if (bytes.starts_with('r')) return scratch_file(name, rest).parent_path();

@@ -1,4 +1,4 @@
-// Cache files: the bytes behind their first line and key, as they are or with the hash that makes them valid.
+// Cache files: the bytes after their first line and key, as they are or with the hash that makes them valid.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace remote_touch::fuzz {
 
 inline constexpr const char* kCacheKey = "key";
 
-// The folder of KEY.KIND. The first byte chooses: 'r' the rest as the whole file, otherwise the rest as its
-// fields.
+// Returns the folder of KEY.KIND. If the first byte is 'r', the rest is the whole file; otherwise the rest is
+// its fields.
 std::filesystem::path cache_folder(const std::string& kind, int version, std::string_view bytes);
 std::string cache_bytes(const std::filesystem::path& folder, const std::string& kind);
 

@@ -5,7 +5,7 @@
 //   /hashes/tick i32 1 0 10 20               a dataset: type (f64, i32, u64, text), width, values
 //   /trace/state i32:free,contact 1 0 1 1    the same with names of its values
 //
-// What is no such line is left out.
+// Other lines are left out.
 #pragma once
 
 #include <map>
@@ -28,7 +28,8 @@ Content content_of(std::string_view text);
 // Returns the reader that a sealed file of that content would have.
 Hdf5Reader reader_of(Content content);
 
-// The text up to a line "---", and what follows it; without one, the text twice: two results to compare.
+// Returns the text up to a line "---", and the text after it. If there is no such line, it returns the text
+// twice, as two results to compare.
 std::pair<std::string_view, std::string_view> two_parts(std::string_view text);
 
 }  // namespace remote_touch::fuzz

@@ -1,4 +1,4 @@
-// A fuzz target: one reader of the program, fed with bytes that come from anywhere.
+// A fuzz target: one reader of the program, which receives bytes of any origin.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace remote_touch::fuzz {
 
 struct Target {
   const char* name;  // name of its corpus and its program
-  // Reads the bytes as a user's file or message. It may return; an exception is a finding.
+  // Reads the bytes as a user's file or message. It may return. An exception is a finding.
   void (*read)(std::string_view bytes);
 };
 
@@ -23,13 +23,13 @@ struct Registered {
   Registered(const char* name, void (*read)(std::string_view bytes)) { targets().push_back({name, read}); }
 };
 
-// Throws std::logic_error unless what has to be true of a reader is.
+// Throws std::logic_error if a required property of a reader does not hold.
 void require(bool is_true, const char* what);
-// And that no library speaks to the user, unless the message quotes it from the bytes.
+// Requires also that the message contains no library's own text, unless it quotes that from the bytes.
 void require_one_line(const std::string& message, std::string_view bytes);
 
-// An InputError in one line is what a reader may answer. All other exceptions pass through: a message of a
-// library, or std::bad_alloc, is a finding. bytes: what is read.
+// A reader may answer with an InputError in one line. All other exceptions pass through: a message of a
+// library, or std::bad_alloc, is a finding. bytes is the input.
 template <class Read>
 bool accepts(std::string_view bytes, Read&& read) {
   try {

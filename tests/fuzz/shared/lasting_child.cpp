@@ -40,7 +40,7 @@ bool read_all(int from, void* data, std::size_t size) {
   return true;
 }
 
-// A head of fixed size, then as many bytes as it says.
+// A message is a head of fixed size, then a size, and as many bytes.
 template <class Head>
 bool send(int to, const Head& head, const char* bytes, std::size_t size) {
   return write_all(to, &head, sizeof head) && write_all(to, &size, sizeof size) && write_all(to, bytes, size);
@@ -50,7 +50,7 @@ template <class Head>
 bool receive(int from, Head& head, std::string& bytes) {
   std::size_t size = 0;
   if (!read_all(from, &head, sizeof head) || !read_all(from, &size, sizeof size)) return false;
-  if (size > kMaxBytes) return false;  // a child whose memory is damaged may say anything
+  if (size > kMaxBytes) return false;  // a child whose memory is damaged may send anything
   bytes.resize(size);
   return read_all(from, bytes.data(), size);
 }
@@ -74,7 +74,7 @@ bool receive(int from, Head& head, std::string& bytes) {
 }  // namespace
 
 void LastingChild::begin(const ChildLimits& limits) {
-  std::signal(SIGPIPE, SIG_IGN);  // a child that has ended is known by what it does not answer
+  std::signal(SIGPIPE, SIG_IGN);  // a child that has ended is recognised by its missing answer
   int questions[2], answers[2];
   if (::pipe(questions) != 0 || ::pipe(answers) != 0) throw std::runtime_error(std::strerror(errno));
   child_ = ::fork();

@@ -1,5 +1,4 @@
-// A child process that reads many files. To begin a process costs a hundred times as much as to read a small
-// file.
+// A child process that reads many files. A new process costs a hundred times as much as reading a small file.
 #pragma once
 
 #include <sys/types.h>
@@ -12,9 +11,9 @@
 namespace remote_touch::fuzz {
 
 // Runs readers as in_own_child() does, most of them in one process, whose limits count for all that it reads
-// together. A question of which it ended, or for which it had no memory, is asked again in a child of its
-// own: so every crash, every want of memory and every end of time is that of one input, told as the program
-// tells it.
+// together. If the process ended during a question, or had no memory for it, the question is repeated in a
+// child of its own. Every crash, lack of memory and end of time is therefore that of one input, and is
+// reported as the program reports it.
 class LastingChild {
  public:
   LastingChild() = default;
@@ -23,7 +22,7 @@ class LastingChild {
   ~LastingChild() { end(); }
   std::string operator()(const ChildLimits& limits, ChildReader reader, const std::string& question);
   int begun() const { return begun_; }        // number of processes so far, one after another
-  int repeated() const { return repeated_; }  // questions that were asked again
+  int repeated() const { return repeated_; }  // number of questions that were repeated
 
  private:
   struct Answer {
@@ -38,8 +37,8 @@ class LastingChild {
   int begun_ = 0, repeated_ = 0;
 };
 
-// The way in which targets run the readers that need a child: by default as the program does, in libFuzzer's
-// programs in a lasting child.
+// The way in which targets run the readers that need a child. The default is the program's own way. The
+// programs of libFuzzer use a lasting child.
 RunInChild& run_in_child();
 
 }  // namespace remote_touch::fuzz

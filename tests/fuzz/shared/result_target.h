@@ -1,4 +1,4 @@
-// Two results of any kind, as text (content_text.h), parted by a line "---": read and compared.
+// Two results of any kind, as text (content_text.h), separated by a line "---": they are read and compared.
 #pragma once
 
 #include <string_view>

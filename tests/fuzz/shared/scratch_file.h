@@ -1,4 +1,4 @@
-// Files for readers that want one: below TMPDIR, which scripts/fuzz puts into memory.
+// Files for readers that need one. They are below TMPDIR, which scripts/fuzz puts into memory.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace remote_touch::fuzz {
 
-// The file of that name in a folder of this process, with these bytes. The folder is removed at the end.
+// Writes a file of that name with these bytes in a folder of this process, and returns its path. The folder
+// is removed at the end.
 std::filesystem::path scratch_file(const std::string& name, std::string_view bytes);
 
 }  // namespace remote_touch::fuzz

@@ -32,7 +32,7 @@ Outcome outcome_of(int wanted) {
   return outcome;
 }
 
-// While it lives, this process may take little more memory than it has.
+// Limits this process to little more memory than it has, as long as the object lives.
 class LittleMemory {
  public:
   LittleMemory() {
@@ -51,7 +51,7 @@ class LittleMemory {
   rlimit before_{};
 };
 
-TEST(UseThreads, TakesWhatTheSystemGives) {
+TEST(UseThreads, AcceptsTheThreadsThatTheSystemGives) {
   const Outcome three = outcome_of(3);
   EXPECT_EQ(three.problem, "");
   EXPECT_EQ(three.threads, 3);

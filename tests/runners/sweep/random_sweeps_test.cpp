@@ -1,5 +1,5 @@
-// Random sweeps, whose parts may overwrite each other: each is refused, or its runs have what it states. This
-// is checked by other code than that of the program.
+// Random sweeps whose parts may overwrite each other. Each is refused, or its runs have what it states. Code
+// other than the program's checks this.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Choice {
   std::vector<const char*> values;
 };
 
-// Parts of fig4.12 of all kinds, of which some contain others.
+// Parts of fig4.12 of all kinds, some of which contain others.
 const Choice kChoices[] = {
     {"scenario.noise_sigma_m", {"0", "0.001", "0.0025"}},
     {"scenario.acceleration_m_per_s2", {"1", "20", "3.5"}},
@@ -117,14 +117,14 @@ class Chance {
   std::mt19937 random_;
 };
 
-// The configuration, with what changes before the first tick.
+// Returns the configuration with the changes that come before the first tick.
 Plain at_start(Plain configuration, const Experiment& experiment) {
   for (const RendererChange& change : experiment.changes())
     if (change.time_s == 0) configuration["renderer"][change.parameter.substr(9)] = change.value;
   return configuration;
 }
 
-// Adding it to what is run changes nothing.
+// True if adding the stated part to what is run changes nothing.
 bool has(const Plain& run, std::string path, const Plain& stated) {
   std::replace(path.begin(), path.end(), '.', '/');
   const Plain::json_pointer place("/" + path);
@@ -134,15 +134,15 @@ bool has(const Plain& run, std::string path, const Plain& stated) {
   return stated.is_null() ? there.is_null() : merged == there;
 }
 
-// The value of a cell as the file has it.
+// Returns the value of a cell as the file has it.
 Plain stated_by(const Column& axis, std::size_t row) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&axis.values)) return (*numbers)[row];
   const Plain value = Plain::parse(axis.value_names[row], nullptr, false);
   return value.is_discarded() ? Plain(axis.value_names[row]) : value;
 }
 
-// Also what the user set, but what an option replaced. An option that is a part of a list replaces it in
-// part.
+// Checks also what the user set, except what an option replaced. An option that is a part of a list replaces
+// it in part.
 void expect_true(const RandomSweep& made, const Sweep& sweep) {
   const SweepResult plan = sweep.plan();
   for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {

@@ -35,7 +35,7 @@ TEST(Shards, ShareTheCells) {
         const SweepResult part = sweep.plan({index, count});
         for (std::size_t run = 0; run < part.run_count(); ++run) {
           owners[run] += part.state[run] == RunState::pending;
-          // All replicates of a cell together; what nobody does is not sampled by any.
+          // All replicates of a cell belong together. Runs that no shard does are not sampled in any.
           const bool owned = part.state[part.run(part.cell_of(run), 0)] == RunState::pending;
           const RunState expected = whole.state[run] != RunState::pending ? RunState::not_sampled
                                     : owned                               ? RunState::pending
@@ -87,7 +87,7 @@ TEST(Shards, AreThoseOfSlurmOrMpirun) {
   EXPECT_EQ(from_environment({{rank, "3"}, {size, "4"}}), "4/4");
   EXPECT_EQ(from_environment({{id, "1"}, {count, "2"}, {min, "1"}, {rank, "3"}, {size, "4"}}), "1/2");
   EXPECT_EQ(from_environment({{rank, "3"}}), "none");
-  EXPECT_EQ(from_environment({{id, ""}, {count, ""}, {rank, ""}, {size, "4"}}), "none");  // empty: not set
+  EXPECT_EQ(from_environment({{id, ""}, {count, ""}, {rank, ""}, {size, "4"}}), "none");  // empty is not set
   EXPECT_HAS(from_environment({{id, "two"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = two: expected integers");
   EXPECT_HAS(from_environment({{id, "-1"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = -1: expected");
   EXPECT_HAS(from_environment({{id, "7"}, {count, "3"}, {min, "1"}}),

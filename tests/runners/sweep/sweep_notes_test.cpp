@@ -10,7 +10,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-// 2 x 3 cells, of which one run has failed.
+// A result of 2 x 3 cells, of which one run has failed.
 SweepResult two_by_three(int replicates) {
   SweepResult result;
   result.axes = {{"a", "1", "", std::vector<double>{0, 1}, 1, {}},

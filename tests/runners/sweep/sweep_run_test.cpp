@@ -1,4 +1,4 @@
-// Doing the runs of a sweep: the bits of single runs, failures, the end before the end, refinement.
+// Runs of a sweep: the bits of single runs, failures, an early end, refinement.
 #include "runners/sweep/sweep_run.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(SweepRuns, HaveTheBitsOfSingleRuns) {
     EXPECT_EQ(result.measure("max_penetration")[run], max_penetration_m(trace));
     EXPECT_EQ(result.measure("popped_through")[run], popped_through(trace));
   }
-  // Replicates differ in their noise, where there is any.
+  // Replicates differ in their noise, if there is any.
   EXPECT_EQ(result.measure("max_penetration")[0], result.measure("max_penetration")[1]);
   EXPECT_NE(result.measure("max_penetration")[22], result.measure("max_penetration")[23]);
 }
@@ -104,8 +104,8 @@ TEST(SweepRuns, OnlyPendingRunsAreDoneAndEachIsReportedOnce) {
   }
 }
 
-// Whatever ended the sweep: what is done was told, what is not done is pending. After an exception a second
-// thread may do any number of runs until the first one has handed it on.
+// An interrupted sweep has reported each run that is done, and the others are pending. A second thread may do
+// any number of runs after an exception, until the first one has passed it on.
 TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
   const Sweep sweep = quick();
   for (const auto& end : {std::pair{true, 1}, {false, 1}, {true, 2}, {false, 2}}) {
@@ -134,7 +134,7 @@ TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
   }
 }
 
-// A recording is looked for when its run begins.
+// A recording is opened when its run begins.
 TEST(SweepRuns, AFailureIsReportedAndTheOthersContinue) {
   const TestFolder folder("sweep_run_test");
   const CameraIntrinsics camera{64, 48, 50, 50, 31.5, 23.5};
@@ -197,7 +197,7 @@ TEST(Refinement, KeepsItsBudgetAndNumbersItsRounds) {
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     EXPECT_EQ(result.round[run] >= 0, result.state[run] == RunState::done);
     last = std::max(last, result.round[run]);
-    // The first round: every fourth value, two replicates.
+    // The first round has every fourth value and two replicates.
     const auto place = result.place(result.cell_of(run));
     const bool is_first = place[0] % 4 == 0 && place[1] % 4 == 0 && result.replicate_of(run) < 2;
     EXPECT_EQ(result.round[run] == 0, is_first);
@@ -207,8 +207,8 @@ TEST(Refinement, KeepsItsBudgetAndNumbersItsRounds) {
   EXPECT_FALSE(add_round(quick(), plain));
 }
 
-// A round depends on results alone: a sweep that is ended after every third run asks for the same ones.
-TEST(Refinement, EndedAndGoneOnWithIsTheSame) {
+// A round depends on results alone: a sweep that is ended after every third run chooses the same runs.
+TEST(Refinement, AnInterruptedRefinementGivesTheSameResult) {
   omp_set_num_threads(2);
   const Sweep sweep = refined();
   SweepResult result = sweep.plan();

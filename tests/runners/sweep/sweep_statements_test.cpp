@@ -1,5 +1,5 @@
 // A sweep states what it runs: parts that overwrite each other are refused, and every run has the values that
-// the file states of its cell.
+// the file states for its cell.
 #include "runners/sweep/sweep_statements.h"
 
 #include <gtest/gtest.h>
@@ -59,8 +59,8 @@ TEST(OverlappingAxes, AreRefusedWithBothPaths) {
   EXPECT_HAS(why({starts, kStart}), "axes.1 trajectory.start_m.1: overlaps axes.0 trajectory.start_m: ");
 }
 
-// Other spellings of one place.
-TEST(OverlappingAxes, AreFoundByTheirPlace) {
+// Other spellings of one position are the same parameter.
+TEST(OverlappingAxes, AreFoundByTheirPosition) {
   EXPECT_HAS(why({kStart, axis("trajectory.start_m.01", "[0.02]")}),
              "axes.1 trajectory.start_m.01: overlaps axes.0 trajectory.start_m.1: ");
   EXPECT_HAS(why({kScene}, R"({"scenario.columns.": 50})"),
@@ -78,10 +78,10 @@ TEST(OverwrittenValues, ValuesOfSetAreRefused) {
             "scenario.acceleration_m_per_s2: expected one of them");
   EXPECT_HAS(why({kScene}, R"({"scenario.columns": 50})"),
              "set.scenario.columns: is overwritten by the axis ");
-  // The object says what the axis says otherwise.
+  // The object states one value, and the axis states others.
   EXPECT_HAS(why({kNoise}, R"({"scenario": {"name": "moving-lift", "noise_sigma_m": 0.002}})"),
              "set.scenario: is overwritten by the axis scenario.noise_sigma_m: ");
-  // Null says that there is nothing.
+  // Null states that there are no faults.
   EXPECT_HAS(why({axis("faults.dropout_probability", "[0, 0.5]")}, R"({"faults": null})"),
              "set.faults: is overwritten by the axis faults.dropout_probability: ");
   EXPECT_HAS(why({kNoise}, R"({"scenario.columns": 50, "scenario": {"name": "moving-lift"}})"),
@@ -103,7 +103,7 @@ TEST(OverwrittenValues, ValuesOfTheCommandLineAreRefused) {
              "mine.json: set.scenario.noise_sigma_m: is overwritten by the axis ");
 }
 
-// An object that --set gives would take a value with it that the user has set.
+// An object that --set gives would remove a value that the user has set.
 TEST(OverwrittenValues, AreRefusedWhereTheObjectAroundThemIsReplaced) {
   const std::string object = R"(scenario={"name": "moving-lift"})";
   EXPECT_EQ(why({kAcceleration}, "{}", {"scenario.columns=50", object}),
@@ -143,7 +143,7 @@ TEST(OverwrittenValues, OthersAreAccepted) {
   expect_accepted({kNoise}, "{}", {"seed=3", "seed=4"});
   // A list cannot be given without the element that an axis changes.
   expect_accepted({kStart}, R"({"trajectory.start_m": [0.01, 0, 0]})");
-  // An object in a list can.
+  // An object in a list can be given without it.
   const std::string rules = R"({"fixtures": [{"name": "everywhere", "radius_m": 0.1}]})";
   expect_accepted({axis("fixtures.0.stiffness_N_per_m", "[100, 200]")}, rules);
   EXPECT_HAS(why({axis("fixtures.0.radius_m", "[0.1, 0.2]")}, rules),
@@ -191,7 +191,7 @@ TEST(Statements, AnAxisThatAChangeOverwritesAtTheStartIsRefused) {
              "cell 1: axis renderer.velocity_estimate = true: the run has false: ");
 }
 
-// A double would state another seed, or two seeds as one.
+// A double would state another seed, or would state two seeds as one.
 TEST(Statements, IntegersThatADoubleDoesNotHaveAreNames) {
   const SweepResult plan = sweep_over({axis("seed", "[9007199254740992, 9007199254740993, 3]")}).plan();
   EXPECT_EQ(plan.axes[0].value_names, (Texts{"9007199254740992", "9007199254740993", "3"}));

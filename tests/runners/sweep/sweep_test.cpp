@@ -1,4 +1,4 @@
-// The definition, axes and cells of a sweep. command_line/sweep_bad_input tests refusals too.
+// The definition, axes and cells of a sweep. The test command_line/sweep_bad_input tests refusals, too.
 #include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Sweep along(const std::string& axis, const std::vector<std::string>& overrides =
   all.insert(all.end(), overrides.begin(), overrides.end());
   return small(all);
 }
-// Value at a path like "scenario.noise_sigma_m" in the experiment of a cell.
+// Returns the value at a path like "scenario.noise_sigma_m" in the experiment of a cell.
 Json value_in(const Sweep& sweep, std::size_t cell, const std::string& path, int replicate = 0) {
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
@@ -54,8 +54,8 @@ TEST(Sweeps, AllFilesAreStoredAndResolve) {
   }
 }
 
-// The map of fig 4.13: 76 values of sigma, 71 of a, with the ends that the dissertation gives.
-TEST(Sweeps, TheMapOfFigure413) {
+// The map of fig 4.13 has 76 values of sigma and 71 of a, with the ends that the dissertation gives.
+TEST(Sweeps, HaveTheMapOfFigure413) {
   const SweepResult plan = Sweep::load("fig4.13").plan();
   ASSERT_EQ(plan.axes.size(), 2u);
   EXPECT_EQ(plan.axes[0].length(), 76u);
@@ -84,7 +84,7 @@ TEST(Sweeps, SurviveARoundTrip) {
   }
 }
 
-TEST(Sweeps, ThinnedTheyKeepEverySoManiethValue) {
+TEST(Sweeps, KeepEveryNthValueWhenThinned) {
   const SweepResult plan = Sweep::load("fig4.13").thinned(5).plan();
   const SweepResult whole = Sweep::load("fig4.13").plan();
   ASSERT_EQ(plan.cell_count(), 16u * 15u);
@@ -100,7 +100,7 @@ TEST(Sweeps, ThinnedTheyKeepEverySoManiethValue) {
   EXPECT_EQ(small().thinned(2).plan().replicates, 2);
 }
 
-// The last axis runs first. Only the axes, the keys of the noise and the title of the experiment change.
+// The last axis changes fastest. Only the axes, the keys of the noise and the title of the experiment change.
 TEST(Sweeps, ACellIsTheExperimentWithItsValues) {
   const Sweep sweep = small();
   Json plain =
@@ -117,7 +117,7 @@ TEST(Sweeps, ACellIsTheExperimentWithItsValues) {
     }
 }
 
-TEST(Sweeps, MeasuresAreThoseAskedForElseAll) {
+TEST(Sweeps, HaveTheRequestedMeasuresOrAll) {
   ASSERT_EQ(small().measures().size(), 2u);
   EXPECT_EQ(small().measures()[1].name, std::string("mean_steps"));
   EXPECT_EQ(small({R"(measures=["mean_steps", "popped_through"])"}).plan().measures[0].name, "mean_steps");
@@ -126,8 +126,8 @@ TEST(Sweeps, MeasuresAreThoseAskedForElseAll) {
   EXPECT_EQ(Sweep::from_json(json.dump(), "x").measures().size(), measures().size());
 }
 
-// A path in a sweep's file is meant from the file's own folder.
-TEST(Sweeps, ExperimentsAreNamesFilesOrWritten) {
+// A path in a sweep's file starts at the file's own folder.
+TEST(Sweeps, AcceptAnExperimentByNameByFileOrInline) {
   const TestFolder folder("sweep_test");
   const std::string experiment = Experiment::load("fig4.12", {"seed=5", "title=mine"}).to_json();
   folder.write("below/mine.json", experiment);
@@ -141,7 +141,7 @@ TEST(Sweeps, ExperimentsAreNamesFilesOrWritten) {
   EXPECT_HAS(refusal([&] { small({"experiment=moon"}); }), "moon: cannot be read");
 }
 
-TEST(Axes, LinearAndLogarithmic) {
+TEST(Axes, CanBeLinearOrLogarithmic) {
   EXPECT_EQ(numbers(along(R"({"parameter": "frame_latency_s", "from": 0, "to": 1, "count": 5})")),
             (std::vector{0.0, 0.25, 0.5, 0.75, 1.0}));
   EXPECT_EQ(
@@ -152,7 +152,7 @@ TEST(Axes, LinearAndLogarithmic) {
   EXPECT_EQ(
       numbers(along(R"({"parameter": "duration_s", "from": 1e-2, "to": 1e3, "count": 6, "scale": "log"})")),
       (std::vector{0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}));
-  // Equal steps to rounding, and the ends as they were written.
+  // The steps are equal to rounding, and the ends are as they were written.
   const auto steps =
       numbers(along(R"({"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 76})"));
   for (std::size_t i = 0; i < 76; ++i) EXPECT_NEAR(steps[i], 0.0002 * static_cast<double>(i), 1e-17);
@@ -166,7 +166,7 @@ TEST(Axes, LinearAndLogarithmic) {
     }
 }
 
-// Refinement halves the steps; the values of the first round stay what they were, bit for bit.
+// Refinement halves the steps. The values of the first round stay the same, bit for bit.
 TEST(Axes, RefinementKeepsTheFirstRound) {
   for (const char* scale : {"linear", "log"}) {
     const std::vector<std::string> axis = {std::string("axes.0.scale=") + scale, "axes.0.from=0.0007",
@@ -180,8 +180,8 @@ TEST(Axes, RefinementKeepsTheFirstRound) {
   }
 }
 
-// Whatever a parameter takes: integers, switches, choices, vectors, whole parts.
-TEST(Axes, ListsOfAnything) {
+// A list may hold any values of a parameter: integers, switches, choices, vectors, whole parts.
+TEST(Axes, CanListAnyValues) {
   const auto cells = [](const std::string& path, const std::string& values) {
     const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}", {"set={}"});
     const Json list = Json::parse(values);
@@ -203,8 +203,8 @@ TEST(Axes, ListsOfAnything) {
   EXPECT_EQ(cells("seed", "[3, 18446744073709551615]").units, "1");
 }
 
-// A range may lie over a parameter that takes integers only, as long as it meets them.
-TEST(Axes, WholeNumbers) {
+// A range may be used for a parameter that accepts only integers, if all its values are integers.
+TEST(Axes, MustMeetIntegers) {
   const Sweep sweep = along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 5})");
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(value_in(sweep, i, "seed"), 2 * i + 1);
   EXPECT_HAS(refusal([] { along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 4})"); }),
@@ -247,7 +247,7 @@ TEST(Titles, NameWhatWasChanged) {
   EXPECT_EQ(small().title(), "small");
   EXPECT_EQ(small({"axes.0.count=5", "renderer.xi=0.25"}).title(),
             "small, changed: axes.0.count=5, renderer.xi=0.25");
-  EXPECT_EQ(small({"replicates=2"}).title(), "small");  // as it was
+  EXPECT_EQ(small({"replicates=2"}).title(), "small");  // the value is unchanged
   const std::string stored = Experiment::load("fig4.12").settings().title;
   EXPECT_EQ(small({"title=", "renderer.xi=0.25"}).title(),
             stored +
@@ -255,7 +255,7 @@ TEST(Titles, NameWhatWasChanged) {
                 "scenario.noise_sigma_m and scenario.acceleration_m_per_s2");
 }
 
-// So that the trace of a cell does not have the title of a run with other values.
+// The trace of a cell then does not have the title of a run with other values.
 TEST(Titles, TitlesOfRunsNameTheValuesOfTheirCell) {
   const std::string stored = Experiment::load("fig4.12").settings().title;
   EXPECT_EQ(value_in(small(), 5, "title"),
@@ -266,7 +266,7 @@ TEST(Titles, TitlesOfRunsNameTheValuesOfTheirCell) {
   EXPECT_EQ(value_in(again, 5, "title"), value_in(small(), 5, "title"));
 }
 
-TEST(Refinement, ItsRuleAndFirstRound) {
+TEST(Refinement, HasItsRuleAndFirstRound) {
   EXPECT_FALSE(small().refinement().has_value());
   EXPECT_TRUE(small().plan().round.empty());
   const Sweep sweep =

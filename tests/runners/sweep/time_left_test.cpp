@@ -19,7 +19,7 @@ TEST(TimeLeft, IsWhatWasExpectedBeforeAnythingIsDone) {
 }
 
 TEST(TimeLeft, TakesTheSpeedOfTheMachineFromWhatIsDone) {
-  // 2 s of prior and 8 s of a job that took 18 s: 20 s for 10.
+  // The prior counts 2 s, and a job of 8 s took 18 s: 20 s for 10 s.
   const TimeLeft left = time_left({8, 30}, {{kDone, 18}, {kWaiting, 0}}, 1);
   EXPECT_EQ(left.of_job_s[0], 0);
   EXPECT_DOUBLE_EQ(left.of_job_s[1], 60);
@@ -37,7 +37,7 @@ TEST(TimeLeft, ThreadsWithoutAJobHelpTheOneThatRuns) {
   EXPECT_DOUBLE_EQ(left.all_s, 2);
 }
 
-TEST(TimeLeft, IsNothingWhenAllIsDone) {
+TEST(TimeLeft, IsZeroWhenAllJobsAreDone) {
   const TimeLeft left = time_left({10, 1}, {{kDone, 1}, {kDone, 1}}, 2);
   EXPECT_EQ(left.all_s, 0);
 }

@@ -88,7 +88,7 @@ TEST(WorkPool, ReportSeesTheStatesOfTheJobs) {
   EXPECT_GE(after[0].spent_s, during[0].spent_s);
 }
 
-// The only job ends while the first report is at work, which has looked at it before.
+// The only job ends while the first report is still running, which has read its state before.
 TEST(WorkPool, TheLastReportSeesThatAllHaveEnded) {
   WorkPool pool(1);
   std::atomic<bool> was_looked_at{false};

@@ -131,7 +131,7 @@ TEST(BeatingHeart, TheSurfaceIsWhereTheDistanceIsZero) {
 }
 
 // A proxy that is pressed rests where the surface curves away from it on all sides.
-TEST(BeatingHeart, ConvexAroundItsTop) {
+TEST(BeatingHeart, IsConvexAroundItsTop) {
   const BeatingHeart heart = made();
   const double h = 0.001;
   for (const double t : {0.0, 0.12, 0.24, 0.4, 0.6})

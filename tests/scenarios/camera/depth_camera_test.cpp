@@ -53,7 +53,7 @@ TEST(LookAt, AxesAreRightHandedAndTheWorldsUpIsUpInTheImage) {
   }
 }
 
-TEST(LookAt, StraightDownAndUpTheImagesRightIsX) {
+TEST(LookAt, TheImagesRightIsXIfTheCameraLooksStraightDownOrUp) {
   const RigidTransform down = look_at({0.1, 0.5, 0.2}, {0.1, 0, 0.2}), up = look_at({0, 0, 0}, {0, 2, 0});
   EXPECT_EQ(down.linear().col(0), Vec3(1, 0, 0));
   EXPECT_EQ(down.linear().col(1), Vec3(0, 0, 1)) << "the image's up is -z";
@@ -88,7 +88,7 @@ TEST(DepthCamera, APlaneIsSeenAtItsDepth) {
   }
 }
 
-TEST(DepthCamera, StraightDownColumnsGoAlongXAndRowsAlongZ) {
+TEST(DepthCamera, ColumnsAreAlongXAndRowsAlongZSeenFromAbove) {
   const DepthCamera camera = made(small());
   const PointCloud cloud = camera.measured(camera.view(table, false), 0);
   ASSERT_TRUE(cloud.image.has_value());
@@ -110,7 +110,7 @@ TEST(DepthCamera, MeasuresNothingBeyondThreeMetres) {
   }
 }
 
-TEST(DepthCamera, HolesNearEdgesOnlyAndTheyKeepTheirColour) {
+TEST(DepthCamera, HolesAreOnlyNearEdgesAndKeepTheirColour) {
   for (const int reach : {0, 1, 3}) {
     DepthCameraSettings s = small();
     s.hole_px = reach;
@@ -146,7 +146,7 @@ TEST(DepthCamera, DepthsAreWholeDisparities) {
   }
 }
 
-TEST(DepthCamera, NoiseHasTheDeviationAskedForAndBelongsToItsFrame) {
+TEST(DepthCamera, NoiseHasTheSetDeviationAndDependsOnTheFrame) {
   DepthCameraSettings s = small();
   s.noise_per_m = 0.01;
   const DepthCamera camera = made(s), other = made(s, 2);

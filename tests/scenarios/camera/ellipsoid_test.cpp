@@ -136,7 +136,7 @@ TEST_P(EllipsoidTest, DistanceOnTheAxesIsKnown) {
 }
 
 // These positions are degenerate: some coordinates are zero or tiny, or the poles of the equation coincide.
-TEST_P(EllipsoidTest, NoPlaceIsTooDegenerate) {
+TEST_P(EllipsoidTest, DegeneratePositionsHaveADistance) {
   const double values[] = {0, -0.0, 5e-324, -1e-200, 1e-30, 1e-18, -1e-12, 1e-6, 0.01, 0.03, 1, 1e6};
   const double shortest = semi_axes().minCoeff();
   for (const double x : values)
@@ -209,7 +209,7 @@ TEST_P(EllipsoidTest, HeightIsTheUpperOutline) {
 INSTANTIATE_TEST_SUITE_P(Shapes, EllipsoidTest, testing::ValuesIn(kShapes),
                          [](const auto& shape) { return shape.param.name; });
 
-TEST(Ellipsoid, BallByHand) {
+TEST(Ellipsoid, ABallHasTheValuesComputedByHand) {
   const Ellipsoid ball({0, 1, 0}, {0.5, 0.5, 0.5});
   EXPECT_NEAR(ball.signed_distance({3, 5, 0}), 4.5, 1e-15);
   EXPECT_NEAR(ball.signed_distance({0.1, 1, 0}), -0.4, 1e-16);

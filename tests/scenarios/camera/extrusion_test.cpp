@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Profiles, ExtrusionTest, testing::Values(kBox, kRamp, k
                            return profile.param == kBox ? "box" : profile.param == kRamp ? "ramp" : "odd";
                          });
 
-TEST(Extrusion, BoxByHand) {
+TEST(Extrusion, ABoxHasTheValuesComputedByHand) {
   const Extrusion box(kBox, kLow, kHigh);
   EXPECT_NEAR(box.signed_distance({0, 0.1, 0.2}), 0.02, 1e-16);
   EXPECT_NEAR(box.signed_distance({0.08, 0.12, 0.2}), 0.05, 1e-16);     // an edge: 3-4-5

@@ -95,7 +95,7 @@ std::vector<Vec3> places(int count, double half_width, unsigned seed) {
   return places;
 }
 
-TEST(Handwheel, OutsideNoSampleOfTheSurfaceIsCloserAndOneIsAsClose) {
+TEST(Handwheel, TheDistanceOutsideIsThatToTheNearestSample) {
   const Handwheel wheel(kCentre, kRing_m);
   const Surface surface;
   int outside = 0;
@@ -113,7 +113,7 @@ TEST(Handwheel, OutsideNoSampleOfTheSurfaceIsCloserAndOneIsAsClose) {
   EXPECT_GT(outside, 300);
 }
 
-TEST(Handwheel, DistancesThatAreKnown) {
+TEST(Handwheel, HasTheKnownDistances) {
   const Handwheel wheel(kCentre, kRing_m);
   const auto at = [&](double x, double y, double z) {
     return wheel.signed_distance(kCentre + Vec3(x, y, z));
@@ -129,7 +129,7 @@ TEST(Handwheel, DistancesThatAreKnown) {
 }
 
 // Compares cast(), from cameras all around, with a march of small steps to the first position inside.
-TEST(Handwheel, RaysMeetItWhereAMarchMeetsIt) {
+TEST(Handwheel, RaysHitItWhereAMarchDoes) {
   const Handwheel wheel(kCentre, kRing_m);
   const std::vector<Vec3> origins = places(400, 0.5, 2), targets = places(400, 0.07, 3);
   int hits = 0;
@@ -172,7 +172,7 @@ TEST(Handwheel, NoRayMeetsItBeforeTheDistance) {
   }
 }
 
-TEST(Handwheel, AStartInsideIsMetAtOnceAndWhatLiesBehindIsNot) {
+TEST(Handwheel, ARayFromInsideHitsAtOnceAndARayAwayMisses) {
   const Handwheel wheel(kCentre, kRing_m);
   EXPECT_EQ(wheel.cast(kCentre, {0, 0, 1}), 0);
   EXPECT_EQ(wheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, 1}), kInfinity);

@@ -30,7 +30,7 @@ PointCloud two_places(double x, double z, double dx, double dz) {
   return places;
 }
 
-TEST(RayNoise, UncorrelatedPointsAndFramesHaveTheirOwn) {
+TEST(RayNoise, PointsAndFramesAreIndependentWithoutCorrelation) {
   Correlation square, between_points, between_frames;
   const PointCloud places = two_places(0, 0, 0, 0);
   std::vector<double> last;
@@ -101,7 +101,7 @@ TEST(RayNoise, RemembersTheFramesBefore) {
   }
 }
 
-TEST(RayNoise, APlaceHasTheSameNoiseWhateverElseIsSeen) {
+TEST(RayNoise, APositionHasTheSameNoiseInEveryCloud) {
   PointCloud alone, many = scenes::random_cloud(100, 0.3, 4);
   alone.append({0.0123, 0, -0.0456});
   many.append(alone.point(0));
@@ -127,7 +127,7 @@ TEST(RayNoise, RefusesALatticeThatIsTooFineForTheCloud) {
   EXPECT_EQ(standard_noise({0.01, 1e-4, 0}, places, kKey, 0, scenes::kernels()).size(), 2u);
 }
 
-TEST(SensorFaults, RayNoiseGrowsWithTheSquareOfTheDistanceAndLeavesRaysAlone) {
+TEST(SensorFaults, RayNoiseGrowsWithTheSquareOfTheDistanceAlongTheRays) {
   SensorFaults s;
   s.ray_noise.sigma_m = 0.002, s.view_direction = {0, -3, 0}, s.sensor_distance_m = 2;
   const auto clean = bare();

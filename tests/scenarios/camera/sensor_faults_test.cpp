@@ -22,7 +22,7 @@ namespace {
 
 // --- none ---
 
-TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
+TEST(SensorFaults, AllOffGiveTheScenarioBitForBit) {
   MovingShape::Settings noisy = rising_plane();
   noisy.noise_sigma_m = 0.001;
   SensorFaults off;
@@ -68,7 +68,7 @@ TEST(SensorFaults, KeepWhatTheScenarioReports) {
   EXPECT_EQ(sensor.sensor_pose().value().translation().y(), 5);
 }
 
-TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
+TEST(SensorFaults, AnEmptySectionChangesNoRun) {
   const Experiment plain = Experiment::load("fig4.12", {"duration_s=0.6"});
   const Experiment with = Experiment::load("fig4.12", {"duration_s=0.6", "faults={}"});
   SimulationOptions options;
@@ -101,7 +101,7 @@ TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
   }
 }
 
-TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
+TEST(SensorFaults, AShareOfThePointsFliesAlongTheView) {
   SensorFaults s;
   s.flying_probability = 0.2, s.max_flying_distance_m = 0.03, s.view_direction = {0, 0, 5};
   const auto clean = bare();
@@ -191,7 +191,7 @@ TEST(SensorFaults, PointsBehindTheCameraAreLost) {
 
 // --- lost points ---
 
-TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
+TEST(SensorFaults, DropoutLosesItsSharePointByPoint) {
   SensorFaults s;
   s.dropout_probability = 0.3;
   const FaultySensor sensor = faulty(s);

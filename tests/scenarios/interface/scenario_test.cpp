@@ -305,7 +305,7 @@ TEST(CameraScene, NoiseGrowsWithTheSquareOfTheDepth) {
 
 // An edge runs between two pixels. Pixels within hole_px = 2 of it have no depth; all pixels farther away
 // have one.
-TEST(CameraScene, HolesAlongDepthEdgesOnly) {
+TEST(CameraScene, HolesAreOnlyAlongDepthEdges) {
   const CameraScene scene = made<CameraScene>();
   const std::vector<double>& truth = scene.true_depth().z_m;
   const PointCloud cloud = scene.cloud(0);

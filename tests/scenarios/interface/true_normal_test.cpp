@@ -63,7 +63,7 @@ TEST(TrueNormal, NormalOfATiltedPlaneIsTilted) {
 }
 
 // The normal over a flank is perpendicular to the flank. Over a crest it points from the crest to p.
-TEST(TrueNormal, ATriangleWaveHasThatOfItsFlanksAndCrests) {
+TEST(TrueNormal, ATriangleWaveHasTheNormalsOfItsFlanksAndCrests) {
   TriangleWave::Settings settings;
   settings.period_m = 0.04, settings.max_height_m = 0.01;
   const auto wave = made<TriangleWave>(settings);
@@ -88,7 +88,7 @@ TEST(TrueNormal, PointsAwayFromTheCentreOfABall) {
 }
 
 // The distance of the ripple is found by a search, so the tolerance is larger.
-TEST(TrueNormal, ARippleHasThatOfTheNearestPointOfTheWave) {
+TEST(TrueNormal, ARippleHasTheNormalOfItsNearestPoint) {
   const MovingShape ripple = shape(Shape::Kind::ripple);
   const Shape::Settings wave;
   const double per_m = 2 * M_PI / wave.period_m;
@@ -109,7 +109,7 @@ TEST(TrueNormal, IsNotKnownOverACrease) {
   expect_normal(valley, {-0.001, 0.006, 0}, 0, {sine, cosine, 0});
 }
 
-TEST(TrueNormal, OnlyAFlatSceneHasThatOfAPlane) {
+TEST(TrueNormal, OnlyAFlatSceneHasAPlaneNormal) {
   for (const Shape::Kind kind : {Shape::Kind::ridge, Shape::Kind::sphere, Shape::Kind::corner})
     EXPECT_FALSE(shape(kind).plane_normal(0));
   EXPECT_FALSE(made<TriangleWave>().plane_normal(0));
@@ -126,7 +126,7 @@ TEST(TrueNormal, IsNotKnownOfASurfaceThatHasVanished) {
   EXPECT_TRUE(gone.true_normal({0, 0.01, 0}, 0.6).array().isNaN().all());
 }
 
-TEST(TrueNormal, BehindASensorWithFaultsIsThatOfTheScene) {
+TEST(TrueNormal, ASensorWithFaultsHasTheNormalOfTheScene) {
   MovingShape::Settings settings;
   settings.motion.tilt_deg = 20;
   SensorFaults faults;

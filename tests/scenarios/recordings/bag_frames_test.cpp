@@ -184,7 +184,7 @@ TEST_F(Frames, DepthFramesAreInTheChosenUnit) {
              "/points holds clouds, in metres: expected scenario.depth_unit_m = 0");
 }
 
-TEST_F(Frames, AreNotInOtherEncodings) {
+TEST_F(Frames, OtherEncodingsAreRefused) {
   const auto image = [](const std::string& encoding) {
     MessageBytes bytes;
     bytes.header(1, "").add(1).add(1).text(encoding).add(std::uint8_t{0}).add(3).bytes("xyz");
@@ -197,7 +197,7 @@ TEST_F(Frames, AreNotInOtherEncodings) {
       "/rgb8 (sensor_msgs/Image rgb8, 1 messages), /mono8 (sensor_msgs/Image mono8, 1 messages)");
 }
 
-TEST_F(Frames, AreChosenInBagsOnly) {
+TEST_F(Frames, SettingsForBagsAreRefusedForOtherRecordings) {
   folder_.write("x.pcd", "");
   BagChoice unit;
   unit.depth_unit_m = 0.001;
@@ -287,7 +287,7 @@ TEST_F(Frames, DamagedOnesAreNamed) {
 }
 
 // The messages have two sizes. One is empty, which is an image without a measurement.
-TEST_F(Frames, AnotherSizeIsRefusedByTheMessage) {
+TEST_F(Frames, AFrameOfAnotherSizeIsRefusedWithItsMessage) {
   BagMessage smaller = cloud(1, 1), empty = cloud(2, 2);
   smaller.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 3, 2, 1);
   empty.bytes = cloud_message(Format::cdr, kStart_ns + 2 * kStep_ns, 0, 1, 1);
@@ -302,7 +302,7 @@ TEST_F(Frames, AnotherSizeIsRefusedByTheMessage) {
 }
 
 // The whole chain: a bag of ROS 1 as a scenario, from a RealSense with units of half a millimetre.
-TEST_F(Frames, AreAScenario) {
+TEST_F(Frames, MakeAScenario) {
   const std::string sensor = "/device_0/sensor_0/";
   const auto ros1 = [&](std::uint16_t value, std::int64_t stamp_ns) {
     MessageBytes bytes(Format::ros1);

@@ -53,7 +53,7 @@ TEST_F(FolderFiles, AllNumbersCount) {
              path("rgb/1.png") + ": it is not clear whether it belongs to " + path("depth/k2_0001.png"));
 }
 
-TEST_F(FolderFiles, AreRefusedIfTheyBelongToNothingOrToSeveral) {
+TEST_F(FolderFiles, ColourImagesWithoutExactlyOnePartnerAreRefused) {
   write({"depth/a_1.png", "depth/a_2.png", "rgb/1.jpg"});
   EXPECT_HAS(error(),
              path("rgb") + ": holds no .png file: expected the colour images of " + path("depth/a_1.png"));

@@ -132,7 +132,7 @@ TEST(FrameStatistics, NotesTheOverlapOfTheFirstPairInTheRecording) {
 
 // A wall that moves back and forth, by 1.2 mm to nearly a cell of 50 mm, counts as the same place, both at a
 // border of the cells and between borders. A wall that moves by more than two cells counts as another place.
-TEST(FrameStatistics, TakesASurfaceThatMovesALittleForTheSamePlace) {
+TEST(FrameStatistics, ASurfaceThatMovesALittleCountsAsTheSamePlace) {
   const auto notes = [](double at_m, double move_m) {
     FrameStatistics statistics(4);
     for (std::size_t frame = 0; frame < 4; ++frame)

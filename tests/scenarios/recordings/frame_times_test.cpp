@@ -80,7 +80,7 @@ TEST(FrameTimes, ASingleFrameIsAtTimeZero) {
 }
 
 // A pause is a time between frames that is nearer to two periods than to one, because a frame is missing.
-TEST(FrameTimes, TellTheRateThatIsPlayed) {
+TEST(FrameTimes, ReportTheRateThatIsPlayed) {
   const auto text = [](const RecordingIndex& index, double chosen_hz = 0) {
     return FrameTimes(index, {"x", 0, -1}, Playback::hold, chosen_hz).text();
   };

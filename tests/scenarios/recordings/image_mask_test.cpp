@@ -41,7 +41,7 @@ class ImageMasks : public testing::Test {
   const TestFolder folder_{"image_mask_test"};
 };
 
-TEST_F(ImageMasks, PickWhatIsNotBlackRowByRow) {
+TEST_F(ImageMasks, SelectPixelsThatAreNotBlackRowByRow) {
   EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 3), image(3, 2)), (Shares{0, 1, 0, 1, 0, 1}));
   EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 2), image(2, 3)), (Shares{0, 1, 0, 1, 0, 1}));
 }
@@ -101,7 +101,7 @@ TEST_F(ImageMasks, AreRefusedIfTheyCannotBeRead) {
   EXPECT_HAS(why(depth), depth.string() + ": ");
 }
 
-TEST_F(ImageMasks, AreInputs) {
+TEST_F(ImageMasks, AreListedAsInputFiles) {
   ImageMask::Settings settings;
   EXPECT_HAS(validate(settings), "path = \"\": expected a PNG file");
   settings.path = grey({1}, 1).string();

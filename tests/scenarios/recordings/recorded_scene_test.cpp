@@ -35,7 +35,7 @@ Vec3 seen(double u, double v, double z) {
   return {(u - 7.5) / 100 * z, (v - 7.5) / 100 * z, z};
 }
 
-TEST(RecordedSceneTest, KnowsTheSurfaceButForDepthEdges) {
+TEST(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
   const TestFolder folder("recorded_scene_test");
   const RecordedScene scene(two_walls(folder), {}, scenes::kernels());
   EXPECT_NEAR(scene.signed_distance(seen(4, 8, 0.49), 0), 0.01, 1e-12);
@@ -46,7 +46,7 @@ TEST(RecordedSceneTest, KnowsTheSurfaceButForDepthEdges) {
 
 // Depth edges are found in the camera's depth and not in the base frame's z, which may be negative or lie in
 // the wall.
-TEST(RecordedSceneTest, KnowsTheSameWhereverItsCameraStands) {
+TEST(RecordedSceneTest, KnowsTheSameSurfaceForAnyCameraPose) {
   const TestFolder folder("recorded_scene_test");
   RecordedScene::Settings settings = two_walls(folder);
   const RecordedScene as_recorded(settings, {}, scenes::kernels());
@@ -118,7 +118,7 @@ TEST(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
 
 // Points at NaN, at infinity or farther away than any room cannot be touched, so such a first frame is
 // refused.
-TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
+TEST(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
   const TestFolder folder("recorded_scene_test");
   RecordedScene::Settings settings;
   for (const char* value : {"nan", "inf", "1e30", "-inf"}) {

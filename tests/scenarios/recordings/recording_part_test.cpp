@@ -31,7 +31,7 @@ TEST_F(FindRecording, LooksHereAndThenBelowTheDataFolder) {
   EXPECT_EQ(find_recording(whole), whole);
 }
 
-TEST_F(FindRecording, SaysWhereItLooked) {
+TEST_F(FindRecording, ReportsTheSearchedFolders) {
   const std::string places = "no such recording, image or mesh: expected a folder or file here or below ";
   EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA (not set)");
   set_data_folder("/data");

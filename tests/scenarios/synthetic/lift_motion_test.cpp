@@ -77,7 +77,7 @@ TEST(LiftMotion, IsTheSameAtEveryFrameRate) {
   expect_the_same_motion<MovingShape>(shape, lift());
 }
 
-TEST(LiftMotion, EventsOfAShapeAreAtTimes) {
+TEST(LiftMotion, EventsOfAShapeAreAtTheirTimesAtAnyFrameRate) {
   for (const double rate_hz : {15.0, 30.0, 60.0}) {
     MovingShape::Settings s;
     s.frame_rate_hz = rate_hz, s.empty_frame_at_s = 0.4, s.vanish_at_s = 0.8;
@@ -112,7 +112,7 @@ TEST(LiftMotion, HasThePrintedHeights) {
   }
 }
 
-TEST(LiftMotion, MayBeLinearBetweenThem) {
+TEST(LiftMotion, MayBeLinearBetweenUpdates) {
   LiftMotion::Settings s = lift();
   const LiftMotion parabola(s);
   s.between_updates = LiftMotion::BetweenUpdates::line;
@@ -124,7 +124,7 @@ TEST(LiftMotion, MayBeLinearBetweenThem) {
   }
 }
 
-TEST(LiftMotion, NamesItsParts) {
+TEST(LiftMotion, NamesItsPhases) {
   const auto parts = LiftMotion(lift()).phases();
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0].name, "the rise");

@@ -89,7 +89,7 @@ TEST(MovingShape, AFlatLiftRendersAsAMovingLift) {
   EXPECT_EQ(lift.signed_distance_m, shape.signed_distance_m);
 }
 
-TEST(MovingShape, ReceedingAndStartingAboveZero) {
+TEST(MovingShape, MayRecedeAndStartAboveZero) {
   MovingShape::Settings s;
   s.motion.lift.start_depth_m = -0.02, s.motion.lift.start_velocity_m_per_s = -0.3,
   s.motion.lift.rise_s = 0.1;
@@ -249,7 +249,7 @@ TEST(MovingShape, NoiseBelongsToKeyAndFrame) {
   EXPECT_NEAR(std::sqrt(squares / count), 0.002, 5 * 0.002 / std::sqrt(2 * count));
 }
 
-TEST(MovingShape, SearchesShowTheCloud) {
+TEST(MovingShape, SearchesFindThePointsOfTheCloud) {
   for (const Kind kind : kKinds) {
     for (const bool level : {true, false}) {
       MovingShape::Settings s = busy(kind);
@@ -311,7 +311,7 @@ TEST(MovingShape, OneFrameMayBeEmpty) {
   EXPECT_GT(moves.cloud(5).size(), 0u);
 }
 
-TEST(MovingShape, RenderersTakeFramesWithoutPoints) {
+TEST(MovingShape, RenderersAcceptFramesWithoutPoints) {
   for (const char* what : {"vanish_at_s", "empty_frame_at_s"}) {
     const std::string text = std::string(R"({"scenario": {"name": "moving-shape", ")") + what +
                              R"(": 0.4}, "renderer": {"name": "proxy"},

@@ -123,7 +123,7 @@ TEST(Wedge, ClosesAndOpensEvenly) {
   EXPECT_TRUE(std::isnan(wedge.signed_distance({0, -0.1, 0.02}, 0)));
 }
 
-TEST(Wedge, CanStandAsideAskewAndParallel) {
+TEST(Wedge, CanBeShiftedTiltedAndParallel) {
   Wedge::Settings s;
   s.offset_m = 0.01, s.tilt_deg = 20, s.angle_deg = 0, s.closed_gap_m = 0.02;
   const Wedge plates = made<Wedge>(s);
@@ -138,7 +138,7 @@ TEST(Wedge, CanStandAsideAskewAndParallel) {
   EXPECT_NE(validate(s), "");
 }
 
-TEST(Wedge, JumpsWhereTheScheduleDoes) {
+TEST(Wedge, JumpsIfTheScheduleHasNoDuration) {
   Wedge::Settings s;
   s.close_end_s = s.close_start_s = 1, s.open_start_s = s.open_end_s = 2;
   const Wedge wedge = made<Wedge>(s);

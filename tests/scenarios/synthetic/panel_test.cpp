@@ -74,7 +74,7 @@ TEST(FlatPanel, CornersHaveOneInside) {
 
 // The walls are those of CornersHaveOneInside. The edge at which they meet is no border. Its ends and the
 // other edges are borders.
-TEST(FlatPanel, BesideAPanelThereIsNoBack) {
+TEST(FlatPanel, HasNoBackBesideItsBorder) {
   const std::vector<FlatPanel> corner = {{{1, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), 1, 1},
                                          {{0, 1, 0}, Vec3::UnitX(), Vec3::UnitY(), 1, 1}};
   EXPECT_DOUBLE_EQ(signed_distance(corner, {-0.3, -0.4, 0.999}), -0.5);

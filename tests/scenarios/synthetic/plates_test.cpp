@@ -25,7 +25,7 @@ Plates made(const Plates::Settings& s) {
   return Plates(s, NoiseKey{3, 1, 2}, scenes::kernels());
 }
 
-TEST(Plates, ARaySeesTheHighestPlateOverItsPlace) {
+TEST(Plates, ARaySeesTheHighestPlateAtItsNode) {
   const Plates plates = made(passing());
   for (const int frame : {0, 3, 9, 20}) {
     const double x = -0.06 + 0.3 * std::clamp(frame / 30.0 - 0.1, 0.0, 0.4);
@@ -89,7 +89,7 @@ TEST(Plates, HaveFramesForAsLongAsSomethingChanges) {
   EXPECT_EQ(made(Plates::Settings{}).frame_count(), 1);
 }
 
-TEST(Plates, RefuseSizesOfNothing) {
+TEST(Plates, RefuseSizesOfZero) {
   Plates::Settings s;
   s.plates = {0, 0, 0, 0.2, 0, 0, 0, 0, 0};
   EXPECT_NE(validate(s).find("row 1"), std::string::npos);

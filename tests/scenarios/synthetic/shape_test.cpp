@@ -180,7 +180,7 @@ TEST(Shape, TheSignIsThatOfTheSide) {
 
 // The distance is NaN below the plane that ends at the border. For a ridge that is the plane of its flank, at
 // 35 degrees.
-TEST(Shape, BesideTheBorderThereIsNoBack) {
+TEST(Shape, HasNoBackBesideItsBorder) {
   const Shape flat(settings_of(Kind::flat), kGrid), ridge(settings_of(Kind::ridge), kGrid),
       sphere(settings_of(Kind::sphere), kGrid);
   EXPECT_NEAR(flat.signed_distance({0.043, 0.004, 0}), 0.005, 1e-15);
@@ -198,7 +198,7 @@ TEST(Shape, BesideTheBorderThereIsNoBack) {
   EXPECT_NEAR(sphere.signed_distance({0.01, -0.0151, 0}), -std::hypot(0.005, 0.0001), 1e-15);
 }
 
-TEST(Shape, BehindAFlankOrAWaveIsTheBackEvenBesideTheBorder) {
+TEST(Shape, HasABackBehindAFlankOrAWaveAlsoBesideTheBorder) {
   // The flanks of a valley lean outwards: 1 mm behind one that ends at x = 0.04 is beyond 0.04.
   const Shape valley(settings_of(Kind::valley), kGrid), corner(settings_of(Kind::corner), kGrid);
   const Vec3 near_the_end = valley.point(0.0399, 0);
@@ -238,7 +238,7 @@ TEST(Shape, PointsLieOnTheSurface) {
 
 // The search along x finds the nearest of several crests or troughs. The distance to these is known in closed
 // form.
-TEST(Shape, RippleFromAfarAndOverItsCrests) {
+TEST(Shape, ARippleHasItsDistanceFromAfarAndOverItsCrests) {
   Shape::Settings s = settings_of(Kind::ripple);
   const Shape shape(s, kGrid);
   const double crest = 0.25 * s.period_m;
@@ -257,7 +257,7 @@ TEST(Shape, RippleFromAfarAndOverItsCrests) {
   EXPECT_NEAR(shape.signed_distance(p), nearest, 1e-12);
 }
 
-TEST(Shape, AGridOfOnePointOrBesideTheRidgeIsAPatchToo) {
+TEST(Shape, AGridOfOnePointOrOneFlankIsAPatch) {
   const Shape dot(settings_of(Kind::ridge), Grid{1, 1, 0.002, 0, 0});
   EXPECT_NEAR(dot.signed_distance({0.003, 0.004, 0}), 0.005, 1e-15);
   const Shape one_flank(settings_of(Kind::valley), Grid{5, 5, 0.002, 1, 0});  // x from -2 to 6 mm

@@ -39,7 +39,7 @@ TEST(FileOrder, TimesOfAClockHaveDecimals) {
 }
 
 // The order is transitive for all names: if a is before b and b is before c, then a is before c.
-TEST(FileOrder, IsAnOrder) {
+TEST(FileOrder, IsTransitive) {
   Files names;
   for (const char* first : {"", "1", "01", "0000000001", "1305031102", "01305031102", "a"})
     for (const char* point : {"", ".", "_"})

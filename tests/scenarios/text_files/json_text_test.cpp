@@ -19,7 +19,7 @@ TEST(JsonText, KeepsTheOrderOfItsKeys) {
             R"({"b":1,"a":{"b":[2,{"b":3}]}})");
 }
 
-TEST(JsonText, SaysWhereItIsNone) {
+TEST(JsonText, ReportsWhereItIsNotJson) {
   for (const char* text : {"", "{", "[1,]", "{\"a\": NaN}", "{\"a\" 1}", "\xff", "1e999", "nul"}) {
     const std::string message = refused(text);
     EXPECT_HAS(message, "x.json: ");
@@ -36,7 +36,7 @@ TEST(JsonText, AKeyTwiceIsRefused) {
   EXPECT_EQ(refused(R"([{"a": 1, "b": {"a": {"a": 2}}}, {"a": 3}])"), "no InputError");
 }
 
-TEST(JsonText, NestsSoFar) {
+TEST(JsonText, IsRefusedIfItNestsTooDeep) {
   const auto nested = [](int levels, const std::string& open, const std::string& close) {
     std::string text;
     for (int i = 0; i < levels; ++i) text += open;

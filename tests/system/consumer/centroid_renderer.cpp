@@ -8,7 +8,8 @@ using namespace remote_touch;
 
 namespace {
 
-// The mean of the points' own stiffness, in whole steps of 1/1024 N/m; `otherwise` where a point has none.
+// Returns the mean of the points' own stiffness, in whole steps of 1/1024 N/m. A point without stiffness
+// counts as `otherwise`.
 double mean_stiffness_N_per_m(const PointsView& points, std::size_t count, double otherwise) {
   if (points.stiffness == nullptr) return otherwise;
   double sum = 0;
@@ -54,7 +55,7 @@ RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
   out.contact_count = static_cast<int>(near_.size());
   if (near_.size() == 0) return out;
   const PointsView points = near_.view();
-  // A sum of whole numbers does not depend on the order of the points, which is that of the search.
+  // A sum of whole numbers does not depend on the order of the points, which is the order of the search.
   const double grid_m = 0x1p-26 * settings_.radius_m;
   Vec3 sum = Vec3::Zero();  // sum of the points relative to the HIP, in units of the grid
   for (std::size_t i = 0; i < near_.size(); ++i) {

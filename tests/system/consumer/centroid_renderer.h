@@ -2,7 +2,7 @@
 //
 //   F = k (r - d) (HIP - centroid) / d,    d = |HIP - centroid|.
 //
-// A first renderer, and a bad one: pressed deeper than the points, it pushes to the other side.
+// It is a first renderer, and a bad one: if the HIP is deeper than the points, it pushes to the other side.
 #pragma once
 
 #include <core/kernels/kernels.h>
@@ -23,7 +23,7 @@ inline double max_stiffness_N_per_m(const CentroidSettings& settings) {
   return settings.stiffness_N_per_m;
 }
 
-// A spring without a proxy: over a plane its force ends where the centroid is radius_m away.
+// The force over a plane ends where the centroid is radius_m away.
 inline remote_touch::RenderedContact rendered_contact(const CentroidSettings& settings) {
   return {settings.radius_m, settings.stiffness_N_per_m};
 }

@@ -1,4 +1,4 @@
-// The contracts, held against what this laboratory adds.
+// The contracts, applied to the entries that this laboratory adds.
 #include <gtest/gtest.h>
 #include <runners/evaluation/contract/contract_tests.h>
 

@@ -1,4 +1,4 @@
-// The method alone in a loop of one's own: no experiment, no file.
+// The method alone, in a loop of a user's own: it uses no experiment and no file.
 #include <core/dissertation/proxy/proxy_renderer.h>
 #include <core/kernels/isa.h>
 

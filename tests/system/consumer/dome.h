@@ -1,4 +1,4 @@
-// A ball of which the sensor sees the top, and which rises and sinks.
+// A ball that rises and sinks. The sensor sees its top.
 #pragma once
 
 #include <core/parameters/parameter.h>

@@ -1,21 +1,23 @@
-// Preloaded into a program, counts what it asks of the system, and fails the n-th call of one kind, once:
+// This library is preloaded into a program. It counts the program's calls to the system, and makes the n-th
+// call of one kind fail, once:
 //
 //   LD_PRELOAD=libfail_once.so FAIL_ONCE_BELOW=/folder FAIL_ONCE_COUNTS=/file FAIL_ONCE=write:3:ENOSPC
 //   remote-touch ...
 //
-// FAIL_ONCE is KIND:N:HOW. How: ENOSPC, EIO, ENOMEM, or KILL, which ends the process with SIGKILL before the
-// call. Without FAIL_ONCE it only counts. Files count only below the folder, allocations from the begin of
-// the program's own code (not in the loader, nor in the constructors of libraries). FAIL_ONCE_COUNTS is a
-// file of 4096 zeros, which the program shares with all processes that it starts: the numbers of Counts. With
-// FAIL_ONCE_PROCESS=2 only the second of them to begin counts and fails. FAIL_ONCE_SITES is a file for the
-// allocations that are the first of their call stack, since most repeat others: number and hash of the stack.
-// FAIL_ONCE_TRACE is a file for the stack at the failure.
+// FAIL_ONCE is KIND:N:HOW. HOW is ENOSPC, EIO, ENOMEM, or KILL, which ends the process with SIGKILL before
+// the call. If FAIL_ONCE is not set, the library only counts. Files count only below the folder. Allocations
+// count from the beginning of the program's own code (not in the loader, nor in the constructors of
+// libraries). FAIL_ONCE_COUNTS is a file of 4096 zeros for the numbers of Counts, which the program shares
+// with all processes that it starts. FAIL_ONCE_PROCESS=2 lets only the second of these processes count and
+// fail. FAIL_ONCE_SITES is a file for the allocations that are the first of their call stack, since most
+// repeat others. It receives the number of the call and the hash of the stack. FAIL_ONCE_TRACE is a file for
+// the stack at the failure.
 //
-// With FAIL_ONCE_SERVER it does not begin, but answers requests on stdin, so that the loader has its work
-// once only. A request is a line "KIND:N:HOW PROCESS FOLDER" (PROCESS 0: any); a copy of the program then
-// runs in FOLDER/made with its output in FOLDER/out and FOLDER/err, and the answer is a line with its status,
-// as of waitpid(). The first line of all is how many allocations there were until then: those fail in no
-// copy.
+// If FAIL_ONCE_SERVER is set, the program does not begin, but answers requests on stdin, so that the loader
+// does its work only once. A request is a line "KIND:N:HOW PROCESS FOLDER" (PROCESS 0 means any). A copy of
+// the program then runs in FOLDER/made with its output in FOLDER/out and FOLDER/err, and the answer is a line
+// with its status, as of waitpid(). The first line of all states how many allocations there were until then.
+// These allocations fail in no copy.
 #include "fail_once.h"
 
 #include <dlfcn.h>
@@ -39,7 +41,7 @@ constexpr const char* kKinds[kKindCount] = {"allocation", "open",     "write",  
 constexpr int kKill = -1;
 
 constexpr std::size_t kMaxSites = 1 << 16;
-constexpr int kFrames = 8;       // innermost ones, which make a stack
+constexpr int kFrames = 8;       // number of innermost frames that identify a stack
 std::uint64_t sites[kMaxSites];  // hashes of call stacks; 0: none
 char folder[4096];
 std::size_t folder_size = 0;
@@ -52,7 +54,7 @@ int errno_of(const char* name) {
   return std::strcmp(name, "ENOMEM") == 0 ? ENOMEM : EIO;
 }
 
-// Hash of the return addresses, each relative to the library that it is in.
+// Returns a hash of the return addresses, each relative to the library that it is in.
 std::uint64_t hash_of_stack() {
   void* stack[kFrames + 3];
   const int depth = ::backtrace(stack, kFrames + 3);  // includes this library's frames

@@ -1,4 +1,4 @@
-// The part that the files of the preloaded library share. fail_once.cpp describes its purpose.
+// The part that the files of the preloaded library share. The file fail_once.cpp describes its purpose.
 #pragma once
 
 #include <dlfcn.h>
@@ -18,23 +18,24 @@ struct Counts {
 struct Process {
   Counts private_counts = {};
   Counts* counts = &private_counts;
-  bool is_running = false;  // the program's own code
+  bool is_running = false;  // true: it runs the program's own code
   bool is_chosen = true;
 };
 extern Process this_process;
 
-// Reads the call that is to fail, KIND:N:HOW.
+// Reads which call is to fail, KIND:N:HOW.
 void read_wish(const char* text);
-// Files count below PLACE + below.
+// Counts the files below PLACE + below from now on.
 void count_below(const char* place, const char* below);
 
-// Counts a call. True if it is the one that fails; errno is then set.
+// Counts a call. Returns true if it is the call that fails; errno is then set.
 bool fails(Kind kind);
-// The same for a path or an open file below the folder. If the call does not fail, errno keeps its value.
+// Does the same for a path or an open file below the folder. If the call does not fail, errno keeps its
+// value.
 bool fails_below(Kind kind, const char* path);
 bool fails_below(Kind kind, int file);
 
-// The function of this name behind this library.
+// Returns the function of this name that this library replaces.
 template <class Function>
 Function* next(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));

@@ -162,7 +162,7 @@ int remove(const char* path) noexcept {
   return fails_below(kRemove, path) ? -1 : next<int(const char*)>("remove")(path);
 }
 
-// The file is closed either way. What was only read cannot be lost.
+// The file is closed either way. A file that was only read cannot be lost, so its call never fails.
 int close(int file) {
   const bool failed = is_written(file) && fails_below(kClose, file);
   const int error = errno;

@@ -22,7 +22,7 @@ struct Motion {
   }
 };
 
-// Corners of a square of 40 mm with this normal and another direction in it, around a middle.
+// Adds the four corners of a 40 mm square with centre middle_W, normal n_W and one side along u_W.
 void add_face(CarriedMotion& to, const Vec3& middle_W, const Vec3& n_W, const Vec3& u_W, const Motion& motion,
               double error_m = 0) {
   const Vec3 v_W = n_W.cross(u_W);
@@ -40,8 +40,8 @@ TEST(CarriedMotion, IsUnknownIfThereAreNoPlaces) {
   EXPECT_TRUE(result.motion.isZero(0));
 }
 
-// A displacement along the normal and the rotations about two axes of the face; about its middle.
-TEST(CarriedMotion, AFaceGivesWhatItShows) {
+// A face determines the displacement along its normal and the rotations about two axes within it.
+TEST(CarriedMotion, AFaceDeterminesItsNormalMotionAndTwoRotations) {
   const Vec3 middle_W(0.1, 0.02, -0.05);
   CarriedMotion places(kLever_m);
   const Motion motion{{0, 0.004, 0}, {0.05, 0, -0.03}};
@@ -51,7 +51,7 @@ TEST(CarriedMotion, AFaceGivesWhatItShows) {
   EXPECT_NEAR(result.motion[1], motion.about(middle_W)[1], 1e-12);
   EXPECT_NEAR((result.motion.tail<3>() - motion.w).norm(), 0, 1e-12);
   EXPECT_NEAR(std::hypot(result.motion[0], result.motion[2]), 0, 1e-12);
-  // Another centre of the same body.
+  // The motion about another point of the same body.
   const Vec3 above_W = middle_W + Vec3(0.01, 0.03, 0);
   const Vec3 there = places.about(above_W).motion.head<3>();
   const Vec3 expected = result.motion.head<3>() + motion.w.cross(above_W - middle_W);
@@ -64,7 +64,7 @@ TEST(CarriedMotion, MotionWithinAFaceIsNotSeen) {
   EXPECT_NEAR(places.about(kAbout_W).motion.norm(), 0, 1e-15);
 }
 
-TEST(CarriedMotion, APlaceAloneGivesADisplacementAlongItsNormal) {
+TEST(CarriedMotion, OnePositionGivesADisplacementAlongItsNormal) {
   const Vec3 n_W = Vec3(1, 2, -2) / 3;
   CarriedMotion places(kLever_m);
   places.add({kAbout_W + Vec3(0.02, 0, 0), n_W, 0.003, 0, 1});
@@ -73,7 +73,7 @@ TEST(CarriedMotion, APlaceAloneGivesADisplacementAlongItsNormal) {
   EXPECT_NEAR((places.about(kAbout_W).motion - expected).norm(), 0, 1e-12);
 }
 
-// An edge: places in a row along x turn about z, and not about x.
+// An edge: positions in a row along x determine the rotation about z, but not about x.
 TEST(CarriedMotion, ARowOfPlacesTurnsAboutOneAxis) {
   CarriedMotion places(kLever_m);
   const Motion motion{{0, 0.001, 0}, {0.1, 0, 0.04}};
@@ -85,7 +85,8 @@ TEST(CarriedMotion, ARowOfPlacesTurnsAboutOneAxis) {
   EXPECT_NEAR(found[1], 0.001, 1e-12);
 }
 
-// Places nearer than a third of the lever tell no rotation: noise would turn the tool by any angle.
+// Positions closer together than a third of the lever determine no rotation: noise would turn the tool by any
+// angle.
 TEST(CarriedMotion, PlacesCloseTogetherDoNotTurn) {
   CarriedMotion places(kLever_m);
   for (const double x : {-0.001, 0.001}) places.add({{x, 0, 0}, Vec3::UnitY(), x, 0, 1});
@@ -102,7 +103,8 @@ TEST(CarriedMotion, AFloorAndAWallGiveBothDisplacements) {
   EXPECT_NEAR(found.tail<3>().norm(), 0, 1e-12);
 }
 
-// Least squares of a full set of directions, against the motion that made the places, to the first order.
+// Three faces determine all six components. The least-squares motion equals the one that made the positions,
+// to first order.
 TEST(CarriedMotion, AnyMotionOfABoxIsFound) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> off(-1, 1);
@@ -120,7 +122,7 @@ TEST(CarriedMotion, AnyMotionOfABoxIsFound) {
   }
 }
 
-// x^2 / (x^2 + 4 e^2) of the motion.
+// `sure` is the fraction x^2 / (x^2 + 4 e^2) of a motion x that is measured with the error e.
 TEST(CarriedMotion, IsLessSureTheMoreNoiseMayExplainIt) {
   for (const double error_m : {0.0, 0.001, 0.01}) {
     CarriedMotion places(kLever_m);

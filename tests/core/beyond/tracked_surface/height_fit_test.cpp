@@ -16,7 +16,8 @@ namespace {
 
 using Surface = double (*)(double u, double v);
 
-// Points of a grid a third of a contact radius wide, noise of that standard deviation on all coordinates.
+// Points of a grid, 0.3 contact radii apart by default, with noise of standard deviation sigma on all
+// coordinates.
 PatchPoints sampled(Surface surface, double sigma, unsigned seed, double spacing = 0.3) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;  // test data only: its bits need not be the same everywhere
@@ -51,7 +52,7 @@ double ridge(double u, double) {
   return -0.5 * std::abs(u - 0.4);
 }
 
-TEST(HeightFit, APlaneIsThatPlane) {
+TEST(HeightFit, FitsAPlaneExactly) {
   const HeightMap map = fitted(sampled(tilted, 0, 1), 0);
   for (double u = -6; u <= 6; u += 0.37)
     for (double v = -4; v <= 4; v += 0.41) EXPECT_NEAR(map.height(u, v), tilted(u, v), 3e-4);
@@ -59,8 +60,8 @@ TEST(HeightFit, APlaneIsThatPlane) {
   EXPECT_NEAR(map.slopes(1, 1).v, -0.1, 1e-3);
 }
 
-// The mean over many draws. Noise along the ball's sides lowers it by sigma^2 / R; the ball is no quadratic
-// either. Planes alone would lie 0.8 below it in the widest window.
+// The mean over many draws. Noise along the ball's sides lowers the fitted height by sigma^2 / R, and a ball
+// is not exactly quadratic. Fits of planes alone would lie 0.8 below it in the widest window.
 TEST(HeightFit, ABallIsNotFlattenedByNoise) {
   for (const double sigma : {0.0, 0.2, 0.6}) {
     double sum = 0;
@@ -69,16 +70,17 @@ TEST(HeightFit, ABallIsNotFlattenedByNoise) {
   }
 }
 
-// Beside the ridge the flanks are found within a few standard errors; a window that crosses it would be off
-// by as much as its width.
+// The flanks beside the ridge are found within a few standard errors. A window that crosses the ridge would
+// be off by as much as its width.
 TEST(HeightFit, WindowsStopAtARidge) {
   const HeightMap map = fitted(sampled(ridge, 0.05, 3), 0.05);
   for (const double u : {-4.0, -2.5, 3.0, 4.5}) EXPECT_NEAR(map.height(u, 0), ridge(u, 0), 0.08) << u;
   EXPECT_NEAR(map.height(0.4, 0), 0, 0.2);
 }
 
-// sigma / sqrt(n) with n the points of the widest window, 10 by 10 contact radii.
-TEST(HeightFit, TheErrorIsThatOfTheWidestWindowOnAPlane) {
+// Expected error: sigma / sqrt(n), where n is the number of points in the widest window, 10 by 10 contact
+// radii.
+TEST(HeightFit, HasTheErrorOfTheWidestWindowOnAPlane) {
   const double sigma = 2;
   double squares = 0;
   HeightMap map;
@@ -88,7 +90,7 @@ TEST(HeightFit, TheErrorIsThatOfTheWidestWindowOnAPlane) {
   }
   const double expected = sigma / std::sqrt(100 / 0.09);
   EXPECT_NEAR(map.nearest_node(0, 0).error, expected, 0.15 * expected);
-  EXPECT_NEAR(std::sqrt(squares / 60), expected, 4 / std::sqrt(2 * 60.0) * expected);  // standard errors
+  EXPECT_NEAR(std::sqrt(squares / 60), expected, 4 / std::sqrt(2 * 60.0) * expected);  // four standard errors
 }
 
 TEST(HeightFit, DistinguishesNoiseFromEdges) {
@@ -102,7 +104,7 @@ TEST(HeightFit, DistinguishesNoiseFromEdges) {
   EXPECT_LT(clean.noise(), 1e-3);
 }
 
-// All sums are exact.
+// All sums are exact, so the order of the terms does not change them.
 TEST(HeightFit, TheOrderOfThePointsDoesNotMatter) {
   const PatchPoints points = sampled(ball, 1, 5);
   const HeightMap one = fitted(points, 1);
@@ -144,7 +146,7 @@ TEST(HeightMap, MovesAsAPlane) {
   EXPECT_NEAR(map.height(2, -3), before + 0.5 + 0.2 + 0.6, 1e-12);
 }
 
-// Against a QR decomposition of all terms.
+// The trend equals the least-squares solution from a QR decomposition of all six terms.
 TEST(Trend, IsTheQuadraticOfLeastSquares) {
   const PatchPoints points = sampled(ball, 0.3, 11);
   std::vector<PatchPlace> near;
@@ -164,14 +166,14 @@ TEST(Trend, IsTheQuadraticOfLeastSquares) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(trend.c[i], c[i], 1e-4) << i;
 }
 
-// James and Stein: what chance explains is not kept, mostly nothing at all.
+// James-Stein shrinkage: a curvature that chance explains is set to zero in most draws.
 TEST(Trend, NoiseHasNoCurvature) {
   int kept = 0;
   for (unsigned seed = 1; seed <= 50; ++seed)
     kept += fit_trend(sampled(tilted, 1, seed), 1).c[3] != 0 ? 1 : 0;
   EXPECT_LT(kept, 15);
-  // -1 / 20, and -36 / 8000 for the fourth powers of a ball within 6 contact radii; the standard error is
-  // sqrt(18 / n) / 36 = 0.0033 with n = 1260 points.
+  // Expected: -1 / 20, and -36 / 8000 from the fourth powers of a ball within 6 contact radii. The standard
+  // error is sqrt(18 / n) / 36 = 0.0033 with n = 1260 points.
   EXPECT_NEAR(fit_trend(sampled(ball, 1, 1), 1).c[3], -0.0545, 3 * 0.0033);
 }
 
@@ -182,7 +184,7 @@ TEST(Trend, FewPointsHaveNone) {
   for (const double c : fit_trend(points, 0.01).c) EXPECT_EQ(c, 0);
 }
 
-// Any curvature between two lines of points fits them: many points do not determine it.
+// Points on two lines fit any curvature between the lines, so even many points do not determine it.
 TEST(Trend, PointsThatDoNotDetermineACurvatureHaveNone) {
   PatchPoints points(scenes::kernels());
   points.reserve(400);

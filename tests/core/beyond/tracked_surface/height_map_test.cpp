@@ -14,7 +14,7 @@ HeightMap plane(double height, double slope_u, double error) {
   return map;
 }
 
-// x^3 / (x^2 + 4 e^2) of a change x, with e = 1.5 times the error of a node.
+// A change x is kept as x^3 / (x^2 + 4 e^2), where e is 1.5 times the error of a node.
 TEST(HeightMap, SteadyKeepsWhatNoiseDoesNotExplain) {
   const double error = 0.1, e = 1.5 * error;
   for (const double x : {0.0, 0.05, 0.3, 3.0}) {

@@ -9,7 +9,7 @@
 namespace remote_touch::height_profile_test {
 namespace {
 
-// So many points of sheets at these heights, with noise.
+// Profile of `points` points on each of the sheets, with noise sigma; all heights are shifted by `moved`.
 HeightProfile profile(const std::vector<double>& sheets, double sigma, int points, unsigned seed,
                       double moved = 0, double half_range = 15) {
   std::mt19937 random(seed);
@@ -48,8 +48,8 @@ TEST(HeightProfile, FindsTheShift) {
     }
 }
 
-// Both of two sheets must agree: a shift by their distance matches only one of them.
-TEST(HeightProfile, ASecondSheetShowsWhichOneItIs) {
+// Both sheets must match: a shift by the distance between the sheets matches only one of them.
+TEST(HeightProfile, ASecondSheetMakesTheShiftUnique) {
   const HeightProfile before = profile({0, -3}, 0.2, 500, 1), now = profile({0, -3}, 0.2, 500, 2, 1.8, 20);
   EXPECT_NEAR(before.shift_of(now.smoothed(0.3), 3), 1.8, 0.15);
 }
@@ -57,14 +57,14 @@ TEST(HeightProfile, ASecondSheetShowsWhichOneItIs) {
 TEST(HeightProfile, AValleyLiesBetweenTwoSheets) {
   const HeightProfile p = profile({0, -3}, 0.4, 400, 1).smoothed(0.2);
   EXPECT_NEAR(p.valley_from(0, -1), 1.5, 0.6);
-  EXPECT_EQ(p.valley_from(0, 1), 30);  // above there is none
+  EXPECT_EQ(p.valley_from(0, 1), 30);  // no valley above: returns 2 half_range
 }
 
 TEST(HeightProfile, AnEmptyProfileHasNoValley) {
   EXPECT_EQ(HeightProfile().valley_from(0, 1), 0);
 }
 
-// One sheet has no valleys that chance does not make, whatever its noise: 1 in 200 at most.
+// One sheet shows no valley, whatever its noise. Chance may make one in at most 1 of 200 draws.
 TEST(HeightProfile, NoiseMakesNoValleys) {
   int wrong = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {

@@ -1,5 +1,5 @@
-// The points of a patch as the kernels of every level take, measure and add them, against what is written for
-// one point.
+// The kernels of every level select, measure and add the points of a patch. The results must equal those of
+// the code for one point.
 #include "core/beyond/tracked_surface/patch_points.h"
 #include "core/kernels/isa.h"
 
@@ -45,7 +45,7 @@ PatchPoints taken(const Kernels& kernels, const GatheredPoints& gathered) {
   return points;
 }
 
-TEST(PatchPoints, AreThoseOfTheRegionAtTheirPlaces) {
+TEST(PatchPoints, AreThePointsOfTheRegionInItsFrame) {
   const GatheredPoints gathered = gathered_points();
   const PointsView all = gathered.view();
   for (const Kernels* kernels : supported_kernels()) {
@@ -127,7 +127,7 @@ TEST(PatchPoints, TheProfileCountsThemOneByOne) {
   }
 }
 
-// All are multiples of a power of two, so the order in which they are added has no part in them.
+// All terms are multiples of a power of two, so the order in which they are added does not change the sums.
 TEST(PatchPoints, SumsAreThoseAddedOneByOne) {
   const GatheredPoints gathered = gathered_points();
   const NearPlane plane{1, -2, 5, 0.4, 0.1, -0.2, 1.5};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnit = 0.005;
 
-// Planes y = -depth + 0.3 x, 1.5 mm between points, with noise of that standard deviation in contact radii.
+// Planes y = -depth + 0.3 x, with points 1.5 mm apart and noise of standard deviation sigma in contact radii.
 PointCloud planes(const std::vector<double>& depths_m, double sigma, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -60,7 +60,7 @@ TEST(SheetAcquisition, FacesDownIfItIsFoundFromBelow) {
   EXPECT_LT(sheet->frame.normal_W().dot(kNormal), -std::cos(0.1));
 }
 
-// Two planes 4 contact radii apart: the one that the proxy is at.
+// Two planes, 4 contact radii apart: the sheet is the one that is nearer to the proxy.
 TEST(SheetAcquisition, TheNearerOfTwoIsTheSheet) {
   const PointCloud cloud = planes({0, 0.02}, 0.2, 5);
   const auto upper = found(cloud, Vec3(0, 0.006, 0)), lower = found(cloud, Vec3(0, -0.028, 0));

@@ -60,7 +60,7 @@ TEST(SheetPatches, AnotherPatchBeginsAtTheDeepestContactThatNoneExplains) {
   }
 }
 
-// Two contacts with a wall can be an edge's.
+// Two contacts with a wall may belong to an edge, so they begin no patch.
 TEST(SheetPatches, NoneBeginsAtFewContacts) {
   const auto tool = scenes::box_tool(kHalf_m);
   const auto frame = floor_and_wall();

@@ -39,7 +39,7 @@ HeightMap flat_map() {
   return map;
 }
 
-// The profile of the frame before: the same sheets at height 0.
+// Shift of `now` against the frame before, in which the same sheets lie at height 0.
 SheetShift shift_of(PatchPoints now, double gate, double sigma, double second_below = 0) {
   PatchPoints before = sheet(0, 0, 0, sigma, 99, second_below);
   before.set_residuals(flat_map());
@@ -57,19 +57,20 @@ TEST(SheetRegistration, FindsHowFarASheetMovedAndTurned) {
   }
 }
 
-// A mean over n points: the standard error is sigma / sqrt(n), and one of ten draws is off by four of them in
-// 1 of 1500 cases.
+// The height is a mean over n points, with the standard error sigma / sqrt(n). One of ten draws is off by
+// four standard errors in 1 of 1500 cases.
 TEST(SheetRegistration, NoiseMovesItByItsStandardErrorAlone) {
   for (unsigned seed = 1; seed <= 10; ++seed)
     EXPECT_NEAR(shift_of(sheet(1.3, 0, 0, 1, seed), 3, 1).height, 1.3, 4 * kStandardError) << seed;
 }
 
-// The lower sheet, three contact radii below, has moved into the place of the upper one.
-TEST(SheetRegistration, ASecondSheetInTheFirstOnesPlaceIsNotTakenForIt) {
+// The sheets rise by 2.5 contact radii, so the lower one, which is 3 below, comes close to where the upper
+// one was.
+TEST(SheetRegistration, ASecondSheetAtThePositionOfTheFirstIsRejected) {
   EXPECT_NEAR(shift_of(sheet(2.5, 0, 0, 0.1, 1, 3), 3, 0.1, 3).height, 2.5, 4 * 0.1 * kStandardError);
 }
 
-// Points on a line say nothing of the slope across it, and few points nothing of any.
+// Points on a line do not determine the slope across it. A few points determine no slope at all.
 TEST(SheetRegistration, PointsThatDetermineNoPlaneGiveNoSlope) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;

@@ -1,4 +1,5 @@
-// Points of a frame that a tracked sheet leaves over, and stray points that are surfaces.
+// SheetSearch: a frame's points outside a tracked sheet's region, and the points shown within it.
+// StrayPoints: stray points that form a surface.
 #include "core/beyond/tracked_surface/sheet_search.h"
 
 #include <gtest/gtest.h>
@@ -24,8 +25,8 @@ std::set<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball) {
   return numbers;
 }
 
-// A search that shows every point of its region where it is finds what the frame's search finds.
-TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
+// If all points of the region are shown where they are, SheetSearch finds what the frame's search finds.
+TEST(SheetSearch, FindsThePointsOfTheFrameIfNoneIsMoved) {
   PointCloud cloud = scenes::random_cloud(3000, 0.08, 3);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.fixture_radius_m.push_back(i % 7 == 0 ? 0.004 : 0);
@@ -48,9 +49,10 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   shown.start(region, frame, buffer);
   for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place(i), gathered, points.source(i));
   shown.finish();
-  shown.reserve(2 * frame->size(), true, true);  // the shown points stay
+  shown.reserve(2 * frame->size(), true, true);  // keeps the shown points
   for (int i = 0; i < 200; ++i) {
-    // Radii between two points' distances: shown places are rounded to a micrometre.
+    // Shown positions are rounded to a micrometre, so balls that are 3 um smaller and larger bound the
+    // result.
     const Ball ball{Vec3(0.0007 * (i % 100) - 0.03, 0.0003 * i - 0.03, 0.001 * (i % 50) - 0.02),
                     0.004 + 0.0002 * (i % 90)};
     const auto less = found(*frame, {ball.centre, ball.radius - 3e-6}),
@@ -60,7 +62,7 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   }
 }
 
-TEST(SheetSearch, InsideTheRegionOnlyWhatWasAddedIsThere) {
+TEST(SheetSearch, ContainsOnlyAddedPointsInTheRegion) {
   const std::shared_ptr<const NeighbourSearch> frame = make_search(scenes::flat_grid(100));
   const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), kUnit), 8, 4};
   const auto buffer = std::make_shared<GatheredPoints>();
@@ -77,7 +79,7 @@ TEST(SheetSearch, InsideTheRegionOnlyWhatWasAddedIsThere) {
   for (const std::uint32_t number : outside) EXPECT_GE(cloud.point(number).norm(), 0.04 - 1e-5);
 }
 
-TEST(PatchFrame, PlacesComeBack) {
+TEST(PatchFrame, PositionsSurviveARoundTrip) {
   const PatchFrame frame(Vec3(0.1, -0.2, 0.3), Vec3(-1, 0.5, 2).normalized(), kUnit);
   for (const Vec3& p : {Vec3(0.11, -0.19, 0.31), Vec3(0.1, -0.2, 0.3), Vec3(0.05, -0.25, 0.28)})
     EXPECT_LT((frame.world(frame.place(p)) - p).norm(), 2e-6);

@@ -1,4 +1,4 @@
-// Points shown of a sheet that is tracked from frame to frame.
+// Points that a SheetTracker shows for a sheet which it tracks from frame to frame.
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnit = 0.005;
 
-// A plane y = height, 1.5 mm between points, with noise of that standard deviation in contact radii.
+// A plane y = height_m, with points 1.5 mm apart and noise of standard deviation sigma in contact radii.
 std::shared_ptr<const NeighbourSearch> plane(double height_m, double sigma, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -46,8 +46,8 @@ Shown shown_of(const NeighbourSearch& points, double height_m, double max_height
   return shown;
 }
 
-// The points of a sheet are brought onto it, and however noisy they are, chance makes no second sheet of
-// some.
+// The points of a sheet are moved onto it. However noisy they are, chance does not make a second sheet of
+// some of them.
 TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
   for (const double sigma : {0.2, 0.6, 1.0, 1.5, 2.0})
     for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -70,7 +70,7 @@ TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
     }
 }
 
-// Few points that are as many at every height of the noise: the profile has valleys all over, by chance.
+// Few points whose noise is distributed evenly: by chance, their profile has valleys at many heights.
 TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
   constexpr double kSpacing_m = 0.004, kReach_m = 0.09, kSigma = 1.5;
   for (unsigned seed = 1; seed <= 50; ++seed) {

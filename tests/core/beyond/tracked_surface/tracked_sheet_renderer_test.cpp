@@ -15,7 +15,7 @@ Frame frame_at(int index, const PointCloud& cloud) {
   return frame;
 }
 
-// A hand 5 mm below a flat cloud at rest, which is then seen no more.
+// A hand presses 5 mm into a flat cloud at rest. Frame 2 and later frames no longer contain the cloud.
 class LostSheet : public testing::Test {
  protected:
   void SetUp() override {
@@ -40,13 +40,13 @@ class LostSheet : public testing::Test {
   double pressed_N_ = 0;
 };
 
-TEST_F(LostSheet, IsHeldForSoManyFramesToTheTick) {
-  const double until_s = (2 + 2) * kInterval_s;  // two frames after the one that missed it
+TEST_F(LostSheet, IsHeldForExactlyTheGivenNumberOfFrames) {
+  const double until_s = (2 + 2) * kInterval_s;  // two frames after frame 2, the first one that missed it
   EXPECT_NEAR(step(-0.005, std::nextafter(until_s, 0.0)), pressed_N_, 1e-3);
   EXPECT_EQ(step(-0.005, until_s), 0);
 }
 
-TEST_F(LostSheet, IsShownOnWhenItIsSeenAgain) {
+TEST_F(LostSheet, ContinuesWhenItIsSeenAgain) {
   renderer_->on_frame(frame_at(3, seen_));
   EXPECT_NEAR(step(-0.005, 2.0), pressed_N_, 1e-3);
 }
@@ -57,8 +57,8 @@ TEST_F(LostSheet, FurtherMissedFramesDoNotProlongIt) {
   EXPECT_EQ(step(-0.005, 4 * kInterval_s), 0);
 }
 
-// The first frame after a minute without frames does not show the sheet, and no other frame follows: the
-// sheet is held for as long as after the longest interval that is no pause, not for two minutes.
+// The first frame after a minute without frames misses the sheet, and no other frame follows. The sheet is
+// held for two of the longest intervals that do not count as a pause, not for two minutes.
 TEST(TrackedSheetRenderer, APauseDoesNotProlongTheTimeForWhichALostSheetIsHeld) {
   TrackedSheetParameters p;
   p.sheet.max_missed_frames = 2;

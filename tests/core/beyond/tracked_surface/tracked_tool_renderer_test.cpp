@@ -1,4 +1,4 @@
-// A tool on tracked sheets: what noise does to it, and how it follows surfaces that move and turn.
+// A tool on tracked sheets: the effect of noise, and how the tool follows surfaces that move and turn.
 #include "core/beyond/tracked_surface/tracked_tool_renderer.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class Panels {
  public:
   explicit Panels(double sigma_m, unsigned seed = 1)
       : noise_m_(0, sigma_m > 0 ? sigma_m : 1), sigma_m_(sigma_m), random_(seed) {}
-  // A grid of n x n points around a middle, with the normal of the rotated y axis.
+  // Adds a grid of n x n points around middle_W. Its normal is the rotated y axis.
   Panels& add(const Vec3& middle_W, const Eigen::Quaterniond& turn, int n = 80) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
@@ -60,7 +60,7 @@ TrackedToolRenderer renderer(TrackedToolParameters p = {}) {
   return TrackedToolRenderer(p, scenes::box_tool(kHalf_m), scenes::kernels());
 }
 
-// Renders the ticks until the next frame; the last output.
+// Renders the ticks until the next frame and returns the last output.
 template <class Renderer>
 RenderOutput ticks(Renderer& r, int frame, const DeviceState& device) {
   RenderOutput out;
@@ -78,10 +78,11 @@ DeviceState approaching(int frame, const Vec3& up_W, const DeviceState& end) {
   return device(end.position_W + std::max(0, 4 - frame) * 0.01 * up_W, end.orientation_W);
 }
 
-// A plane of noise sigma under the plate: the error of height and tilt is that of a plane of least squares
-// through the points of its windows. A window has n = (10 r_c / spacing)^2 = 1111 points at most: the height
-// then has the standard error sigma / sqrt(n), and the slope sigma / sqrt(n) / (10 r_c / sqrt(12)). A plate
-// lies on the highest of what is below it, and edges of windows are nearer: no more than a few of these.
+// The plate lies on a plane with noise sigma. Its errors of height and tilt are those of a least-squares
+// plane through the points of the windows. A window has n = (10 r_c / spacing)^2 = 1111 points at most. The
+// standard error of the height is sigma / sqrt(n), and that of the slope is sigma / sqrt(n) / (10 r_c /
+// sqrt(12)). A plate lies on the highest points below it, and edges of windows are nearer, so the limits are
+// four standard errors.
 TEST(TrackedTool, ErrorsOnANoisyPlaneAreThoseOfAFit) {
   for (const double sigma : {0.2, 1.0, 3.0}) {
     TrackedToolRenderer r = renderer();
@@ -103,8 +104,8 @@ TEST(TrackedTool, ErrorsOnANoisyPlaneAreThoseOfAFit) {
   }
 }
 
-// The rim is as high on all sides, so that the middle of what is lowest is over the hole, where no sheet is
-// seen. Over a wide hole the plate lies on points as they were measured, within their noise.
+// The rim is equally high on all sides, so the middle of the tool's lowest positions is over the hole, where
+// no sheet is seen. The plate lies on measured points over a wide hole, within their noise.
 TEST(TrackedTool, LiesOnTheRimOfAHole) {
   for (const double radius_m : {0.01, 0.014, 0.018}) {
     TrackedToolRenderer r = renderer();
@@ -125,7 +126,7 @@ TEST(TrackedTool, LiesOnTheRimOfAHole) {
   }
 }
 
-// Every bit is that of the tool of chapter 6 if the scene has no noise and rests.
+// The output equals that of the tool of chapter 6 bit for bit if the scene has no noise and is at rest.
 TEST(TrackedTool, EqualsThePlainToolAtRestWithoutNoise) {
   TrackedToolRenderer r = renderer();
   ToolParameters p;
@@ -145,7 +146,7 @@ TEST(TrackedTool, EqualsThePlainToolAtRestWithoutNoise) {
   }
 }
 
-// The plate lies on a plane that turns about z by 2 degrees a frame and rises: it turns with it.
+// The plate lies on a plane that rises and turns about z by 2 degrees a frame. The plate turns with it.
 TEST(TrackedTool, ATiltingPlaneTakesThePlateAlong) {
   for (const double sigma : {0.0, 0.5}) {
     TrackedToolRenderer r = renderer();
@@ -167,9 +168,9 @@ TEST(TrackedTool, ATiltingPlaneTakesThePlateAlong) {
   }
 }
 
-// The force has no step at a frame on a plane that rises by 5 mm a frame with the hand 8 mm below it. Nor has
-// the torque on a plane that turns, too. There the plate slides down the slope, so the force along it
-// changes.
+// The plane rises by 5 mm a frame and the hand stays 3 mm below it: the force has no step at a frame. The
+// torque has no step either if the plane also turns. The plate then slides down the slope, so the force along
+// the slope changes.
 TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
   for (const double turn_rad : {0.0, 0.02}) {
     TrackedToolRenderer r = renderer();
@@ -186,7 +187,7 @@ TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
       }
       const double hand_m = std::max(0.03 - 0.2 * time_s, -0.003) + rise_m(time_s * kFrames_hz);
       const RenderOutput out = r.step(device({0, hand_m, 0}), time_s);
-      if (is_new && frame > 11) {  // steps of 3 N and 0.011 N m without (4.15)
+      if (is_new && frame > 11) {  // steps of 3 N and 0.011 N m if (4.15) is off
         if (turn_rad == 0) {
           EXPECT_LT((out.force_N - last.force_N).norm(), 0.25) << frame;
         }
@@ -197,8 +198,8 @@ TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
   }
 }
 
-// A floor and a wall, both noisy; both move. The tool stays at its distance from both, but for single frames
-// in which a point of the corner that is on neither sheet holds it, by up to 3.5 sigma.
+// A noisy floor and a noisy wall, which both move. The tool keeps its distance from both. A point of the
+// corner that belongs to neither sheet holds the tool off by up to 3.5 sigma in single frames.
 TEST(TrackedTool, AFloorAndAWallAreTwoSheets) {
   const double sigma_m = 0.2 * kUnit_m;
   TrackedToolRenderer r = renderer();
@@ -223,7 +224,8 @@ TEST(TrackedTool, AFloorAndAWallAreTwoSheets) {
   EXPECT_EQ(tracked, 2);
 }
 
-// A plane of 1 m/s crosses a free plate of 1 cm by 3 cm a frame, in noise: it takes the plate along.
+// A plane that moves at 1 m/s, 3 cm a frame, sweeps over a free plate of 1 cm. It carries the plate along,
+// with or without noise.
 TEST(TrackedTool, ASheetThatSweepsOverAFreeToolTakesItAlong) {
   for (const double sigma : {0.0, 0.4}) {
     TrackedToolRenderer r = renderer();
@@ -260,8 +262,8 @@ TEST(TrackedTool, AMissingSurfaceHoldsForOneFrame) {
   EXPECT_EQ(held_m(11), -0.003);
 }
 
-// A minute without frames, then one without the surface, and no other: the surface is held for three frames,
-// not for another minute.
+// A minute passes without frames. Then one frame arrives without the surface, and no other follows. The
+// surface is held for three frames, not for another minute.
 TEST(TrackedTool, APauseDoesNotProlongTheTimeForWhichAMissingSurfaceIsHeld) {
   TrackedToolRenderer r = renderer();
   Panels panels(0);

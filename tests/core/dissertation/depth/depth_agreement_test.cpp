@@ -1,5 +1,5 @@
-// The depth pipeline beside the equations in plain double precision: made scenes, every size of window, and
-// recorded frames.
+// The depth pipeline compared with the equations in double precision: synthetic scenes, every window size,
+// and recorded frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,8 +24,9 @@ struct Deviation {
   std::size_t normals = 0, undecided = 0;
 };
 
-// Limits for a decidable normal. Single precision cannot decide it if two eigenvalues are nearly the same or
-// the points lie nearly on a line. The side of a plane seen edge-on, as of one pixel column, is open.
+// Limits for a decidable normal. Single precision cannot decide it if two eigenvalues are nearly equal or if
+// the points lie nearly on a line. Nor can it decide which side of a plane faces the camera if the plane is
+// seen edge-on, as from one pixel column.
 constexpr double kClearGap = 2e-3, kClearWidth = 1e-3, kClearSide = 1e-4, kClearLine = 1e-6;
 
 bool undecided(const ReferenceDepth& reference, std::size_t i, const Vec3& p_C) {
@@ -65,8 +66,8 @@ Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
   return d;
 }
 
-// The aim is 0.05 degrees. A filtered depth is off by 8e-6, the error of the weights, of the differences to
-// its neighbours.
+// The limit for normals is 0.05 degrees. The error of a filtered depth is 8e-6 (the error of the weights)
+// times the differences to its neighbours.
 void expect_as_reference(const std::string& what, const scenes::DepthScene& scene, const Settings& settings,
                          double max_undecided = 0) {
   const RigidTransform X_WC = some_pose();

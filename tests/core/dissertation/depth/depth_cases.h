@@ -48,7 +48,7 @@ inline bool has_normal(const PointCloud& cloud, std::size_t i) {
   return !std::isnan(cloud.nx[i]);
 }
 
-// Exact for small angles too, where the cosine is not.
+// The arctangent is accurate for small angles too. The arccosine is not.
 inline double angle_deg(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree;
 }

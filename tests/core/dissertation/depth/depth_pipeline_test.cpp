@@ -15,7 +15,7 @@ namespace {
 
 using namespace depth_cases;
 
-TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
+TEST(DepthPipeline, HasTheSameBitsOnEveryLevelAndForAnyNumberOfThreads) {
   const scenes::DepthScene scene = with_holes(noisy_waves(333, 250), 0.05);
   for (const Settings& settings :
        {Settings{}, Settings{true, 5, 0.02, 11, 0.01}, Settings{false, 9, 0.02, 9, 0.014},
@@ -38,7 +38,7 @@ TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
 
 TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
   scenes::DepthScene scene = with_holes(noisy_waves(200, 150), 0.05);
-  // Rows behind the image in memory, which continue its surface, must have no part in it.
+  // The memory behind the image holds rows that continue its surface. They must not change the result.
   const std::size_t pixels = scene.depth.z_m.size();
   scene.depth.z_m.reserve(2 * pixels);
   for (std::size_t i = 0; i < pixels; ++i) scene.depth.z_m.push_back(scene.depth.z_m[pixels - 200 + i % 200]);
@@ -88,7 +88,7 @@ TEST(DepthPipeline, HolesAreNoPointsAndDoNotMatter) {
   }
 }
 
-TEST(DepthPipeline, FramesWithoutPointsAndTinyOnes) {
+TEST(DepthPipeline, HandlesEmptyAndTinyFrames) {
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 5}, {3, 3}, {40, 30}, {0, 0}}) {
     scenes::DepthScene scene = scenes::plane(scenes::kinect(width, height), {0.1, 0.2, 1}, 0.8);
     const PointCloud cloud = processed(scene);
@@ -129,7 +129,7 @@ TEST(DepthPipeline, PointsOnALineHaveNoNormal) {
   }
 }
 
-TEST(DepthPipeline, NormalsOfAPlaneAndASphere) {
+TEST(DepthPipeline, FindsTheNormalsOfAPlaneAndASphere) {
   const scenes::DepthScene plane = scenes::plane(scenes::kinect(160, 120), {0.4, -0.7, 1}, 0.7);
   Settings settings, fast = kFastDepthPipeline;
   settings.filter = fast.filter = false;
@@ -139,8 +139,8 @@ TEST(DepthPipeline, NormalsOfAPlaneAndASphere) {
     ASSERT_LE(angle_deg(fast_flat.normal(i), plane.normals[i]), 0.01) << i;
   }
 
-  // Within 45 degrees of the axis, away from the rim; the window's points are even on all sides of the centre
-  // but for perspective and curvature.
+  // Only normals within 45 degrees of the axis are checked, away from the rim. The window's points lie evenly
+  // on all sides of the centre there, except for perspective and curvature.
   const scenes::DepthScene ball = scenes::sphere(scenes::kinect(160, 120), {0, 0, 0.7}, 0.06);
   const PointCloud round = processed(ball, settings);
   std::size_t seen = 0;
@@ -212,7 +212,8 @@ TEST(DepthPipeline, ACloudKeepsItsOtherColumns) {
   }
 }
 
-// The dissertation's 0.025 m against 0.01 m, on a step of 25 mm at 0.8 m with 1.5 mm of noise.
+// Compares the dissertation's sigma_f of 0.025 m with 0.01 m, on a step of 25 mm at 0.8 m with 1.5 mm of
+// noise.
 TEST(DepthPipeline, ANarrowFilterKeepsAStepAndTakesAwayAsMuchNoise) {
   const auto with = [](double sigma_f_m) {
     Settings settings;
@@ -228,12 +229,12 @@ TEST(DepthPipeline, ANarrowFilterKeepsAStepAndTakesAwayAsMuchNoise) {
   EXPECT_NEAR(wide.max_error_m, 0.008, 0.0005);
   EXPECT_NEAR(narrow.max_error_m, 0.0008, 0.0002);
   EXPECT_NEAR(narrow.noise_gain / wide.noise_gain, 1, 0.15);
-  EXPECT_LT(wide.noise_gain, 0.13);  // 1/9 of 81 equal weights
+  EXPECT_LT(wide.noise_gain, 0.13);  // 81 equal weights would give 1/9
 }
 
 TEST(DepthPipeline, AllocatesNothingAfterTheFirstFrame) {
   const scenes::DepthScene scene = noisy_waves(160, 120);
-  omp_set_num_threads(1);  // the threads' own memory is not ours
+  omp_set_num_threads(1);  // other threads would allocate memory of their own
   DepthPipeline pipeline({}, best());
   PointCloud cloud, organised = cloud_from_depth(scene.depth, scene.camera, kIdentity);
   pipeline.process(scene.depth, scene.camera, kIdentity, cloud);

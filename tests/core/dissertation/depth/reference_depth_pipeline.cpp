@@ -16,8 +16,8 @@ struct Points {
   CameraIntrinsics camera;
   std::vector<Vec3> p;
 
-  // work(p, i, j) for all points in the window around (u, v), i columns and j rows from it, that of the pixel
-  // itself included; of every step-th column and row.
+  // Calls work(p, i, j) for every finite point in the window around pixel (u, v), including the pixel itself.
+  // i and j are the column and the row relative to (u, v). Visits every step-th column and row.
   template <class Work>
   void window(int u, int v, int size, int step, const Work& work) const {
     for (int j = -(size / 2); j <= size / 2; j += step)
@@ -86,8 +86,8 @@ Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, 
   return found;
 }
 
-// The plane A x + B y + C z = 1 through the neighbours (a z, b z, z), a and b affine in the pixel: least
-// squares of its equation in the pixels (i, j), which is 1 / z = A i + B j + C times z.
+// The plane A x + B y + C z = 1 through the neighbours (a z, b z, z), where a and b are affine in the pixel.
+// Solves 1 / z = A i + B j + C for the pixels (i, j) by least squares, with each equation multiplied by z.
 Plane plane_of_inverse_depth(const DepthPipelineSettings& settings, const Points& points, int u, int v) {
   const Vec3& p0 = points.p[static_cast<std::size_t>(v * points.camera.width + u)];
   if (!p0.allFinite()) return {};
@@ -116,7 +116,7 @@ Plane plane_of_inverse_depth(const DepthPipelineSettings& settings, const Points
   return found;
 }
 
-// Normals of `planes` that a pixel may take: the one with the least error, and others whose errors differ
+// The normals of `planes` that a pixel may have: the one with the least error, and others whose errors differ
 // from it by less than the rounding of single precision.
 struct Taken {
   Vec3 normal;
@@ -151,7 +151,7 @@ Taken sharp_normal(const DepthPipelineSettings& settings, const Points& points,
   for (const auto& [error, plane] : all) {
     if (!(error <= min.first * (1 + kRounding) + kMinError)) continue;
     best.as_good.push_back(plane->normal);
-    if (plane->middle < 1e-3) best.gap = 0;  // its normal is not known well
+    if (plane->middle < 1e-3) best.gap = 0;  // this normal is not well determined
   }
   return best;
 }

@@ -9,11 +9,12 @@ namespace remote_touch {
 
 struct ReferenceDepth {
   PointCloud cloud;
-  // Eigenvalues of the covariance of each point as fractions of their sum. gap: middle minus smallest; if it
-  // is small, the normal is undetermined. middle: the middle one; if it is small, the points define no plane.
+  // Eigenvalues of the covariance of each point as fractions of their sum. gap is the middle one minus the
+  // smallest; if it is small, the normal is undetermined. middle is the middle one; if it is small, the
+  // points define no plane.
   std::vector<double> gap, middle;
-  // The normals that single precision may choose. With sharp edges: those whose planes have equally small
-  // errors; otherwise only that of the cloud.
+  // The normals that single precision may choose. If edges are sharp, they are those whose planes have
+  // equally small errors; otherwise there is only the cloud's normal.
   std::vector<std::vector<Vec3>> as_good;
 };
 

@@ -1,4 +1,5 @@
-// sharp_edges: normals go on to a crease and to a limb, and where there is no edge all stays as it is.
+// sharp_edges: normals are right up to a crease and up to a limb. A surface without an edge keeps its
+// normals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +43,7 @@ double rms_deg(const PointCloud& cloud, const scenes::DepthScene& truth, int mar
   return std::sqrt(sum / count);
 }
 
-TEST(SharpEdges, NormalsGoOnToACrease) {
+TEST(SharpEdges, NormalsAreRightUpToACrease) {
   const scenes::DepthScene truth = roof();
   const PointCloud rounded = processed(truth, blunt()), sharp = processed(truth, kFastDepthPipeline);
   for (int away = 2; away <= 5; ++away) {
@@ -53,7 +54,7 @@ TEST(SharpEdges, NormalsGoOnToACrease) {
   }
 }
 
-TEST(SharpEdges, NormalsGoOnToACreaseInNoise) {
+TEST(SharpEdges, NormalsAreRightUpToACreaseInNoise) {
   scenes::DepthScene scene = roof();
   scenes::add_noise(scene.depth, 0.001, 3);
   const PointCloud rounded = processed(scene, blunt()), sharp = processed(scene, kFastDepthPipeline);
@@ -86,21 +87,21 @@ TEST(SharpEdges, APlaneAndABallInNoiseStayAsTheyAre) {
 }
 
 // A step of 15 mm, which a window of 20 mm averages.
-TEST(SharpEdges, NormalsGoOnToALimb) {
+TEST(SharpEdges, NormalsAreRightUpToALimb) {
   const scenes::DepthScene truth = scenes::step(scenes::kinect(160, 120), 0.8, 0.015);
   const PointCloud rounded = processed(truth, blunt()), sharp = processed(truth, kFastDepthPipeline);
   EXPECT_GT(rms_deg(rounded, truth, 12, 3, 4), 10);
   EXPECT_LT(rms_deg(sharp, truth, 12, 3, 5), 0.05);
 }
 
-// A pixel without a plane of its own takes no normal from a plane beside it.
+// A pixel without a plane of its own receives no normal from a plane beside it.
 TEST(SharpEdges, AHoleAndALineOfPointsStayWithoutANormal) {
   scenes::DepthScene scene = roof();
   for (int v = 0; v < 120; ++v)
     for (int u = 30; u < 60; ++u)
       if (u != 45) scene.depth.z_m[static_cast<std::size_t>(v * 161 + u)] = kNaN;
   Settings settings = kFastDepthPipeline;
-  settings.normal_radius_m = 0.01;  // ends within the gap
+  settings.normal_radius_m = 0.01;  // the window ends within the gap
   const PointCloud cloud = processed(scene, settings);
   for (int v = 0; v < 120; ++v)
     for (int u = 30; u < 60; ++u) EXPECT_FALSE(has_normal(cloud, static_cast<std::size_t>(v * 161 + u))) << u;

@@ -62,7 +62,7 @@ TEST(FixtureSequence, IsOverIfItHasNoSteps) {
   play({}, {{0, 1, true, 0, false, 0}});
 }
 
-TEST(FixtureSequence, StepsThatEndAtOnceAllComeInOneTick) {
+TEST(FixtureSequence, StepsThatEndAtOnceAllRunInOneTick) {
   play({kAtOnce, kAtOnce, kAtOnce}, {{0, 0, false, 3, false, 0, {0, 1, 2}}, {0.001, 0, false, 3, false, 0}});
   play(
       {kAtOnce, kReach, kAtOnce},
@@ -109,7 +109,7 @@ TEST(FixtureSequence, APressBeforeItsStepIsUpDoesNotCount) {
                                                                  {0.002, 1, true, 1, false, 0},  // only held
                                                                  {0.003, 0, false, 1, false, 0},
                                                                  {0.004, 1, false, 2, false, 0, {1}}});
-  // A press in the very tick that ends the step before counts.
+  // A press counts if it comes in the tick that ends the previous step.
   play({kReach, step(StepStart::button, StepEnd::immediately)},
        {{0, 0, false, 0, true, 0, {0}}, {0.001, 1, true, 2, false, 0, {1}}});
 }
@@ -127,7 +127,7 @@ TEST(FixtureSequence, BeginsAtItsTimeAndNotBefore) {
   play({not_before(kAtOnce, 0.7)}, {{0, 0, false, 0, false, 0},
                                     {0.699, 0, true, 0, false, 0},
                                     {700 / 1000.0, 0, false, 1, false, 0, {0}}});
-  // A time that is past by then does not hold a step up.
+  // A start time that has already passed does not delay a step.
   play({not_before(kReach, 0.002), not_before(kAtOnce, 0.001)},
        {{0, 0, true, 0, false, 0}, {0.002, 0, true, 2, false, 0, {0, 1}}});
 }
@@ -159,7 +159,7 @@ TEST(FixtureSequence, ReachedAtTheDeadlineIsDone) {
        {{0, 0, false, 0, true, 0, {0}}, {0.5, 1, false, 1, false, 0}});
 }
 
-TEST(FixtureSequence, TheNextStepBeginsInTheTickOfTheDeadlineWithOneOfItsOwn) {
+TEST(FixtureSequence, AMissedDeadlineBeginsTheNextStepWithItsOwnDeadline) {
   const SequenceStep s = with_deadline(kReach, 0.5);
   play({s, s, s}, {{0, 0, false, 0, true, 0, {0}},
                    {0.5, 0, false, 1, true, 1, {1}},
@@ -177,7 +177,7 @@ TEST(FixtureSequence, AStepThatHasNotBegunIsNotMissed) {
        {{0, 0, false, 0, false, 0}, {10, 0, true, 0, false, 0}});
 }
 
-// --- what a step may ask for ---
+// --- what a step may state ---
 
 TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
   SequenceStep s;

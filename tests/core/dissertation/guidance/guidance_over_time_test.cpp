@@ -95,7 +95,7 @@ TEST_P(GuidanceOverTime, TheGoalIsThatOfTheActiveFixtureWhileAnotherFades) {
   }
 }
 
-// The force of a lost target fades as gently.
+// The force of a lost target fades in the same way.
 TEST_P(GuidanceOverTime, TheForceFallsWhenTheTargetIsLost) {
   GuidanceSettings fading = plain();
   fading.fade_s = 0.05, fading.hold_s = 0.1;

@@ -66,8 +66,9 @@ TEST(GuidanceGoal, AgainstAPlaneTheAxisPointsAtItByTheShortestWay) {
   }
 }
 
-// The plane looks away: half a turn, about any axis, and nothing that is not a rotation near to it.
-TEST(GuidanceGoal, APlaneBehindIsTurnedTo) {
+// The plane faces away: the goal is half a turn, about any axis. Close to that case the goal is still a
+// rotation.
+TEST(GuidanceGoal, TheAxisTurnsToAPlaneBehind) {
   std::mt19937 random(2);
   for (const double aside : {0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-5, 4.4e-5, 4.6e-5, 1e-4, 1e-2}) {
     for (int i = 0; i < 20; ++i) {

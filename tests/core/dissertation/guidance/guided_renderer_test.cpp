@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, In
 
 // --- the wrench ---
 
-// Beside a renderer of the same kind that knows no guidance, in a press into the grid.
+// The guided renderer runs beside a plain renderer of the same kind, in a press into the grid.
 TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
   GuidedRenderer r = guided(GetParam(), {guide("valve")});
   const auto alone = inner(GetParam());
@@ -64,7 +64,7 @@ TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
   EXPECT_LT((r.step(device(kAbove), 0).force_N - Vec3(1, 0, 0)).norm(), 1e-12);
 }
 
-TEST_P(EveryRenderer, NoGuidanceBeforeAFrameOrWithoutATarget) {
+TEST_P(EveryRenderer, HasNoGuidanceBeforeAFrameOrWithoutATarget) {
   GuidedRenderer r = guided(GetParam(), {guide("valve")});
   expect_no_guidance(r.step(device(kAbove), 0));
   r.on_frame(frame({}));
@@ -101,7 +101,7 @@ TEST_P(EveryRenderer, AStaleFrameLeavesTheTarget) {
   EXPECT_EQ(r.step(device(kAbove), 0.3).guidance->goal_W, kRight);
 }
 
-// --- which fixtures begin how ---
+// --- how fixtures begin ---
 
 TEST(GuidedRenderer, AFixtureBeginsAsTheOppositeOfItsFirstAction) {
   const auto switches = std::make_shared<FixtureSwitches>();
@@ -195,7 +195,7 @@ TEST_P(EveryRenderer, AGoalIsReachedWithinTheFixturesRadiusAndAngle) {
   }
 }
 
-// Behind a surface the device can be at the goal where the tool, which the robot follows, is not.
+// The device may be at a goal behind a surface while the tool, which the robot follows, is held before it.
 TEST_P(EveryRenderer, ItIsTheToolThatReachesAGoal) {
   GuidedRenderer r =
       guided(GetParam(), {guide("valve")}, {until_reached(step(FixtureAction::activate, "valve"))});

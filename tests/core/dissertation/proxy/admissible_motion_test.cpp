@@ -1,4 +1,5 @@
-// Motion that enters none of the regions that touch, against all pairs of them, in any order of the points.
+// admissible_motion() enters none of the touching regions. It is compared with all pairs of them, in any
+// order of the points.
 #include "core/dissertation/proxy/admissible_motion.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ Vec3 motion(const PointCloud& c, const Vec3& u) {
   return found_motion(c, u).value();
 }
 
-// Small integers: many normals lie in one plane, and some come twice.
+// Normals of small whole numbers: many lie in one plane, and some occur twice.
 std::vector<Vec3> whole_normals(spheres::Draw& draw) {
   std::vector<Vec3> normals;
   const auto whole = [&] { return std::floor(draw.between(-2, 3)); };
@@ -46,7 +47,8 @@ std::vector<Vec3> whole_normals(spheres::Draw& draw) {
   return normals;
 }
 
-// The nearest to u of all that a plane, or the line of two, allows.
+// Distance from u to the nearest motion that no region forbids, among u, its projections onto the plane of
+// each region and onto the line of each two planes, and no motion.
 double min_change(const std::vector<Vec3>& normals, const Vec3& u) {
   double min = u.norm();  // no motion
   const auto look = [&](const Vec3& s) {
@@ -101,7 +103,7 @@ TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatter) {
   }
 }
 
-// All touching normals in a groove lie in a plane, and any two of them leave the same line.
+// The touching normals in a groove all lie in one plane, so any two of them leave the same line.
 TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatterInAGroove) {
   ProxyParameters p;
   p.contact_rule = ContactRule::regions;

@@ -1,5 +1,6 @@
-// A proxy pressed into a crease of two walls, by the three contact rules. The plane of the mean normal (4.6)
-// leads it into the walls and (4.10) out again: it wanders. The other rules find the nearest position.
+// A proxy is pressed into a crease of two walls under each of the three contact rules. The plane of the mean
+// normal lets (4.6) move it into the walls and (4.10) move it out again, so it wanders. The other rules find
+// the nearest position.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +48,7 @@ Rest rest(const ProxyParameters& p, const PointCloud& cloud, const Vec3& hip_W) 
   return found;
 }
 
-template <class Look>  // (opening_deg, xi, cloud, hip_W)
+template <class Look>  // look(opening_deg, xi, cloud, hip_W)
 void at_every_crease(const Look& look) {
   for (const double opening_deg : kOpenings_deg) {
     const PointCloud cloud = crease(opening_deg);
@@ -63,7 +64,7 @@ ProxyParameters parameters(ContactRule rule, double xi) {
   return p;
 }
 
-// The limit that the page of experiments tells.
+// These limits are stated on the page of experiments.
 TEST(Crease, ProxyOnTheMeanPlaneWandersByUpTo3mmBelow100Degrees) {
   double sharp_m = 0, wide_m = 0;
   at_every_crease([&](double opening_deg, double xi, const PointCloud& cloud, const Vec3& hip_W) {

@@ -1,4 +1,4 @@
-// The cases in which proxy renderers are known to fail, each through the whole renderer.
+// Cases in which proxy renderers are known to fail. Each test runs the whole renderer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kContactRadius = 0.005, kShell = 1.0001e-5;
 
-// The same HIP for some ticks; the last output.
+// Renders the same HIP for some ticks and returns the last output.
 RenderOutput hold(Renderer& renderer, const Vec3& hip, int ticks = 20, double start_s = 0) {
   RenderOutput out;
   for (int tick = 0; tick < ticks; ++tick) out = renderer.step({hip}, start_s + 0.001 * tick);
   return out;
 }
 
-TEST(EdgeCase, Float32PointsOneMetreAway) {
+TEST(EdgeCase, Float32PointsOneMetreAwayAreTouched) {
   PointCloud cloud = scenes::flat_grid(60, 0.0015, 1.0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.x[i] = static_cast<float>(cloud.x[i] + 1), cloud.y[i] = static_cast<float>(cloud.y[i]);
@@ -33,7 +33,7 @@ TEST(EdgeCase, Float32PointsOneMetreAway) {
   }
 }
 
-TEST(EdgeCase, APointExactlyAtTheProxy) {
+TEST(EdgeCase, APointExactlyAtTheProxyDoesNoHarm) {
   PointCloud cloud;
   cloud.append({0, 0, 0});
   ProxyRenderer renderer = scenes::renderer();
@@ -43,11 +43,11 @@ TEST(EdgeCase, APointExactlyAtTheProxy) {
   EXPECT_TRUE(stuck.proxy_W.allFinite());
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 5, 0.001);
   EXPECT_TRUE(out.proxy_W.allFinite());
-  EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);  // out it came
+  EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);  // the proxy has moved out
 }
 
 TEST(EdgeCase, SymmetricPointsHaveNoNormal) {
-  PointCloud cloud;  // midway between two points the sum of directions vanishes
+  PointCloud cloud;  // the sum of directions vanishes midway between two points
   cloud.append({0.004, 0, 0}), cloud.append({-0.004, 0, 0});
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(cloud));
@@ -57,7 +57,7 @@ TEST(EdgeCase, SymmetricPointsHaveNoNormal) {
   }
 }
 
-TEST(EdgeCase, HipAtTheProxy) {
+TEST(EdgeCase, AHipAtTheProxyGivesNoForce) {
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(scenes::flat_grid(40)));
   const Vec3 touching(0, kContactRadius, 0);
@@ -67,7 +67,7 @@ TEST(EdgeCase, HipAtTheProxy) {
   EXPECT_NEAR((out.proxy_W - touching).norm(), 0, 2e-4);
 }
 
-TEST(EdgeCase, EmptyCloud) {
+TEST(EdgeCase, AnEmptyCloudGivesNoForce) {
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(PointCloud{}));
   const RenderOutput out = hold(renderer, Vec3(0.1, -0.2, 0.3));
@@ -76,7 +76,7 @@ TEST(EdgeCase, EmptyCloud) {
   EXPECT_TRUE(out.converged);
 }
 
-TEST(EdgeCase, AllPointsMissing) {
+TEST(EdgeCase, ACloudOfMissingPointsGivesNoForce) {
   PointCloud cloud = scenes::flat_grid(30);
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.x[i] = cloud.y[i] = cloud.z[i] = std::nan("");
   ProxyRenderer renderer = scenes::renderer();
@@ -95,19 +95,19 @@ TEST(EdgeCase, TheCloudVanishesUnderTheProxy) {
   EXPECT_TRUE(out.force_N.isZero(0));
 }
 
-TEST(EdgeCase, ACloudOfOnePoint) {
+TEST(EdgeCase, ACloudOfOnePointIsTouched) {
   PointCloud cloud;
   cloud.append({0, 0, 0});
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(cloud));
   hold(renderer, Vec3(0.001, 0.02, 0), 1);
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 100);
-  // The proxy is in line with the HIP above the point, or has slipped round the point: never nearer than the
-  // contact radius.
+  // The proxy stays above the point, in line with the HIP, or slips round the point. It is never nearer than
+  // the contact radius.
   EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);
 }
 
-TEST(EdgeCase, HipJumpsAcrossTheCloud) {
+TEST(EdgeCase, AHipThatJumpsAcrossTheCloudIsHeld) {
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(scenes::flat_grid(100)));
   hold(renderer, Vec3(0, 3, 0.0002), 1);
@@ -128,7 +128,8 @@ TEST(EdgeCase, AHipBeyondAllReasonIsRefused) {
   }
 }
 
-// A square grid holds a ball as long as half its diagonal is shorter than the radius: spacing sqrt(2) r_c.
+// A square grid holds a ball as long as half the diagonal of a cell is shorter than the ball's radius. The
+// largest spacing is therefore sqrt(2) r_c.
 TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
   for (const bool holds : {true, false}) {
     const double spacing = (holds ? 1.41 : 1.415) * kContactRadius;
@@ -141,7 +142,8 @@ TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
   }
 }
 
-// The steps go round in circles on a rough cloud. The step budget ends the tick, and nothing grows.
+// The steps run in circles on a rough cloud. The step budget ends the tick, and the proxy does not drift
+// away.
 TEST(EdgeCase, LimitCyclesEndWithTheBudget) {
   PointCloud cloud = scenes::flat_grid(60);
   const PointCloud noise = scenes::random_cloud(static_cast<int>(cloud.size()), 0.008, 5);
@@ -165,8 +167,8 @@ TEST(EdgeCase, FramesOutOfOrderAreDropped) {
   renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0), 5));
   hold(renderer, Vec3(0, 0.03, 0), 1, 0.17);
   const RenderOutput before = hold(renderer, Vec3(0, -0.01, 0), 30, 0.171);
-  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 4));  // late
-  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 5));  // twice
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 4));  // arrives late
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 5));  // arrives twice
   const RenderOutput out = renderer.step({Vec3(0, -0.01, 0)}, 0.201);
   EXPECT_EQ(out.status, RenderStatus::stale_frame_dropped);
   EXPECT_EQ(out.frame_index, 5);
@@ -174,8 +176,8 @@ TEST(EdgeCase, FramesOutOfOrderAreDropped) {
   EXPECT_EQ(renderer.step({Vec3(0, -0.01, 0)}, 0.202).status, RenderStatus::ok);
 }
 
-// A sensor that repeats a frame bit for bit: the cloud seems to stop, and then to jump by two steps.
-TEST(EdgeCase, RepeatedAndDroppedFramesOfASteadyRise) {
+// A sensor repeats a frame bit for bit, or drops it: the cloud seems to stop, and then to jump by two steps.
+TEST(EdgeCase, RepeatedAndDroppedFramesKeepASteadyRise) {
   for (const bool dropped : {false, true}) {
     ProxyRenderer renderer = scenes::renderer();
     for (int tick = 0; tick < 600; ++tick) {
@@ -212,7 +214,7 @@ TEST(EdgeCase, TheFrameRateChanges) {
 }
 
 // A sheet one point thick can be touched from both sides; the proxy stays on the side it came from.
-TEST(EdgeCase, ThinSheetFromBothSides) {
+TEST(EdgeCase, AThinSheetHoldsFromBothSides) {
   for (const double side : {1.0, -1.0}) {
     ProxyRenderer renderer = scenes::renderer();
     renderer.on_frame(scenes::frame(scenes::flat_grid(60)));
@@ -225,7 +227,7 @@ TEST(EdgeCase, ThinSheetFromBothSides) {
   }
 }
 
-// Chapter 5 in the same proxy: the region around a single point of r_f = 0.1 m is never entered, Fig 5.5.
+// Chapter 5 with the same proxy: the region around a single point of r_f = 0.1 m is never entered, Fig 5.5.
 TEST(EdgeCase, AFixtureRadiusKeepsTheProxyOut) {
   PointCloud cloud;
   cloud.append({0, 0, 0});

@@ -48,7 +48,7 @@ TEST(Classify, ContactRegionIncludesBothEnds) {
   EXPECT_EQ(classify(infinity, kDefault), ContactState::free);
 }
 
-TEST(UnitNormal, KeepsThePreviousOneWhenTheSumIsNothing) {
+TEST(UnitNormal, KeepsThePreviousNormalIfTheSumIsZero) {
   const Vec3 previous(0, 0.6, 0.8);
   EXPECT_EQ(unit_normal(with_normal_sum({0, 0, 0}), previous), previous);
   EXPECT_EQ(unit_normal(with_normal_sum({1e-13, 0, -1e-13}), previous), previous);  // rounding, no direction
@@ -56,7 +56,7 @@ TEST(UnitNormal, KeepsThePreviousOneWhenTheSumIsNothing) {
   EXPECT_LT((unit_normal(with_normal_sum({30, 0, -40}), previous) - Vec3(0.6, 0, -0.8)).norm(), 1e-15);
 }
 
-// A cloud a metre away whose coordinates are what a float sensor hands over.
+// A cloud one metre away with coordinates in single precision, as a sensor delivers them.
 TEST(FreeStep, LandsInTheContactShellAMetreAway) {
   PointCloud cloud = scenes::flat_grid(60);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -71,7 +71,8 @@ TEST(FreeStep, LandsInTheContactShellAMetreAway) {
     const Vec3 s = free_step(near, p, hip - p, kDefault);
     ASSERT_LT(s.norm(), (hip - p).norm());
     EXPECT_EQ(classify(nearest(cloud, p + s), kDefault), ContactState::contact);
-    // The rounding of positions of a metre, with much room; the shell is 1e-5 m to either side.
+    // The tolerance is the rounding of positions of a metre, with a wide margin. The shell is 1e-5 m to
+    // either side.
     EXPECT_NEAR(nearest(cloud, p + s), kDefault.contact_radius_m(), 1e-12);
     EXPECT_LT(s.cross(hip - p).norm(), 1e-16) << "the step leads towards the HIP";
     for (const double fraction : {0.2, 0.5, 0.8, 0.95, 0.999})
@@ -89,7 +90,7 @@ TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
   EXPECT_EQ(free_step(near, {0, 0.0051, 0}, {1, 0, 0}, kDefault), Vec3(1, 0, 0));
 }
 
-TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
+TEST(FreeStep, HasTheSameBitsFromTheKeptListAndFromHops) {
   const PointCloud cloud = scenes::random_cloud(500, 0.03, 3);
   const PointCloud from = scenes::random_cloud(400, 0.03, 4), path_length = scenes::random_cloud(400, 1, 5);
   const auto search = std::make_shared<BruteForceSearch>(cloud);
@@ -116,7 +117,7 @@ TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
   EXPECT_GT(missed, 100);
 }
 
-TEST(FreeStep, UnhinderedItIsTheWayToTheHipBitForBit) {
+TEST(FreeStep, ReachesTheHipExactlyIfNothingIsInTheWay) {
   PointCloud aside;
   aside.append({0, -1, 0});
   Neighbourhood near = around(aside);
@@ -136,7 +137,7 @@ TEST(FreeStep, PrintedRootPullsTheProxyBackToPointsBehind) {
   EXPECT_EQ(free_step(near, Vec3::Zero(), u, kDefault), u);
   // Roots -0.013 and -0.003 of the point at -0.008.
   EXPECT_LT((free_step(near, Vec3::Zero(), u, printed) - Vec3(-0.003, 0, 0)).norm(), 1e-17);
-  // Ahead both readings agree; beside the ray there is no root.
+  // Both readings agree for a point ahead. A point beside the ray has no root.
   EXPECT_NEAR(free_step(near, {-0.016, 0, 0}, u, printed).x(), 0.003, 1e-17);
   EXPECT_EQ(free_step(near, {0, 0.006, 0}, u, printed), u);
 }
@@ -157,7 +158,7 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
     const Vec3 s = entrenched_step(points.view(), scenes::kernels(), p, normal, Vec3::Zero(), kDefault);
     EXPECT_GT(s.dot(normal), 0);
     EXPECT_LT(s.cross(normal).norm(), 1e-16);
-    // The last one out is at r_c: a root that was too long would leave it farther away.
+    // The last point to leave is at r_c. A root that is too large would leave it farther away.
     EXPECT_NEAR(nearest(inside, p + s), kDefault.contact_radius_m(), 1e-14);
   }
 }
@@ -199,9 +200,9 @@ TEST(ContactStep, IsInTheTangentPlaneWhenTheHipIsBelowIt) {
   EXPECT_LT(below, 150);
 }
 
-TEST(ContactStep, ShareBelowR1AndSmallStepsFromThere) {
+TEST(ContactStep, IsAShareOfDistancesBelowR1AndASmallStepAbove) {
   const double r1 = kDefault.r1_m, just_below = std::nextafter(r1, 0.0);
-  // (4.11) and (4.12), the HIP 1 mm below the tangent plane and then above it.
+  // (4.11) and (4.12): the HIP is 1 mm below the tangent plane, and then above it.
   EXPECT_DOUBLE_EQ(contact_step(kUp, {0.001, -0.001, 0}, kDefault).x(), 0.0003);
   EXPECT_DOUBLE_EQ(contact_step(kUp, {just_below, -0.001, 0}, kDefault).x(), 0.3 * just_below);
   EXPECT_DOUBLE_EQ(contact_step(kUp, {r1, -0.001, 0}, kDefault).x(), 0.1 * r1);
@@ -272,7 +273,7 @@ TEST(FixedRule, TakesSmallStepsWhateverIsAhead) {
   EXPECT_DOUBLE_EQ(contact_step(kUp, {2e-5, -0.01, 0}, fixed).x(), 2e-5);
 }
 
-TEST(HasConverged, WithinThetaOfTheNormal) {
+TEST(HasConverged, IsTrueWithinThetaOfTheNormal) {
   const Vec3 n = Vec3(2, -1, 2) / 3, t = Vec3(1, 2, 0) / std::sqrt(5.0);
   for (const double theta : {0.1, 1.0, 30.0, 89.0})
     for (const double length : {1e-4, 0.03, 2.0}) {

@@ -1,4 +1,5 @@
-// The way out of regions that enclose the proxy, and regions that grow, against closed forms and plain loops.
+// Exits from regions that enclose the proxy, and regions that grow, compared with closed forms and plain
+// loops.
 #include "core/dissertation/proxy/region_exit.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ PointCloud two_balls(double half_distance_m, double radius_m) {
   return cloud;
 }
 
-// Along the normal, in the plane between the balls: at the height of a right triangle.
+// The exit leads along the normal, in the plane between the balls, to the height of a right triangle.
 TEST(StraightExit, LeavesTwoBallsInThePlaneBetweenThem) {
   const double a = 0.01, radius_m = 0.02, reach_m = radius_m + kDefault.contact_radius_m();
   Neighbourhood near = neighbourhood(two_balls(a, radius_m));
@@ -41,7 +42,7 @@ TEST(StraightExit, LeavesTwoBallsInThePlaneBetweenThem) {
   }
 }
 
-// Balls in a row across the normal, and one that closes the row above: the shortest line leads to the side.
+// Three balls in a row along the normal: the shortest line out leads to the side.
 TEST(StraightExit, TakesTheShortestOfItsLines) {
   PointCloud cloud;
   for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
@@ -90,7 +91,7 @@ TEST(StraightExit, LeavesAsManyRegionsAsItMay) {
   }
 }
 
-// Never against the normal, though that is nearest.
+// The nearest exit would lead against the normal.
 TEST(StraightExit, NeverGoesAgainstTheNormal) {
   Neighbourhood near = neighbourhood(two_balls(0, 0.02));
   const auto exit =
@@ -99,7 +100,8 @@ TEST(StraightExit, NeverGoesAgainstTheNormal) {
   EXPECT_GE(exit->y(), -0.019);
 }
 
-// A frame brings random regions around a proxy that touched nothing: it is out in the same tick.
+// A frame brings random regions around a proxy that touched nothing. The proxy is outside in the same tick,
+// unless the closing steps are turned off.
 TEST(StraightExit, NoFrameTrapsTheProxy) {
   int trapped = 0, ticks = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
@@ -143,7 +145,8 @@ TEST(NearestRegion, IsTheOneWithTheSmallestDistance) {
   }
 }
 
-// All numbers are exact in binary, so that both distances are the same; outside of both regions and inside.
+// All numbers are exact in binary, so both distances are equal. The proxy is outside both regions, and then
+// inside.
 TEST(NearestRegion, IsTheSmallestOfEquallyNearOnesInAnyOrder) {
   constexpr double small_m = 0x1p-8, large_m = 0x1p-7;
   for (const double distance_m : {0x1p-8, -0x1p-9})
@@ -166,7 +169,8 @@ TEST(NearestRegion, IsNoneIfThereAreNoPoints) {
 
 // --- regions that grow ---
 
-// A proxy of reach r over points of a grid rests between r and r - sag(r) above it, anywhere from r1 to r2.
+// A proxy of reach r rests on the points of a grid between r - sag(r) and r above it. The contact shell adds
+// r2 - r1.
 double sag_m(double reach_m) {
   constexpr double kSpacing_m = 0.0015;
   return reach_m - std::sqrt(reach_m * reach_m - 0.5 * kSpacing_m * kSpacing_m);
@@ -184,7 +188,7 @@ struct GrowingFrame {
   double height_m, radius_m;
 };
 
-// v_hat after each frame at 30 Hz, the HIP 1 cm inside.
+// Returns v_hat after each frame at 30 Hz, with the HIP 1 cm below the points.
 std::vector<double> estimates(bool growth_is_motion, const std::vector<GrowingFrame>& frames) {
   ProxyParameters p;
   p.growth_is_motion = growth_is_motion, p.steps_per_tick = 100;
@@ -202,7 +206,7 @@ std::vector<double> estimates(bool growth_is_motion, const std::vector<GrowingFr
   return all;
 }
 
-// A region of 8 mm that appears at once: 0.24 m/s as printed.
+// A region of 8 mm appears from one frame to the next: the printed method estimates 0.24 m/s.
 TEST(GrowingRegion, CountsAsMotionOnlyIfGrowthIsMotion) {
   const std::vector<GrowingFrame> appears{{0, 0}, {0, 0}, {0, 0.008}, {0, 0.008}};
   const double limit_m_per_s = 30 * (sag_m(kDefault.contact_radius_m()) + kBand_m);  // 4 mm/s

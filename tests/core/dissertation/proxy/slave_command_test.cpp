@@ -15,8 +15,8 @@ PointCloud region(const Vec3& centre, double radius) {
   return cloud;
 }
 
-// Two regions that overlap, on a line with the proxy. The way out of either along its normal, which is that
-// line, ends inside the other: a proxy between them goes to and fro for ever.
+// Two regions on a line with the proxy, which overlap once they are enlarged by the contact radius. The exit
+// from either along this line ends inside the other, so a proxy between them moves to and fro for ever.
 PointCloud trap() {
   PointCloud cloud;
   cloud.append({-0.01, 0, 0}), cloud.append({0.04, 0, 0});
@@ -61,7 +61,7 @@ TEST(SlaveCommand, IsHeldWhileTheProxyIsInsideARegion) {
   EXPECT_EQ(out.slave_W, later);
 }
 
-// Steps (5.11) never end here; a straight line does.
+// Steps of (5.11) never lead out here. A straight line does.
 TEST(SlaveCommand, FollowsTheProxyOutOfATrap) {
   const PointCloud cloud = trap();
   ProxyRenderer renderer = scenes::renderer();
@@ -76,8 +76,9 @@ TEST(SlaveCommand, FollowsTheProxyOutOfATrap) {
   }
 }
 
-// A proxy that ends a tick inside a region was outside on its way. The command is its newest position
-// outside. The positions within a tick of many steps are found with as many ticks of one step.
+// A proxy that ends a tick inside a region may have been outside during the tick. The command is its latest
+// position outside. A second renderer with one step a tick computes the positions within a tick of many
+// steps.
 TEST(SlaveCommand, IsTheLatestPositionOutsideWithinATick) {
   ProxyParameters many, one;
   many.velocity_estimate = one.velocity_estimate = false;
@@ -132,7 +133,8 @@ TEST(SlaveCommand, IsHeldWhileTheDeviceIsLost) {
   }
 }
 
-// A hand that starts inside has nowhere to send the slave until the proxy is out; as printed it stays inside.
+// A hand that starts inside a region has no position to command until the proxy is outside. The proxy stays
+// inside under the printed rule.
 TEST(SlaveCommand, IsNoneUntilTheProxyWasOutside) {
   ProxyParameters p;
   p.max_exit_steps = 0;

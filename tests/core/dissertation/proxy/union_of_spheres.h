@@ -1,5 +1,5 @@
-// Random unions of forbidden regions, ways of a hand through them, and what is true about them by plain loops
-// over all points: nothing here uses the kernels, the searches or the renderer.
+// Random unions of forbidden regions, paths of a hand through them, and reference results by plain loops over
+// all points. This file uses neither the kernels nor the searches nor the renderer.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,7 @@ class HandPath {
   Vec3 middle_ = Vec3::Zero(), phase_ = Vec3::Zero(), sway_ = Vec3::Zero(), rad_per_s_ = Vec3::Zero();
 };
 
-// The points whose regions are within reach of p, for many questions near p.
+// Returns the points whose regions are within reach of p. They suffice for many queries near p.
 inline PointCloud close_to(const PointCloud& cloud, const Vec3& p, double reach) {
   PointCloud close;
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -88,8 +88,8 @@ inline PointCloud close_to(const PointCloud& cloud, const Vec3& p, double reach)
   return close;
 }
 
-// x brought out of the regions that hold it, each in turn straight to the margin; nothing where that does not
-// end.
+// Moves x out of the regions that contain it, one after the other, straight to the margin. Returns nullopt if
+// x is not outside all of them after 12 rounds.
 inline std::optional<Vec3> brought_out(const PointCloud& cloud, Vec3 x, double margin) {
   for (int round = 0; round < 12; ++round) {
     bool out = true;
@@ -104,8 +104,9 @@ inline std::optional<Vec3> brought_out(const PointCloud& cloud, Vec3 x, double m
   return std::nullopt;
 }
 
-// The allowed position (r_n >= margin) within radius of p that is nearest to the hip, of many tried: p moved
-// in random directions by several lengths, as it is and brought out. Its distance to the hip.
+// Result of a random search around p for an allowed position (r_n >= margin) near the HIP: the position and
+// its distance to the HIP. Each try moves p in a random direction by one of several lengths, brings it out of
+// the regions and drops it if it is farther than radius from p.
 struct Better {
   Vec3 x;
   double distance;

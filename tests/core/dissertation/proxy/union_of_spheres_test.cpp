@@ -1,4 +1,4 @@
-// Chapter 5 on clouds of many regions that overlap, against plain loops over all points.
+// Chapter 5 on clouds of many regions that overlap, compared with plain loops over all points.
 #include "tests/core/dissertation/proxy/union_of_spheres.h"
 
 #include <gtest/gtest.h>
@@ -100,8 +100,8 @@ TEST(UnionOfSpheres, TheSlaveIsNeverSentIntoARegion) {
     });
 }
 
-// The way out of one region may end in another, so that a tick now and then ends inside, seldom with the
-// proxy's centre: a limit of the method, which the numbers bound.
+// The exit from one region may end in another. A tick therefore ends inside a region now and then, seldom
+// with the proxy's centre inside. This is a limit of the method, and the test bounds it.
 TEST(UnionOfSpheres, ATickMayEndInsideARegion) {
   for (const ProxyParameters& p : settings()) {
     int ticks = 0, touching = 0, entrenched = 0, centre_inside = 0;
@@ -123,7 +123,7 @@ TEST(UnionOfSpheres, ATickMayEndInsideARegion) {
   }
 }
 
-// One closing step: the proxy has to go back now and then. Ten closing steps: it never had to here.
+// One closing step: the proxy has to go back now and then. Ten closing steps are hardly ever used up.
 TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
   for (ProxyParameters p : settings())
     for (const int closing : {1, 10}) {
@@ -145,7 +145,7 @@ TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
     }
 }
 
-// The same when the cloud sways, and a frame brings regions to where the proxy is.
+// The same while the cloud sways, so that frames bring regions to where the proxy is.
 TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutsideAMovingCloud) {
   for (const double m_per_s : {0.02, 0.1, 0.3}) {
     ProxyParameters p;
@@ -189,7 +189,8 @@ TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
     ++(one_region ? alone : among_others);
     not_nearest += gain > tolerance;
   });
-  // Regions within r3 turn the normal (4.1) although they are not touched, and with it what (5.18) asks for.
+  // Regions within r3 turn the normal (4.1) although they are not touched. This shifts the position at which
+  // (5.18) is met.
   RecordProperty("converged_looked_at", alone + among_others);
   RecordProperty("among_other_regions", among_others);
   RecordProperty("of_these_not_nearest", not_nearest);
@@ -197,10 +198,10 @@ TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
   EXPECT_GT(among_others, 500);
 }
 
-// --- the contact rule that keeps every touching region by itself ---
+// --- the contact rule that treats every touching region separately ---
 
-// Touching regions grown or shrunk until p lies on their margin: what the contact shell leaves open is then
-// no nearer position.
+// Grows or shrinks the touching regions until p lies on their margin. The width of the contact shell then
+// leaves no nearer position.
 PointCloud as_touched(const PointCloud& cloud, const Vec3& p, const ProxyParameters& settings) {
   PointCloud grown = cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -210,10 +211,10 @@ PointCloud as_touched(const PointCloud& cloud, const Vec3& p, const ProxyParamet
   return grown;
 }
 
-// No tick ends inside a region, a hand that rests finds a proxy that rests, and where it has converged no
-// allowed position around is nearer to the HIP by more than an angle of theta leaves over, 0.4 um; or, where
-// three normals nearly lie in a plane, than the regions' curvature opens behind a barrier, 2 um.
-TEST(UnionOfSpheres, RegionsByThemselvesAreNeverEnteredAndConvergeNearestToTheHip) {
+// No tick ends inside a region, and a hand at rest leads to a proxy at rest. No allowed position around a
+// converged proxy is nearer to the HIP by more than the angle theta leaves over, 0.4 um. If three normals
+// nearly lie in a plane, the limit is what the regions' curvature opens behind a barrier, 2 um.
+TEST(UnionOfSpheres, SeparateRegionsAreNeverEnteredAndTheProxyConvergesNearestToTheHip) {
   for (ProxyParameters p : settings()) {
     p.contact_rule = ContactRule::regions;
     const double radius = 0.0002;
@@ -255,7 +256,7 @@ PointCloud one_and_more(int count, unsigned seed) {
   return cloud;
 }
 
-// (4.2), (5.5), (5.8) by a plain loop; NaN stands for own.
+// (4.2), (5.5), (5.8) by a plain loop. A stiffness of NaN counts as `own`.
 double mean_stiffness(const PointCloud& cloud, const Vec3& p, double own) {
   long double weights = 0, sum = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -268,8 +269,8 @@ double mean_stiffness(const PointCloud& cloud, const Vec3& p, double own) {
   return static_cast<double>(sum / weights);
 }
 
-// Returns the largest relative deviation of force / (|u| - r_c) from the expected value. With one step a
-// tick, the force starts from the position in which the previous tick ended.
+// Returns the largest relative deviation of force / (|u| - r_c) from the expected value. If a tick has one
+// step, the force starts from the position in which the previous tick ended.
 template <class Expected>
 double max_deviation(const PointCloud& cloud, double own, Expected expected, int& asked) {
   ProxyParameters p;

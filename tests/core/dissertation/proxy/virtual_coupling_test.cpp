@@ -27,7 +27,7 @@ Vec3 still(VirtualCoupling& c, const Vec3& u) {
   return c.force(u, 0, Vec3::Zero(), kStiffness);
 }
 
-TEST(VirtualCoupling, NoForceWithinTheContactRadius) {
+TEST(VirtualCoupling, HasNoForceWithinTheContactRadius) {
   VirtualCoupling c = coupling();
   EXPECT_EQ(still(c, Vec3::Zero()), Vec3(0, 0, 0));
   EXPECT_EQ(still(c, {0, -0.9 * kContactRadius, 0}), Vec3(0, 0, 0));
@@ -50,7 +50,7 @@ TEST(VirtualCoupling, SpringPullsTheHandToTheProxy) {
       for (const double k : {100.0, 600.0, 5000.0}) {
         const Vec3 force = c.force(length * to_hip, 0, Vec3::Zero(), k);
         const Vec3 want = -k * (length - kContactRadius) * to_hip;
-        EXPECT_LT((force - want).norm(), 1e-15 * k) << length;  // a few roundings of up to 1 m
+        EXPECT_LT((force - want).norm(), 1e-15 * k) << length;  // a few roundings of lengths up to 1 m
       }
   }
 }
@@ -70,8 +70,8 @@ TEST(VirtualCoupling, VelocityTermMovesTheProxyOnBetweenFrames) {
   EXPECT_LT((force(VelocityForce::none) - spring(u)).norm(), 1e-13);
 }
 
-// The purpose of (4.15): the force just before an update equals the force just after it, when the proxy has
-// been carried on.
+// The purpose of (4.15): the force immediately before a frame equals the force immediately after it, when the
+// proxy has been moved along with the surface.
 TEST(VirtualCoupling, MinusMakesTheForceContinuousAtAFrame) {
   const double speed = 0.1, interval = 1.0 / 30;
   const Vec3 before(0, -0.03, 0), v(0, speed, 0), after = before - speed * interval * Vec3::UnitY();
@@ -85,8 +85,8 @@ TEST(VirtualCoupling, MinusMakesTheForceContinuousAtAFrame) {
   EXPECT_NEAR(jump(VelocityForce::plus), 2 * kStiffness * speed * interval, 1e-12);
 }
 
-// (4.16) takes the difference to the tick before, also to one without a force: the damper is there with the
-// first tick of a contact.
+// (4.16) uses the difference from the previous tick, even if that tick had no force. The damper therefore
+// acts from the first tick of a contact.
 TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
   const double damping = 5;
   VirtualCoupling c = coupling(damping);
@@ -100,7 +100,8 @@ TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
   EXPECT_NEAR(pull_N(0.007), expected_N(0.007, 0.003), 1e-12);
 }
 
-// The rate after missed ticks is a difference over all of them, not n times too large.
+// The rate after n missed ticks is the difference divided by all of them. Otherwise it would be n times too
+// large.
 TEST(VirtualCoupling, TheDamperSpreadsADifferenceOverMissedTicks) {
   const double damping = 5;
   for (const double ticks : {1.0, 2.0, 40.0}) {
@@ -137,8 +138,8 @@ TEST(VirtualCoupling, DamperFollowsTheRateOfTheDistance) {
   }
 }
 
-// Work on the hand over whole cycles: a damper takes energy; the printed sign gives it.
-TEST(VirtualCoupling, PlusDampsAndMinusFeeds) {
+// Work on the hand over whole cycles: a damper removes energy, and the printed sign adds energy.
+TEST(VirtualCoupling, PlusDampsAndMinusAddsEnergy) {
   const auto work = [](DampingSign sign) {
     VirtualCoupling c = coupling(3, sign);
     double sum = 0, force = still(c, {0, distance(0), 0}).y();
@@ -155,7 +156,7 @@ TEST(VirtualCoupling, PlusDampsAndMinusFeeds) {
   EXPECT_NEAR(work(DampingSign::minus), closed, 0.01 * closed);
 }
 
-TEST(VirtualCoupling, DamperSeesTheDistanceThatTheForceIsMadeOf) {
+TEST(VirtualCoupling, DamperUsesTheDistanceThatGivesTheForce) {
   // The HIP keeps up with the surface: u_hat stays, so there is nothing to damp.
   VirtualCoupling c = coupling(10);
   for (int tick = 0; tick < 5; ++tick) {

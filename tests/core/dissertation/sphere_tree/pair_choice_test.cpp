@@ -20,7 +20,7 @@ struct Region {
   Vec3 n_W;
 };
 
-// Chooses among the regions of leaf 7; what was kept comes back with its motions.
+// Chooses among the regions of leaf 7. Returns the kept pairs with their motions.
 std::vector<ChosenPair> chosen_of(std::vector<Region> regions, std::size_t max = PairChoice::kCapacity) {
   // The kernels read and write whole vectors.
   constexpr std::size_t kRoom = 8 + 2 * kLanes;
@@ -71,7 +71,7 @@ TEST(PairChoice, RatesAPairByTheShortestMotionThatViolatesIt) {
     ASSERT_EQ(pairs.size(), 2U) << degrees;
     EXPECT_LE(pairs[1].motion_m, shortest_m * 1.0001) << degrees;
     EXPECT_GE(pairs[1].motion_m, other.gap_m) << degrees;
-    // The rate is a bound of one pair of regions; it is close where the normals are.
+    // The rated motion is a lower bound. It is close to the shortest motion if the normals are close.
     if (degrees <= 35) {
       EXPECT_GE(pairs[1].motion_m, 0.95 * shortest_m) << degrees;
     }

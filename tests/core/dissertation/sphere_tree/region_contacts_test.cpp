@@ -75,7 +75,7 @@ struct Held {
         contacts(leaves, ToolParameters{}.look_ahead_m, scenes::kernels()),
         motion({}, *tool, 0.05) {}
   void frame(const PointCloud& cloud) { contacts.on_frame(formatted<RegionTree>(cloud)), updated = true; }
-  // Ticks until the tool rests.
+  // Renders ticks until the tool rests. Fails if it does not within 200.
   void move_to(const ToolPose& device) {
     for (int tick = 0; tick < 200; ++tick)
       if (motion.move(pose, device, contacts, std::exchange(updated, false)).at_rest) return;
@@ -108,15 +108,15 @@ TEST(RegionContacts, ABallLiesInTheCreaseOfTwoRegions) {
   held.frame(regions_at({{-0.03, 0, 0}, {0.03, 0, 0}}));
   held.pose.p_W = {0.01, 0.1, 0};
   held.move_to(at({0.002, 0, 0}));
-  EXPECT_NEAR(held.pose.p_W.y(), 0.04, 1e-4);  // 30, 40, 50 mm
+  EXPECT_NEAR(held.pose.p_W.y(), 0.04, 1e-4);  // a triangle of 30, 40 and 50 mm
   EXPECT_NEAR(held.pose.p_W.x(), 0, 1e-4);
 }
 
-// The same where both lines are alike: one of the two must not hide the other.
+// The same in a more obtuse crease. Neither of the two contacts may hide the other.
 TEST(RegionContacts, ABallLiesInAnObtuseCrease) {
   Held held(kBox, one_leaf(0.01));
   const Vec3 a = Vec3(1, 0.05, 0.05).normalized(), b = Vec3(1, 0.85, 0.85).normalized();
-  held.frame(regions_at({-0.05 * a, -0.05 * b}));  // the ball touches both with its middle in the origin
+  held.frame(regions_at({-0.05 * a, -0.05 * b}));  // the ball touches both with its centre at the origin
   held.pose.p_W = 0.05 * (a + b);
   held.move_to(at(-0.005 * (a + b)));
   EXPECT_NEAR(held.pose.p_W.norm(), 0, 2e-4);
@@ -129,7 +129,8 @@ TEST(RegionContacts, TheToolFollowsTheDeviceIfThereAreNoRegions) {
   EXPECT_EQ(held.pose, device);
 }
 
-// Wherever the device goes, no leaf ends a tick inside a region: against all pairs, one after the other.
+// No leaf ends a tick inside a region, wherever the device goes. The depth is computed over all pairs, one by
+// one.
 TEST(RegionContacts, NoLeafEndsInsideARegion) {
   const PointCloud cloud = wheel();
   Held held(kBox, spheres_of_box());
@@ -146,7 +147,7 @@ TEST(RegionContacts, NoLeafEndsInsideARegion) {
   EXPECT_GT(touching, 20);
 }
 
-// A frame that swallows the tool pushes it out, and not to where the regions are.
+// A frame whose regions enclose the tool pushes it out, to a pose outside all regions.
 TEST(RegionContacts, AFrameThatSwallowsTheToolPushesItOut) {
   const PointCloud cloud = wheel();
   for (const double y_m : {0.03, 0.02, 0.01, -0.02}) {
@@ -160,8 +161,8 @@ TEST(RegionContacts, AFrameThatSwallowsTheToolPushesItOut) {
   }
 }
 
-// Few regions 8 mm apart: their creases are so obtuse that both lines are within ten degrees, and a leaf that
-// kept only one of them would go to and fro.
+// Regions 8 mm apart form creases so obtuse that both normals are within ten degrees of each other. A leaf
+// that kept only one of them would move to and fro.
 TEST(RegionContacts, ComesToRestInAnObtuseCrease) {
   for (const double apart_m : {0.001, 0.003, 0.008, 0.02}) {
     std::vector<Vec3> places;
@@ -187,7 +188,8 @@ TEST(RegionContacts, ComesToRestInAnObtuseCrease) {
   }
 }
 
-// Regions all around leave a hole that is too small for the tool: no motion leads out, and it rests as well.
+// Regions all around leave a hole that is too small for the tool. No motion leads out, but the tool comes to
+// rest.
 TEST(RegionContacts, ComesToRestInAWedge) {
   std::vector<Vec3> places;
   for (int i = 0; i < 600; ++i) {
@@ -210,7 +212,7 @@ TEST(RegionContacts, ComesToRestInAWedge) {
 
 // The chosen contacts are checked against all pairs: no motion of half the look-ahead that obeys the contacts
 // of a leaf violates any of its pairs.
-TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
+TEST(RegionContacts, TheContactsOfALeafRepresentAllItsPairs) {
   const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts contacts(one_leaf(0.006), look_ahead_m, scenes::kernels());
@@ -238,8 +240,8 @@ TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
   EXPECT_GT(pairs, 10000);
 }
 
-// The same contacts from every level of the kernels, and from whatever was looked at before.
-TEST(RegionContacts, DoNotDependOnTheLevelOrTheLookBefore) {
+// The contacts are the same on every level of the kernels, and they do not depend on earlier queries.
+TEST(RegionContacts, DoNotDependOnTheLevelOrOnEarlierQueries) {
   const PointCloud cloud = wheel(), directions = scenes::random_cloud(60, 0.05, 4);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));

@@ -39,7 +39,7 @@ PointCloud regions_at(const std::vector<Vec3>& places) {
   return cloud;
 }
 
-// The output after enough ticks to rest.
+// Returns the output after enough ticks for the tool to rest.
 RenderOutput held(SphereTreeRenderer& r, const DeviceState& device, int ticks = 20) {
   RenderOutput out;
   for (int i = 0; i < ticks; ++i) out = r.step(device, 0.001 * i);
@@ -83,7 +83,7 @@ TEST(SphereTreeRenderer, ReportsTheGapWithinTheLookAhead) {
   EXPECT_EQ(out.tool->tool_penetration_m, 0);
 }
 
-// Points without r_f have no region, and one of them is passed through.
+// Points without r_f have no region, so the tool passes through them.
 TEST(SphereTreeRenderer, PointsWithoutARadiusHoldNothing) {
   SphereTreeRenderer r = renderer();
   PointCloud cloud = regions_at({{0, 0, 0}});
@@ -105,13 +105,14 @@ TEST(SphereTreeRenderer, TheStiffnessOfTheRegionIsThatOfTheCoupling) {
   }
 }
 
-// Two balls on a rod: pushed down on one of them the rod turns, and the hand feels it.
+// Two balls on a rod. A region holds one of them, so the rod turns when it is pushed down, and the hand feels
+// it.
 TEST(SphereTreeRenderer, ARodHeldAtOneEndTurns) {
   SphereTreeRenderer r = renderer({{-0.03, 0, 0}, {0.03, 0, 0}});
   r.on_frame(scenes::frame(regions_at({{0.03, -0.05, 0}})));
   held(r, {kAway}, 5);
   const RenderOutput out = held(r, {{0, -0.01, 0}}, 100);
-  EXPECT_GT(rotation_vector(out.tool->orientation_W).z(), 0.02);  // the free end goes on down
+  EXPECT_GT(rotation_vector(out.tool->orientation_W).z(), 0.02);  // the free end moves further down
   EXPECT_GT(out.tool->torque_Nm.z(), 0.001);
   EXPECT_GT(out.force_N.y(), 0.5);
   EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
@@ -150,7 +151,7 @@ TEST(SphereTreeRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
   }
 }
 
-TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
+TEST(SphereTreeRenderer, RegionParametersAreTheToolParametersThatApply) {
   ToolParameters p;
   std::set<std::string> all, kept;
   for (const Parameter& parameter : parameters(p)) all.insert(parameter.name);

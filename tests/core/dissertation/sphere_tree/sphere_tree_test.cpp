@@ -127,7 +127,7 @@ TEST(RegionTree, KeepsTheStiffnessOfItsPoints) {
     EXPECT_EQ(tree.stiffness_N_per_m(leaf), 10.0 * tree.points()[leaf]);
 }
 
-// A stream of frames of one size: what the first one needed is there for the next.
+// Frames of one size: the memory that the first one needed serves the next.
 TEST(RegionTree, KeepsItsMemoryFromFrameToFrame) {
   PointCloud cloud = image_of(200, 200);
   cloud.fixture_radius_m.assign(cloud.size(), 0.01);
@@ -192,8 +192,8 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
   EXPECT_GT(none, 10u);
 }
 
-// Room for 100 of thousands: the deepest.
-TEST(TreeCollision, KeepsTheDeepestPairsWhereRoomEnds) {
+// The buffer has room for 100 of thousands of pairs. It receives the deepest.
+TEST(TreeCollision, KeepsTheDeepestPairsIfTheBufferIsFull) {
   const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
                    regions = tree_of(random_spheres(4000, 0.05, 2), 100);
   TreeCollision collision(tool, scenes::kernels());

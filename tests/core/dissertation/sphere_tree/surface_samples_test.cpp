@@ -20,7 +20,7 @@ double distance(const Vec3& place, const std::vector<Vec3>& samples) {
   return min;
 }
 
-// Two points of any kind make one of the triangle: those beyond its third side are turned back into it.
+// Two random numbers give a point of the triangle. Points beyond its third side are reflected into it.
 std::vector<Vec3> places_of_triangle() {
   std::vector<Vec3> places;
   const PointCloud cloud = scenes::random_cloud(2000, 1, 3);
@@ -62,7 +62,7 @@ TEST(SurfaceSamples, OnePlaceOfACubeIsKept) {
   EXPECT_EQ(kept[1], Vec3(1.1, 0.1, 0.1));
 }
 
-TEST(SurfaceSamples, AreaOfABox) {
+TEST(SurfaceSamples, HaveTheAreaOfABox) {
   EXPECT_NEAR(surface_area_m2(scenes::box_mesh({0.01, 0.02, 0.03})), 8 * (1 * 2 + 1 * 3 + 2 * 3) * 1e-4,
               1e-12);
 }

@@ -20,7 +20,8 @@ VoxelTool tool_of(const std::string& name) {
 
 constexpr double kRounding_m = 1e-9;
 
-// One after the other, each that covers most of what is left.
+// Greedy search: it adds one sphere after the other, each time the one that covers most of the remaining
+// points.
 std::vector<Sphere> plain_cover(const std::vector<Vec3>& points, const std::vector<Sphere>& choice,
                                 double inflation_m, std::size_t max) {
   std::vector<Vec3> left = points;
@@ -59,7 +60,7 @@ TEST(SphereCover, TakesWhatAPlainSearchTakes) {
   }
 }
 
-// Cells of a millimetre would be 1e12 in a box of ten metres, though the points are few.
+// A box of ten metres would need 1e12 cells of a millimetre, although it holds few points.
 TEST(SphereCover, TakesFewPointsFarApartWithoutACellForEveryMillimetre) {
   const Vec3 far = Vec3::Constant(5);
   const std::vector<Sphere> choice{{far, 0.001}, {-far, 0.001}, {Vec3::Zero(), 0.001}};
@@ -73,7 +74,7 @@ TEST(SphereCover, TakesFewPointsFarApartWithoutACellForEveryMillimetre) {
   }
 }
 
-// The surface lies inside the union, and the union close to the tool.
+// Checks that the surface lies inside the union of spheres and that the union stays close to the tool.
 double outside_of_cover_m(const VoxelTool& tool, int leaves) {
   const ToolSpheres made = make_tool_spheres(tool, leaves);
   EXPECT_LE(made.spheres.leaves().size(), static_cast<std::size_t>(leaves));
@@ -91,7 +92,8 @@ TEST(ToolSpheres, AreTheCloserTheMoreThereAre) {
   EXPECT_LT(outside_of_cover_m(*box, 112), 0.6 * outside_of_cover_m(*box, 16));
 }
 
-// The same two numbers by other means: of a box the distance is known, and its surface is easily walked over.
+// Both errors are computed in another way: the distance to a box has a closed form, and its surface is easy
+// to sample.
 TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
   const Vec3 half_m(0.02, 0.005, 0.01);
   const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
@@ -103,13 +105,13 @@ TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
           outside_m,
           scenes::box_distance(half_m, leaf.centre + leaf.radius_m * directions.point(i).normalized()));
     const Vec3 path_length =
-        directions.point(i) / directions.point(i).cwiseAbs().maxCoeff();  // one side of the box
+        directions.point(i) / directions.point(i).cwiseAbs().maxCoeff();  // a point on a side of the box
     double min_m = 1;
     for (const Sphere& leaf : made.spheres.leaves())
       min_m = std::min(min_m, (half_m.cwiseProduct(path_length) - leaf.centre).norm() - leaf.radius_m);
     surface_outside_m = std::max(surface_outside_m, min_m);
   }
-  EXPECT_GT(made.inflation_m, 1e-3);  // or there would be nothing to tell
+  EXPECT_GT(made.inflation_m, 1e-3);  // otherwise there would be no error to compare
   EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
   EXPECT_LT(outside_m, made.inflation_m + 1e-6);
   EXPECT_LT(surface_outside_m, 5e-5);
@@ -129,7 +131,7 @@ TEST(ToolSpheres, ABallIsNearlyOneSphere) {
   EXPECT_LT(made.surface_outside_m, 1e-4);
 }
 
-// Two layers of nodes lie inside, each next to an end of the field. Balls of one of them alone would have to
+// Two layers of nodes lie inside, each next to an end of the field. Balls of only one layer would have to
 // grow by a voxel to cover the other side.
 TEST(ToolSpheres, CoverAPlateOfAFewVoxelsClosely) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -84,7 +84,7 @@ TEST(FixtureAssignment, TheColumnsOfTheCloudAreTheStart) {
   EXPECT_EQ(result.x, cloud.x);
 }
 
-TEST(FixtureAssignment, NoRuleThatNamesAStiffnessNoColumnOfIt) {
+TEST(FixtureAssignment, AddsNoStiffnessColumnIfNoRuleNamesAStiffness) {
   EXPECT_TRUE(assigned({{{0.02}, {1, 1}}, {{0.01}, {1, 0}}}, points(2)).stiffness_N_per_m.empty());
   PointCloud cloud = points(2);
   cloud.stiffness_N_per_m = {5, 6};
@@ -119,7 +119,7 @@ TEST(FixtureAssignment, ALaterRuleOverridesAnEarlierOne) {
   EXPECT_EQ(other.stiffness_N_per_m[1], 100);
 }
 
-TEST(FixtureAssignment, ALaterRuleCanTakeARegionAway) {
+TEST(FixtureAssignment, ALaterRuleCanRemoveARegion) {
   EXPECT_EQ(assigned({{{0.02}, {1, 1}}, {{0}, {1, 0}}}, points(2)).fixture_radius_m, (Column{0, 0.02}));
 }
 
@@ -129,7 +129,7 @@ TEST(FixtureAssignment, ARuleCanLeaveTheRadiusAsItWas) {
   EXPECT_EQ(result.stiffness_N_per_m, (Column{300, 300}));
 }
 
-TEST(FixtureAssignment, AShareDrawsTheValueSoFar) {
+TEST(FixtureAssignment, AShareMovesTheValueOfEarlierRules) {
   expect_near(assigned({{{0.04}, {0.25, 0.5, 1}}, {{0.1}, {0.5, 0, 0.1}}}, points(3)).fixture_radius_m,
               {0.055, 0.02, 0.046});
 }
@@ -185,7 +185,7 @@ TEST(Schedule, MultipliesTheShare) {
   expect_near(assigned({rule}, points(2), 7).fixture_radius_m, {0.02, 0.01});
 }
 
-// A rule that does not count does not give a stiffness either.
+// A rule of zero strength does not give a stiffness either.
 TEST(Schedule, StiffnessIsTheRenderersAtZeroStrength) {
   FixtureValues values = scheduled({1, 0, 1, 1});
   values.stiffness_N_per_m = 50;
@@ -193,7 +193,7 @@ TEST(Schedule, StiffnessIsTheRenderersAtZeroStrength) {
   EXPECT_EQ(assigned({{values, {1}}}, points(1), 1).stiffness_N_per_m.at(0), 50);
 }
 
-TEST(Schedule, ChangesWithTimeWhereItsStrengthDoes) {
+TEST(Schedule, AssignmentChangesWithTimeIfTheStrengthChanges) {
   const auto changes = [](const std::vector<Column>& schedules) {
     std::vector<Rule> rules;
     for (const Column& rows : schedules) rules.push_back({scheduled(rows), {1}});

@@ -42,7 +42,7 @@ TEST(Everywhere, PicksWhatWasMeasured) {
 
 TEST(HalfSpace, ThePlaneBelongsToIt) {
   HalfSpace::Settings s;
-  s.point_m = {0.5, 7, -7};  // along the plane x = 0.5 any point is as good
+  s.point_m = {0.5, 7, -7};  // any point of the plane x = 0.5 will do
   const double below = std::nextafter(0.5, 0), above = std::nextafter(0.5, 1);
   EXPECT_EQ(HalfSpace(s).weights(cloud_of({{0.5, 0, 0}, {below, 0, 0}, {above, 0, 0}, kMissing, {9, 1, 2}})),
             (Shares{1, 0, 1, 0, 1}));
@@ -76,7 +76,7 @@ TEST(HalfSpace, TheLengthOfTheNormalDoesNotMatter) {
   }
 }
 
-TEST(HalfSpace, ANormalOfNoLengthIsRefused) {
+TEST(HalfSpace, ANormalWithoutLengthIsRefused) {
   HalfSpace::Settings s;
   EXPECT_EQ(validate(s), "");
   s.normal = {0, 0, 0};
@@ -85,7 +85,7 @@ TEST(HalfSpace, ANormalOfNoLengthIsRefused) {
 
 // --- near-point ---
 
-TEST(NearPoint, PicksWhatIsNoFartherThanItMay) {
+TEST(NearPoint, PicksPointsUpToItsRadius) {
   NearPoint::Settings s;
   s.point_m = {1, 2, 3}, s.inner_radius_m = 0.25;
   const auto beside = [&](double x) { return Vec3(1 + x, 2, 3); };
@@ -119,7 +119,8 @@ PointCloud wall(const std::vector<std::pair<int, int>>& holes = {}) {
   return cloud;
 }
 
-// Only the picked pixel itself is within the distance: which one is it?
+// Returns the number of the picked pixel, or -1 for none. The radius is so small that it holds one pixel
+// only.
 int picked(const PointCloud& cloud, int row, int column) {
   NearPoint::Settings s;
   s.row = row, s.column = column, s.inner_radius_m = 0.05;
@@ -138,7 +139,7 @@ TEST(NearPoint, APixelPicksWhatItSees) {
     for (int column = 0; column < 6; ++column) EXPECT_EQ(picked(wall(), row, column), 6 * row + column);
 }
 
-TEST(NearPoint, ThePointIsNotAskedForBesideAPixel) {
+TEST(NearPoint, ThePointIsNotReadIfAPixelIsGiven) {
   NearPoint::Settings s;
   s.row = 1, s.column = 2, s.point_m = {0.3, 0.2, 1}, s.inner_radius_m = 0.05;
   const Shares weights = NearPoint(s).weights(wall());
@@ -239,7 +240,7 @@ TEST(HueRange, AMissingPointIsNotPickedWhateverItsColour) {
   EXPECT_EQ(HueRange({}).weights(cloud), (Shares{0, 1}));
 }
 
-// Black where it is taken for a colour: no other limit keeps it out here.
+// A missing colour would be black if it counted as a colour, and no other limit would exclude it here.
 TEST(HueRange, APointWithoutColourIsNotPicked) {
   HueRange::Settings s = hues(0, 360);
   s.min_saturation = 0, s.min_lightness = 0;

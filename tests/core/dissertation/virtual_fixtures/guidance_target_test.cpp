@@ -85,7 +85,7 @@ TEST(GuidanceTarget, OneOrTwoPointsHaveAPlaceAndNoPlane) {
   EXPECT_FALSE(whole(cloud).is_flat());
 }
 
-// Two points lie in a line, but for rounding, which is all that there is between points that are nearly one.
+// Two points lie on a line, except for rounding. Points that nearly coincide differ by nothing but rounding.
 TEST(GuidanceTarget, TwoPointsHaveNoPlaneHoweverNearTheyAre) {
   std::mt19937 random(21);
   const auto share = [&] { return (random() + 1.0) / 4294967296.0; };
@@ -108,7 +108,7 @@ TEST(GuidanceTarget, ThreePointsHaveThePlaneThroughThem) {
   }
 }
 
-TEST(GuidanceTarget, PointsThatAreNowhereHaveNoPart) {
+TEST(GuidanceTarget, MissingPointsDoNotCount) {
   PointCloud cloud = chessboard(turn({0.4, 0.1, 0}), 4, 0);
   const GuidanceTarget expected = whole(cloud);
   for (const Vec3& p : {Vec3(kNaN, kNaN, kNaN), Vec3(kInfinity, 0, 0), Vec3(0, kNaN, 0)}) cloud.append(p);
@@ -243,7 +243,7 @@ std::unique_ptr<const FixtureRule> near(const Vec3& point_m, FixtureRole role, d
   return std::make_unique<NearPoint>(settings);
 }
 
-TEST(GuidanceTarget, EveryGuidanceRuleHasOneInTheirOrder) {
+TEST(GuidanceTarget, EveryGuidanceRuleHasATargetInTheOrderOfTheRules) {
   PointCloud cloud;
   for (int i = 0; i < 5; ++i) cloud.append({1.0 * i, 0, 0});
   cloud.append({kNaN, kNaN, kNaN});
@@ -258,7 +258,7 @@ TEST(GuidanceTarget, EveryGuidanceRuleHasOneInTheirOrder) {
   EXPECT_EQ(targets[0].mean_W, Vec3(3, 0, 0));
   EXPECT_EQ(targets[1].mean_W, Vec3(1, 0, 0));
   EXPECT_FALSE(targets[2].is_visible()) << "a rule of no strength";
-  // And only the forbidden one makes a region.
+  // Only the forbidden rule makes a region.
   assignment.assign(cloud, 0);
   EXPECT_EQ(cloud.fixture_radius_m, (std::vector<double>{0.02, 0, 0, 0, 0, 0}));
 }

@@ -1,4 +1,5 @@
-// Everything in the built-in catalog keeps its contract. Entries that read files get some that are made here.
+// Everything in the built-in catalog fulfils its contract. Entries that read files receive some that are made
+// here.
 #include <gtest/gtest.h>
 
 #include "runners/evaluation/contract/contract_tests.h"

@@ -52,7 +52,7 @@ void expect_bits(const Column& column, const Column& want) {
       << testing::PrintToString(std::get<std::vector<double>>(column.values));
 }
 
-TEST(KeepOldBits, RowByRow) {
+TEST(KeepOldBits, KeepsOldBitsRowByRow) {
   const Column old = numbers({1, 2, 3, 4}), now = numbers({1.25, 2, 2.5, 5});
   expect_bits(kept(old, now, {}), now);
   expect_bits(kept(old, now, {{"force", {0.25}}}), numbers({1, 2, 2.5, 5}));
@@ -68,14 +68,14 @@ TEST(KeepOldBits, AVectorIsOneRow) {
   expect_bits(kept(old, now, {{"force", {0.5}}}), old);
 }
 
-TEST(KeepOldBits, NumbersThatAreNone) {
+TEST(KeepOldBits, DoesNotKeepNanInfinityOrTheirReplacements) {
   expect_bits(kept(numbers({kNaN, 1, kNaN, kInfinity, kInfinity, -kInfinity, 1}),
                    numbers({1, kNaN, kNaN, 1, kInfinity, kInfinity, kInfinity}), {{"force", {1e99}}}),
               numbers({1, kNaN, kNaN, 1, kInfinity, kInfinity, kInfinity}));
   expect_bits(kept(numbers({0.0, -0.0}), numbers({-0.0, 0.0}), {}), numbers({0.0, -0.0}));
 }
 
-// Whatever the tolerance says.
+// Names and hashes are compared exactly, whatever the tolerance is.
 TEST(KeepOldBits, IgnoresTheToleranceForNamesAndHashes) {
   for (const Tolerances& tolerances : {Tolerances{}, Tolerances{{"*", {9}}}}) {
     EXPECT_EQ(kept(names({0, 1, 1}), names({0, 0, 1}), tolerances).values, names({0, 0, 1}).values);
@@ -96,7 +96,7 @@ TEST(KeepOldBits, OtherColumnsAreAllNew) {
   expect_bits(kept(other, now, wide), now);
   expect_bits(kept(counts({1, 2, 3, 4, 5, 6}), now, wide), now);
 
-  // A column more or less leaves the others as they are.
+  // An additional or a missing column leaves the others as they are.
   const std::vector<Column> more = keep_old_bits({numbers({1})}, {numbers({1.5}), counts({3})}, wide);
   ASSERT_EQ(more.size(), 2u);
   expect_bits(more[0], numbers({1}));
@@ -106,7 +106,7 @@ TEST(KeepOldBits, OtherColumnsAreAllNew) {
   expect_bits(keep_old_bits({}, {numbers({1.5})}, wide).front(), numbers({1.5}));
 }
 
-// A column that has come in between does not move the others.
+// A new column in between does not move the others.
 TEST(KeepOldBits, ColumnsAreFoundByName) {
   Column depth = numbers({5}), speed = numbers({7});
   depth.name = "depth", speed.name = "speed";
@@ -120,8 +120,8 @@ TEST(KeepOldBits, ColumnsAreFoundByName) {
 
 // --- spread ---
 
-// Programs that copy a file that was made by hand: LEVEL-THREADS.h5 of their own folder where there is one,
-// else plain.h5. They write down what they were called with.
+// Each program copies a prepared file of its own folder: LEVEL-THREADS.h5 if there is one, else plain.h5. It
+// writes its arguments to the file `calls`.
 class MeasureSpread : public testing::Test {
  protected:
   MeasureSpread() {
@@ -160,7 +160,7 @@ cp "$made" "$2"
     change(made);
     write_trace(folder_ / name, made, attributes, {});
   }
-  // Two compilers, all the same.
+  // Two compilers whose results are all equal.
   std::vector<std::string> two_programs() {
     trace("gcc/plain.h5", build("GNU 12")), trace("clang/plain.h5", build("Clang 14"));
     return {program("gcc"), program("clang")};
@@ -182,7 +182,7 @@ int lines(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST_F(MeasureSpread, EveryProgramAtEveryLevelAndNumberOfThreads) {
+TEST_F(MeasureSpread, RunsEveryProgramAtEveryLevelAndNumberOfThreads) {
   const auto programs = two_programs();
   const Measured measured = measure(programs, {"x", "run", "my.json", {"seed=2", "title=two words"}});
   EXPECT_TRUE(measured.spread.empty());
@@ -200,7 +200,7 @@ TEST_F(MeasureSpread, EveryProgramAtEveryLevelAndNumberOfThreads) {
   }
 }
 
-TEST_F(MeasureSpread, TheLargestDeviationOfEachColumn) {
+TEST_F(MeasureSpread, ReportsTheLargestDeviationOfEachColumn) {
   const auto programs = two_programs();
   trace("gcc/x86-64-8.h5", build("GNU 12"), [](Trace& made) { made.force_N[7].x() += 0x1p-30; });
   trace("clang/x86-64-2.h5", build("Clang 14"), [](Trace& made) {
@@ -228,7 +228,7 @@ TEST_F(MeasureSpread, ADifferenceThatNoToleranceCoversIsRefused) {
     EXPECT_HAS(message, "(row 11)");
   }
   trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) {
-    made.append(1, {}, {}, {});  // a row more
+    made.append(1, {}, {}, {});  // one row more
   });
   EXPECT_HAS(refused(programs), "20 rows of 1 against 21 rows of 1");
 }
@@ -245,7 +245,7 @@ TEST_F(MeasureSpread, AnotherSourceIsRefused) {
   }
 }
 
-TEST_F(MeasureSpread, ProgramsThatAreNone) {
+TEST_F(MeasureSpread, RefusesFilesThatAreNoPrograms) {
   auto programs = two_programs();
   const auto refused_second = [&](const std::string& second, const std::string& why) {
     programs[1] = second;
@@ -260,7 +260,7 @@ TEST_F(MeasureSpread, ProgramsThatAreNone) {
   refused_second(program("silent", "exit 2"), "failed with exit code 2: expected");
   refused_second(program("killed", "kill -9 $$"), "failed with signal 9: expected");
   refused_second(program("idle", "exit 0"), "wrote no result (");
-  // A result from before is not taken for its own.
+  // A result of the program before must not count as its own.
   programs.insert(programs.begin() + 1, program("gcc"));
   EXPECT_HAS(refused(programs), programs[2] + ": wrote no result");
   // The file that it wrote is no result.
@@ -277,7 +277,7 @@ TEST_F(MeasureSpread, AProgramOfUnknownEndIsRefused) {
   EXPECT_HAS(message, "/bin/false: has an unknown end (No child processes): expected");
 }
 
-TEST_F(MeasureSpread, Sweeps) {
+TEST_F(MeasureSpread, MeasuresSweepsToo) {
   const Sweep sweep = Sweep::from_json(R"({"experiment": "fig4.12",
     "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
     "axes": [{"parameter": "scenario.noise_sigma_m", "values": [0, 0.003]}],
@@ -314,7 +314,7 @@ TEST_F(MeasureSpread, AnInterruptionEndsTheProgramAtWork) {
 
 // --- what is refused before any program runs ---
 
-TEST(Bless, RefusesWhatMakesNoSense) {
+TEST(Bless, RefusesContradictoryRequests) {
   const TestFolder folder("baseline_spread_test");
   folder.write("mine.json", "{}");
   Blessing sound;

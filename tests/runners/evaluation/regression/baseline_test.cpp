@@ -49,7 +49,7 @@ class CheckBaseline : public testing::Test {
   }
   using ChangeConfig = std::function<void(ordered_json&)>;
 
-  // Stores short.h5 as a program would that had made it, and enters it.
+  // Stores short.h5 as the program that made it would, and returns its entry.
   Baseline stored_run(
       const std::function<void(Trace&)>& change = [](Trace&) {}, const ChangeConfig& change_config = {}) {
     const Experiment experiment = Experiment::load((folder_ / "short.json").string());
@@ -98,7 +98,7 @@ class CheckBaseline : public testing::Test {
   const TestFolder folder_{"baseline_test"};
 };
 
-TEST_F(CheckBaseline, TheSameWhoeverMadeIt) {
+TEST_F(CheckBaseline, IsTheSameForEveryMaker) {
   const BaselineCheck result = check(stored_run());
   EXPECT_EQ(result.state, State::same);
   EXPECT_EQ(result.text, "18 columns, every number is the same");
@@ -120,7 +120,7 @@ TEST_F(CheckBaseline, AppliesTheOverrides) {
   EXPECT_HAS(result.comparison->configuration.front(), "renderer.stiffness_N_per_m 600.0 against 450");
 }
 
-TEST_F(CheckBaseline, ChangedNumbers) {
+TEST_F(CheckBaseline, ReportsChangedNumbers) {
   Baseline baseline = stored_run([](Trace& trace) { trace.force_N[120].y() += 0x1p-20; });
   const BaselineCheck changed = check(baseline);
   EXPECT_EQ(changed.state, State::changed);
@@ -149,8 +149,8 @@ TEST_F(CheckBaseline, ReportsChangesThatNoToleranceCovers) {
   }
 }
 
-// A value that no number depends on.
-TEST_F(CheckBaseline, AnotherExperimentWithTheSameNumbers) {
+// No number depends on the changed value, the seed.
+TEST_F(CheckBaseline, RefusesAnotherExperimentWithTheSameNumbers) {
   const BaselineCheck result = check(stored_run([](Trace&) {}, [](auto& config) { config["seed"] = 2; }));
   EXPECT_EQ(result.state, State::changed);
   EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 2 against 1");
@@ -159,7 +159,7 @@ TEST_F(CheckBaseline, AnotherExperimentWithTheSameNumbers) {
   EXPECT_EQ(result.comparison->verdict, result.text);
 }
 
-TEST_F(CheckBaseline, AChangedFileOfTheExperiment) {
+TEST_F(CheckBaseline, ReportsAChangedFileOfTheExperiment) {
   const Baseline baseline = stored_run();
   ordered_json json = ordered_json::parse(kExperiment);
   json["title"] = "told in other words";
@@ -196,7 +196,7 @@ TEST_F(CheckBaseline, UnknownNamesAreNotComparable) {
 
 // --- checks of configurations by other versions of the program ---
 
-TEST_F(CheckBaseline, AParameterThatIsNoMore) {
+TEST_F(CheckBaseline, ReportsARemovedParameter) {
   const BaselineCheck result =
       check(stored_run([](Trace&) {}, [](auto& config) { config["renderer"]["moon_m"] = 3; }));
   EXPECT_EQ(result.state, State::changed);
@@ -204,12 +204,13 @@ TEST_F(CheckBaseline, AParameterThatIsNoMore) {
             "the numbers are equal, but the experiment differs: renderer.moon_m 3 against absent");
 }
 
-TEST_F(CheckBaseline, AParameterThatIsNew) {
+TEST_F(CheckBaseline, ReportsANewParameter) {
   EXPECT_EQ(check(stored_run([](Trace&) {}, [](auto& config) { config["renderer"].erase("gamma"); })).state,
             State::same);
   EXPECT_EQ(check(stored_run([](Trace&) {}, [](auto& config) { config.erase("frame_latency_s"); })).state,
             State::same);
-  // It has its default where the stored configuration lacks it, and that is not what is run now.
+  // A parameter that the stored configuration lacks counts with its default, which is not the value that is
+  // run now.
   ordered_json json = ordered_json::parse(kExperiment);
   json["seed"] = 7;
   folder_.write("short.json", json.dump());
@@ -218,7 +219,7 @@ TEST_F(CheckBaseline, AParameterThatIsNew) {
   EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 1 against 7");
 }
 
-TEST_F(CheckBaseline, AConfigurationThatCannotBeRead) {
+TEST_F(CheckBaseline, RefusesAConfigurationThatCannotBeRead) {
   Baseline baseline = stored_run();
   const Trace trace = simulate(Experiment::load(place("short.json")));
   write_trace(folder_ / "short.h5", trace, {{"config", "{\"seed\":"}}, {});
@@ -237,8 +238,8 @@ void flip(const fs::path& folder, const std::string& name, std::size_t at) {
   std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 
-// A file that is not the one of the manifest is refused as it is, whatever is in it.
-TEST_F(CheckBaseline, AFileThatIsNotTheStoredOne) {
+// A file whose hash is not that of the manifest is refused, whatever is in it.
+TEST_F(CheckBaseline, RefusesAFileWithAnotherDigest) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   for (const Baseline& baseline : {run, sweep}) {
     const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
@@ -264,8 +265,8 @@ TEST_F(CheckBaseline, AFileThatIsNotTheStoredOne) {
   }
 }
 
-// The manifest speaks of the damaged file itself.
-TEST_F(CheckBaseline, AFileThatWasStoredDamaged) {
+// The manifest holds the hash of the damaged file itself.
+TEST_F(CheckBaseline, RefusesAFileThatWasStoredDamaged) {
   for (const Baseline& baseline : {stored_run(), stored_sweep()}) {
     const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
     for (const std::size_t at :
@@ -282,7 +283,7 @@ TEST_F(CheckBaseline, AFileThatWasStoredDamaged) {
   }
 }
 
-TEST_F(CheckBaseline, AnotherSchema) {
+TEST_F(CheckBaseline, RefusesAnotherSchema) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   fs::copy_file(folder_ / "short.h5", folder_ / "map.h5", fs::copy_options::overwrite_existing);
   expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/2");
@@ -300,7 +301,7 @@ TEST_F(CheckBaseline, AnotherSchema) {
 
 // --- checks that need a recording ---
 
-TEST_F(CheckBaseline, ARecordingThatIsNotHere) {
+TEST_F(CheckBaseline, DoesNotRunIfItsRecordingIsMissing) {
   Baseline baseline = stored_run();
   baseline.subject = "fig4.16-boxes", baseline.overrides = {"scenario.path=" + place("nowhere.pcd")};
   const BaselineCheck result = check(baseline);
@@ -312,13 +313,13 @@ TEST_F(CheckBaseline, ARecordingThatIsNotHere) {
   folder_.write("nowhere.pcd", "no recording");
   expect_uncomparable(baseline, place("nowhere.pcd"), "");
   fs::remove(folder_ / "nowhere.pcd");
-  flip(folder_.path(), "short.h5", 1000);  // a damaged file is told all the same
+  flip(folder_.path(), "short.h5", 1000);  // a damaged file is reported all the same
   expect_uncomparable(baseline, place("short.h5"), "SHA-256");
 }
 
 // --- checks of sweeps ---
 
-TEST_F(CheckBaseline, Sweeps) {
+TEST_F(CheckBaseline, ChecksSweepsToo) {
   EXPECT_EQ(check(stored_sweep()).state, State::same);
   Baseline baseline = stored_sweep(
       [](SweepResult& result) { std::get<std::vector<double>>(result.measures[1].values)[2] += 0x1p-20; });

@@ -1,4 +1,4 @@
-// Result files that are compared, and what the reports say of them.
+// Result files that are compared, and the reports on them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files of figures against files of figures.
+// Comparison of files of figures.
 #include <gtest/gtest.h>
 
 #include "analysis/figures/result_file.h"
@@ -22,7 +22,7 @@ class CompareFigures : public Compare {
   }
 };
 
-TEST_F(CompareFigures, TableByTable) {
+TEST_F(CompareFigures, ComparesTableByTable) {
   write("a.h5", {1, 2, 3}), write("same.h5", {1, 2, 3}), write("other.h5", {1, 2, 3.5});
   const ResultComparison same = compare("a.h5", "same.h5");
   EXPECT_EQ(same.kind, "figure");

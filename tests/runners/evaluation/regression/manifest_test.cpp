@@ -109,7 +109,7 @@ TEST(Manifest, DamagedOnesAreRefusedByName) {
   for (std::size_t size = 0; size < whole.size(); size += 7) refused(whole.substr(0, size), "parse error");
 }
 
-TEST(Manifest, PlacesThatCannotBeUsed) {
+TEST(Manifest, RefusesPathsThatCannotBeUsed) {
   const TestFolder folder("baseline_test");
   EXPECT_HAS(refusal([&] { read_manifest(folder.path()); }),
              (folder / "manifest.json").string() +
@@ -124,7 +124,7 @@ TEST(Manifest, FilesLieBesideIt) {
   EXPECT_EQ(subject_of("some/folder", {"lift", "run", "my.json"}), "some/folder/my.json");
 }
 
-// --- what there has to be ---
+// --- baselines that must exist ---
 
 Manifest with_runs_of(const std::vector<std::string>& subjects) {
   Manifest manifest{true};
@@ -160,7 +160,7 @@ Names lifts_and_presses() {
   });
   return names;
 }
-// More parts that only these experiments have.
+// More parts that only the experiments of lifts_and_presses() have.
 const std::vector<std::string> kScenes = {"scenario plates"};
 const std::vector<std::string> kRivals = {"renderer surfels", "renderer averaged-proxy",
                                           "renderer density-proxy", "renderer oracle-proxy"};
@@ -195,13 +195,14 @@ TEST(MissingBaselines, EveryPartOfTheListNeedsOne) {
                  Names{"trajectory press"}));
 }
 
-TEST(MissingBaselines, NoneWhereTheListNeedNotBeComplete) {
+TEST(MissingBaselines, AreNotReportedIfTheListNeedNotBeComplete) {
   Manifest manifest = with_runs_of({"fig4.11"});
   manifest.complete = false;
   EXPECT_EQ(missing(".", manifest), Names{});
 }
 
-// A file of one's own has a baseline's parts, and is no experiment of the list; nor is a sweep over it.
+// A baseline of an own file or of a sweep covers the parts that it uses. It does not count as an experiment
+// of the list.
 TEST(MissingBaselines, AnOwnFileOrSweepIsNoExperimentOfTheList) {
   const TestFolder folder("baseline_test");
   folder.write("lift.json", embedded_or_file(embedded_experiments(), "fig4.12", ""));
@@ -214,7 +215,7 @@ TEST(MissingBaselines, AnOwnFileOrSweepIsNoExperimentOfTheList) {
   const Names parts = Names{"scenario moving-lift"} + kScenes + kRivals + Names{"trajectory press"};
   EXPECT_EQ(missing(folder.path(), manifest), experiments(lifts) + parts);
 
-  // A baseline that cannot be read has no parts; its own check reports why.
+  // A baseline that cannot be read covers no parts. Its own check reports why.
   manifest.baselines.push_back({"gone", "run", "moon.json"});
   manifest.baselines.push_back({"refused", "run", "fig4.12", {"scenario.moon=1"}});
   EXPECT_EQ(missing(folder.path(), manifest), experiments(without(lifts, {"fig4.12"})) + parts);

@@ -1,4 +1,4 @@
-// Files against files: what is compared, the verdict, and what the reports say of it.
+// Comparison of result files: what is compared, the verdict, and what the reports state.
 #include "runners/evaluation/regression/result_comparison.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class CompareTraceFiles : public Compare {
   }
 };
 
-TEST_F(CompareTraceFiles, TheSameRunTwice) {
+TEST_F(CompareTraceFiles, FindsNoDifferenceOfTheSameRun) {
   write("a.h5"), write("b.h5");
   const ResultComparison same = compare("a.h5", "b.h5");
   EXPECT_EQ(same.outcome, Outcome::same);
@@ -69,7 +69,7 @@ TEST_F(CompareTraceFiles, TheSameRunTwice) {
   EXPECT_FALSE(contains(junit_of(same), "<failure"));
 }
 
-// Builds and commands are told, not judged; neither is the title.
+// Builds and commands are reported but not judged. The title is not compared at all.
 TEST_F(CompareTraceFiles, ProvenanceIsReportedAndNotJudged) {
   write("a.h5");
   write("b.h5", {"title=another"},
@@ -101,7 +101,7 @@ TEST_F(CompareTraceFiles, AnotherSeedIsAnotherConfigurationAndOtherFrames) {
   EXPECT_EQ(divergence["situation"], "input differs");
 }
 
-// Another configuration with the same numbers is told, and is the same.
+// Another configuration with the same numbers is reported, and the outcome is `same`.
 TEST_F(CompareTraceFiles, AConfigurationAloneIsNoRegression) {
   write("a.h5", {"scenario.noise_sigma_m=0"}), write("b.h5", {"scenario.noise_sigma_m=0", "seed=2"});
   const ResultComparison same = compare("a.h5", "b.h5");
@@ -169,7 +169,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   EXPECT_HAS(xml, "name=\"trace\"><failure message=\"force and 2 more");
 }
 
-// JSON has no NaN, and no number is written as 0 that is none.
+// JSON has no NaN, so NaN is written as null and never as 0.
 TEST_F(CompareTraceFiles, NanIsNullInJson) {
   write_changed("a.h5", [](Trace&) {});
   write_changed("b.h5", [](Trace& trace) { trace.signed_distance_m[77] = kNaN; });
@@ -179,8 +179,8 @@ TEST_F(CompareTraceFiles, NanIsNullInJson) {
   EXPECT_TRUE(divergence["baseline"]["signed_distance"][1].is_number());
 }
 
-// A renderer that is wrong may give numbers that have no name.
-TEST_F(CompareTraceFiles, AStateWithoutAName) {
+// A faulty renderer may give a state that has no name.
+TEST_F(CompareTraceFiles, AStateWithoutANameIsReportedByItsNumber) {
   write_changed("a.h5", [](Trace& trace) { trace.state[410] = 1; });
   for (const int unknown : {7, -1}) {
     write_changed("b.h5", [&](Trace& trace) { trace.state[410] = unknown; });
@@ -199,7 +199,7 @@ TEST_F(CompareTraceFiles, TinyDifferencesAreReported) {
   EXPECT_HAS(junit_of(other), "1 of 867 rows outside, the largest deviation 1e-20");
 }
 
-TEST_F(CompareTraceFiles, AnEmptyRunIsNotTheSameAsItself) {
+TEST_F(CompareTraceFiles, AnEmptyRunIsNotComparable) {
   write_trace(folder_ / "a.h5", Trace{}, {}, {});
   const ResultComparison none = compare("a.h5", "a.h5");
   EXPECT_EQ(none.outcome, Outcome::not_comparable);
@@ -207,7 +207,7 @@ TEST_F(CompareTraceFiles, AnEmptyRunIsNotTheSameAsItself) {
   EXPECT_HAS(junit_of(none), "name=\"trace\"><error message=\"nothing was compared\"/>");
 }
 
-TEST_F(CompareTraceFiles, AShorterRunIsAnother) {
+TEST_F(CompareTraceFiles, AShorterRunIsADifference) {
   write("a.h5"), write("b.h5", {"duration_s=0.5"});
   for (const auto& [baseline, candidate] : {std::pair("a.h5", "b.h5"), std::pair("b.h5", "a.h5")}) {
     const ResultComparison other = compare(baseline, candidate);
@@ -234,7 +234,7 @@ TEST_F(CompareTraceFiles, AToleranceOfNoColumnIsRefused) {
 
 // --- hashes, and files of different kinds ---
 
-TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
+TEST_F(CompareTraceFiles, ComparesHashesWithHashesAndTraces) {
   write_changed("a.h5", [](Trace&) {});
   write_changed("b.h5", [](Trace& trace) { trace.force_N[410].x() += 1e-9; });
   for (const char* name : {"a", "b"})
@@ -263,7 +263,7 @@ TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
   EXPECT_TRUE(any_has(compare("a_hashes.h5", "b_hashes.h5").provenance, "git_commit a against b"));
 }
 
-TEST_F(CompareTraceFiles, HashesOfLongerRunsAndOfNothing) {
+TEST_F(CompareTraceFiles, HashesOfALongerRunDifferAndEmptyOnesAreNotComparable) {
   write("a.h5"), write("b.h5", {"duration_s=0.5"});
   write_hashes(folder_ / "b_hashes.h5", hashes_of_trace(StoredTrace(folder_ / "b.h5"), 1), {});
   const ResultComparison longer = compare("a.h5", "b_hashes.h5");
@@ -353,7 +353,7 @@ TEST(Reports, AnyTextIsWellFormed) {
                 "  </testsuite>\n</testsuites>\n");
 }
 
-TEST_F(CompareTraceFiles, ReportsOfSeveral) {
+TEST_F(CompareTraceFiles, WritesReportsOfSeveralFiles) {
   write("a.h5"), write("b.h5", {"seed=2"});
   const ResultComparison same = compare("a.h5", "a.h5"), other = compare("a.h5", "b.h5");
   const json list = json::parse(comparison_json({same, other}));

@@ -53,7 +53,7 @@ TEST_F(ScratchFolderTest, IsRemovedAfterwardsWithItsFiles) {
 }
 
 // Folders of programs that were killed are removed; those that others made are left alone.
-TEST_F(ScratchFolderTest, TakesAwayWhatNobodyHolds) {
+TEST_F(ScratchFolderTest, RemovesFoldersThatNoProgramHolds) {
   place_.write("remote-touch-bless-Killed/reference.h5", "half");
   place_.write("remote-touch-other/file", "of another program");
   place_.write("remote-touch-bless-file", "no folder");
@@ -66,7 +66,7 @@ TEST_F(ScratchFolderTest, TakesAwayWhatNobodyHolds) {
   EXPECT_EQ(files_in(place_ / "remote-touch-other"), std::vector<std::string>{"file"});
 }
 
-TEST_F(ScratchFolderTest, NeedsAPlace) {
+TEST_F(ScratchFolderTest, NeedsAWritableFolder) {
   ::setenv("TMPDIR", (place_ / "nowhere").c_str(), 1);
   EXPECT_HAS(refusal([] { ScratchFolder(); }), "TMPDIR: ");
 }

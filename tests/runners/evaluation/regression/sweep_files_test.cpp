@@ -1,4 +1,4 @@
-// Files of sweeps against files of sweeps.
+// Comparison of files of sweeps.
 #include "runners/evaluation/regression/result_comparison.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST_F(CompareSweepFiles, RunsOfAnotherDurationAreNotComparable) {
   EXPECT_HAS(other.verdict, ": measures of another duration cannot be compared");
 }
 
-TEST_F(CompareSweepFiles, RunByRun) {
+TEST_F(CompareSweepFiles, ComparesRunByRun) {
   for (const char* name : {"a.h5", "b.h5"}) write(name, [](SweepResult& sweep) { event(sweep)[47] = 0; });
   write("other.h5", [](SweepResult& sweep) { event(sweep)[47] = 1; });
   const ResultComparison same = compare("a.h5", "b.h5");
@@ -99,7 +99,7 @@ TEST_F(CompareSweepFiles, RunByRun) {
   EXPECT_EQ(sweep["measures"][1]["direction"], "smaller is better");
 }
 
-// The same difference the other way round is no regression, and no pass.
+// The same difference in the other direction is neither a regression nor a pass.
 TEST_F(CompareSweepFiles, AnImprovementIsAChange) {
   write("a.h5", [](SweepResult& sweep) { event(sweep)[47] = 1; });
   write("b.h5", [](SweepResult& sweep) { event(sweep)[47] = 0; });
@@ -112,8 +112,8 @@ TEST_F(CompareSweepFiles, AnImprovementIsAChange) {
   EXPECT_HAS(junit_of(better), "name=\"popped_through\"><skipped message=\"1 of 240 runs outside");
 }
 
-// Equally many runs got better and worse, so that the measure is neither.
-TEST_F(CompareSweepFiles, BothWaysAreUndecided) {
+// Equally many runs became better and worse, so that the measure is neither.
+TEST_F(CompareSweepFiles, ChangesInBothDirectionsAreUndecided) {
   write("a.h5", [](SweepResult& sweep) { event(sweep)[47] = 1, event(sweep)[48] = 0; });
   write("b.h5", [](SweepResult& sweep) { event(sweep)[47] = 0, event(sweep)[48] = 1; });
   const ResultComparison other = compare("a.h5", "b.h5");
@@ -156,7 +156,7 @@ TEST_F(CompareSweepFiles, PairedTestsIgnoreAFlipAndReportAShift) {
   write("a.h5");
   write("flip.h5", [](SweepResult& sweep) { flip(sweep, 47); });
   write("shift.h5", [](SweepResult& sweep) {
-    for (std::size_t run = 0; run < 60; ++run) event(sweep)[run] = 1;  // they seldom pop without noise
+    for (std::size_t run = 0; run < 60; ++run) event(sweep)[run] = 1;  // they seldom pop if there is no noise
   });
   EXPECT_EQ(compare("a.h5", "a.h5", paired()).outcome, Outcome::same);
   const ResultComparison flipped = compare("a.h5", "flip.h5", paired());
@@ -171,7 +171,7 @@ TEST_F(CompareSweepFiles, PairedTestsIgnoreAFlipAndReportAShift) {
   EXPECT_EQ(back.outcome, Outcome::changed);
   EXPECT_HAS(back.verdict, "better: popped_through");
   EXPECT_HAS(junit_of(back), counts(3, 0, 0, 2));
-  // Not enough runs for so narrow a margin: neither the same nor another.
+  // The runs are too few for so narrow a margin, so the outcome is neither the same nor changed.
   ComparisonRules narrow = paired();
   narrow.rule.margin = 1e-3;
   const ResultComparison undecided = compare("a.h5", "flip.h5", narrow);
@@ -240,7 +240,7 @@ TEST_F(CompareSweepFiles, AnUnfinishedOneLacksRuns) {
   EXPECT_EQ(json_of(compare("part.h5", "a.h5"))["sweep"]["done_in_candidate_only"], 140);
 }
 
-TEST_F(CompareSweepFiles, AToleranceIsOfAMeasure) {
+TEST_F(CompareSweepFiles, AToleranceMustNameAMeasure) {
   write("a.h5");
   write("b.h5", [](SweepResult& sweep) {
     for (double& value : std::get<std::vector<double>>(sweep.measures[0].values)) value += 1e-9;

@@ -1,4 +1,4 @@
-// The measures of two traces: which of them got better or worse.
+// The measures of two traces: which of them became better or worse.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -98,7 +98,8 @@ TEST_F(CompareMeasuresOfTraces, AreNoneWhereTheTicksAreFartherApart) {
   EXPECT_HAS(other.verdict, "; no measures: the baseline has a tick every 1 ms, the candidate every 2 ms");
 }
 
-// A proxy that rests on the surface ends a little in front of it or behind it: the configuration tells.
+// A proxy that rests on the surface ends a little in front of it or behind it. The configuration decides
+// whether that counts as popped through.
 TEST_F(CompareMeasuresOfTraces, SurfelsThatRestOnTheSurfaceDidNotPopThrough) {
   Trace resting = run();
   for (const char* renderer : {"surfels", "proxy"}) {
@@ -114,8 +115,8 @@ TEST_F(CompareMeasuresOfTraces, SurfelsThatRestOnTheSurfaceDidNotPopThrough) {
   }
 }
 
-// Traces that are the same have the same measures, which are not computed.
-TEST_F(CompareMeasuresOfTraces, AreNoneWhereEveryColumnIsWithin) {
+// Traces that are the same have the same measures, so these are not computed.
+TEST_F(CompareMeasuresOfTraces, AreNotReportedIfEveryColumnIsWithinItsTolerance) {
   ComparisonRules rules;
   rules.tolerances = {{"signed_distance", {1, 0}}};
   const ResultComparison same = compare("held.h5", "lost.h5", rules);

@@ -30,7 +30,7 @@ void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
 
 namespace {
 
-// The run with the noise of 0.6 r_c, or the scene's own, cut short: four frames.
+// Returns the run with the noise of 0.6 r_c, or with the scene's own noise, cut to four frames.
 Experiment beginning(const Sweep& sweep) {
   const std::size_t cell = std::min<std::size_t>(3, sweep.plan().cell_count() - 1);
   Json json = parse_json(sweep.experiment(cell, 1).to_json(), "run");
@@ -150,7 +150,7 @@ TEST(Benchmark, NamesWhatIsWrongInAFile) {
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
 }
 
-// The card states the method as it is written.
+// The card states each method as it is written, so a scene must not replace its tool.
 TEST(Benchmark, AMethodWithAnotherToolThanTheScenesIsRefused) {
   const BenchmarkScene slot = chosen_scenes({"tool-slot"}).front();
   const auto method = [](const std::string& tool) {
@@ -162,7 +162,7 @@ TEST(Benchmark, AMethodWithAnotherToolThanTheScenesIsRefused) {
   EXPECT_NO_THROW(slot.sweep(method(parse_json(slot.tool, "tool")["tool_mesh"]), 1));
 }
 
-// The measures say which way they get better, in one table; a scene says only what is judged.
+// One table defines for each measure whether larger or smaller is better. A scene only states what is judged.
 TEST(Benchmark, AMeasureIsJudgedByItsOwnDirection) {
   const auto scene = [](const std::string& measures) {
     return read_benchmark_scene(
@@ -172,7 +172,7 @@ TEST(Benchmark, AMeasureIsJudgedByItsOwnDirection) {
   const auto better = [&](const std::string& measures) { return scene(measures).measures.front().better; };
   EXPECT_EQ(better(R"({"force_noise": "judged"})"), Better::smaller);
   EXPECT_EQ(better(R"({"contact_force_fraction": "judged"})"), Better::larger);
-  EXPECT_EQ(better(R"({"force_noise": "smaller"})"), Better::smaller);  // as files before said it
+  EXPECT_EQ(better(R"({"force_noise": "smaller"})"), Better::smaller);  // as earlier files have it
   EXPECT_EQ(better(R"({"force_noise": "reported"})"), Better::neither);
   EXPECT_EQ(better(R"({"max_force": "smaller"})"), Better::smaller);  // where nothing should be touched
   EXPECT_HAS(refusal([&] { scene(R"({"force_noise": "larger"})"); }),
@@ -190,7 +190,7 @@ TEST(Benchmark, EveryStoredSceneJudgesByTheTable) {
       }
 }
 
-// A scene asks for a held surface in one word.
+// The one word `held` in a scene means the conditions of a held surface.
 TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
   const std::string begin = R"({"title": "t", "experiment": {}, "measures": {}, "success": )";
   const BenchmarkScene scene = read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0.002,

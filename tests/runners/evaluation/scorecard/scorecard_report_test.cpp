@@ -14,7 +14,7 @@
 namespace remote_touch::scorecard_report_test {
 namespace {
 
-// Replicates of two noise levels that are successes, and a measure.
+// A finished sweep over these noise levels with the measure end_distance, whose values are `depth`.
 SweepResult sweep_of(const std::vector<double>& depth, const std::vector<double>& noise_m) {
   SweepResult result;
   result.axes = {{"noise_sigma_m", "m", "", noise_m, 1, {}}};
@@ -63,7 +63,7 @@ TEST(Score, CountsSuccessesAndNamesBestAndWorst) {
   EXPECT_EQ(scene.success[0].at_level[0].runs, 1);
   EXPECT_EQ(scene.success[0].noise_free->runs, 1);
   EXPECT_EQ(scene.success[0].at_level[1].events, 19);
-  EXPECT_EQ(scene.success[0].noisy.events, 19);  // and not mixed with the others
+  EXPECT_EQ(scene.success[0].noisy.events, 19);  // the run without noise is not included
   EXPECT_EQ(scene.success[0].noisy.runs, 20);
   EXPECT_EQ(scene.success[1].noisy.events, 0);
   EXPECT_EQ(scene.old_success[0].noisy.events, 20);
@@ -74,7 +74,7 @@ TEST(Score, CountsSuccessesAndNamesBestAndWorst) {
   EXPECT_TRUE(std::isnan(card.scenes[1].noise_m.at(0)));
 }
 
-// Three noise levels, and last_force_time where it is the same in all.
+// A sweep over three noise levels with a second measure, `time`, which is last_s in all runs.
 SweepResult timed(const std::vector<double>& depth, double last_s) {
   SweepResult result = sweep_of(depth, {0, 0.001, 0.005});
   result.measures.push_back({"time", "s", "", std::vector<double>(depth.size(), last_s), 1, {}});
@@ -82,8 +82,8 @@ SweepResult timed(const std::vector<double>& depth, double last_s) {
 }
 
 TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
-  // The second method loses the surface in two of three runs, where it is quiet: 0.1 against 2. Where both
-  // methods hold it has 2.5.
+  // The second method loses the surface in two of three runs, in which it is quiet: 0.1 against 2. It has 2.5
+  // in the runs in which both methods hold.
   std::vector<double> upper, at_times;
   for (int i = 0; i < 54; ++i)
     upper.push_back(1 + 0.01 * i), at_times.push_back(i % 3 == 0 ? 1 : -1 - 0.01 * i);
@@ -156,7 +156,7 @@ TEST(ScorecardReport, DescribesItsOrigin) {
   EXPECT_EQ(json["methods"][1]["scenes_worst"], 1);
 }
 
-// Names and titles as they are: what a page has to write otherwise, it does itself.
+// Names and titles are stored as they are. The page escapes what it has to.
 TEST(ScorecardReport, HasEverySceneWithItsVerdict) {
   const std::string text = to_json(report_of(two_scenes()));
   const Json json = parse_json(text, "scorecard.json"), &first = json["scenes"][0], &own = json["scenes"][1];
@@ -209,7 +209,7 @@ TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
   EXPECT_EQ(one["overall"]["runs"], 19);
   EXPECT_EQ(one["levels"][1]["low"], card.scenes[0].measures[0].at_level[0][1].low);
   EXPECT_EQ(one["levels"][0]["low"], nullptr);                     // one run has no interval
-  EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // nor who never succeeds a mean
+  EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // a method that never succeeds has no mean
   EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);
 }
 
@@ -258,7 +258,8 @@ TEST(ScorecardReport, AMessageMayHoldAnyBytes) {
   EXPECT_EQ(json_of(report)["skipped"][0]["why"], "no file a\xEF\xBF\xBD.png");
 }
 
-// The energies of three runs at two levels: certainly above zero, and on both sides of it.
+// The energies of three runs at each of two levels: certainly above zero at the first, and on both sides of
+// zero at the second.
 TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
   SweepResult sweep = sweep_of({1, 1, 1, 1, 1, 1}, {0.001, 0.005});
   sweep.measures.push_back({"energy_injected", "J", "", std::vector<double>{3, 3.3, 3.6, -3, 0, 3}, 1, {}});

@@ -1,5 +1,5 @@
-// Every renderer of a tool in the catalog stands the metamorphic checks, and each check can fail. The long
-// ones run with scripts/test --evidence.
+// Every renderer of a tool in the catalog passes the metamorphic checks, and each check can fail. The long
+// tests run with scripts/test --evidence.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -42,7 +42,7 @@ const Wrong kWrong[] = {
     {wrong_tool<ToolFault::jolts_at_frames>("jolts_at_frames, held"), {"frame-rate-held"}},
 };
 
-// One scene shows a fault; only in tool-held the device rests.
+// Returns the one scene that shows a fault. The device rests in tool-held only.
 std::vector<MetamorphicScene> telling_scene(const Names& checks) {
   const char* const name = checks.contains("frame-rate-held") ? "tool-held" : "tool-plane";
   std::vector<MetamorphicScene> all = tool_scenes(scenes::kernels());
@@ -50,7 +50,7 @@ std::vector<MetamorphicScene> telling_scene(const Names& checks) {
   return all;
 }
 
-// "check in scene" of every failure.
+// Returns "check in scene" for every failure.
 Names failures(const std::string& renderer, const std::vector<std::string>& assignments = {}) {
   Names failed;
   for (const CheckResult& result :
@@ -59,7 +59,7 @@ Names failures(const std::string& renderer, const std::vector<std::string>& assi
   return failed;
 }
 
-TEST(LongToolVerification, EveryToolOfTheCatalog) {
+TEST(LongToolVerification, AcceptsEveryToolOfTheCatalog) {
   int verified = 0;
   for (const RendererEntry& entry : renderers()) {
     if (entry.degrees_of_freedom != DegreesOfFreedom::six) continue;
@@ -70,8 +70,8 @@ TEST(LongToolVerification, EveryToolOfTheCatalog) {
 }
 
 // A bar of half the size feels another torque by the printed rule, on the rising plane and on the dense one.
-// The cause is not known; the page names this limit.
-TEST(LongToolVerification, OtherRulesOfTheTool) {
+// The cause is not known. The page names this limit.
+TEST(LongToolVerification, AcceptsOtherRulesOfTheTool) {
   EXPECT_EQ(failures("tool", {"contact_rule=continuous"}), Names{});
   EXPECT_EQ(failures("tool", {"contact_rule=voxels"}),
             (Names{"size-1/2 in tool-dense", "size-1/2 in tool-rise"}));
@@ -108,7 +108,7 @@ TEST(ToolVerification, AToolThatIsNamedIsNotMirrored) {
   EXPECT_TRUE(checks({"tool_mesh=block"}).contains("rigid-motion"));
 }
 
-TEST(ToolVerification, ARightOneInTheSameClothesPasses) {
+TEST(ToolVerification, ACorrectRendererInTheWrapperPasses) {
   EXPECT_EQ(caught_by(wrong_tool<ToolFault::none>("none"), telling_scene({})), Names{});
 }
 

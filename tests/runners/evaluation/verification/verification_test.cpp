@@ -1,4 +1,4 @@
-// Every renderer of the catalog stands the metamorphic checks, and each check can fail.
+// Every renderer of the catalog passes the metamorphic checks, and each check can fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string refusal(Action action) {
   }
 }
 
-// "check in scene" of every failure.
+// Returns "check in scene" for every failure.
 Names failures(const std::vector<CheckResult>& results) {
   Names failed;
   for (const CheckResult& result : results)
@@ -42,7 +42,7 @@ Names failures(const std::vector<CheckResult>& results) {
 
 // --- the catalog ---
 
-TEST(Verification, EveryRendererOfTheCatalog) {
+TEST(Verification, AcceptsEveryRendererOfTheCatalog) {
   int verified = 0;
   for (const RendererEntry& entry : renderers()) {
     if (entry.degrees_of_freedom == DegreesOfFreedom::six) continue;  // tool_verification_test.cpp
@@ -52,7 +52,7 @@ TEST(Verification, EveryRendererOfTheCatalog) {
   EXPECT_GT(verified, 0);
 }
 
-TEST(Verification, OtherReadingsOfTheProxy) {
+TEST(Verification, AcceptsOtherReadingsOfTheProxy) {
   const std::vector<std::string> kReadings[] = {
       {"step_rule=fixed", "velocity_estimate=false"},  // the predecessor
       {"velocity_estimate=false"},
@@ -74,12 +74,12 @@ TEST(Verification, EveryCheckIsMadeAndComparesTicksOfTouch) {
     for (const CheckResult& result : results)
       if (result.check == check.name) ticks += result.comparison.ticks, ++scenes;
     EXPECT_GE(scenes, 1) << check.name;
-    EXPECT_GE(ticks, 300) << check.name;  // one whole scene: where it runs to its end, most of it is touch
+    EXPECT_GE(ticks, 300) << check.name;  // one whole scene: most of it is contact if it runs to its end
   }
 }
 
 // Large steps go to and fro in a corner, and differences as small as rounding grow.
-TEST(Verification, SaysWhereASceneDecidesNothing) {
+TEST(Verification, ReportsASceneThatDecidesNothing) {
   int undecided = 0;
   for (const CheckResult& result : verify(find_entry(renderers(), "proxy", "renderer"), {"gamma=1"}))
     if (!result.passed() && result.scene == "corner") {
@@ -139,7 +139,7 @@ TEST(Verification, AWrongRendererIsCaught) {
       if (result.passed()) continue;
       caught_by.insert(result.check);
       EXPECT_LT(result.comparison.first_violation, result.comparison.ticks);
-      if (!wrong.caught_by.contains("repeat")) {  // who answers at random is as different anywhere
+      if (!wrong.caught_by.contains("repeat")) {  // random answers differ as much anywhere
         EXPECT_EQ(result.remark, "") << wrong.entry.name << ": " << result.check;
       }
     }
@@ -148,7 +148,7 @@ TEST(Verification, AWrongRendererIsCaught) {
   }
 }
 
-TEST(Verification, ARightOneInTheSameClothesPasses) {
+TEST(Verification, ACorrectRendererInTheWrapperPasses) {
   EXPECT_EQ(failures(verify(wrong_renderer<Fault::none>("none"))), Names{});
 }
 
@@ -169,7 +169,7 @@ double nearest_distance_m(const PointCloud& cloud, const Vec3& p_W) {
   return nearest;
 }
 
-// Number of views that entrench the proxy at the position that they meet, after the correction by (4.3).
+// Number of views that entrench the proxy at its position after the correction by (4.3).
 int entrenching_views(const MetamorphicScene& scene) {
   ProxyRenderer renderer(ProxyParameters{}, scene.haptic_rate_hz, scenes::kernels());
   const std::vector<RenderOutput> outputs = play(scene, renderer);

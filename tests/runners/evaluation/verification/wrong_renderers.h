@@ -1,4 +1,4 @@
-// Renderers that are wrong in one way each, for tests of the checks that should tell.
+// Renderers that are wrong in one way each, for tests of the checks that should find it.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,17 @@ enum class Fault {
   looks_far,               // points 1 km away matter
   regions_of_nothing,      // a column of radii matters, whatever it holds
   mistrusts_stiff_points,  // a column of stiffness matters beyond its values
-  adds_its_own,            // stiffness to that of the points
+  adds_its_own,            // adds its own stiffness to that of the points
   leans_x,                 // a little force to one side of the world
   leans_y,
   leans_z,
   prefers_up,         // forces along y are stronger
   fixed_gap,          // stays 0.1 mm further off, whatever its size
   fixed_strength,     // no force above 3 N, whatever the stiffness
-  fixed_rate,         // takes a way per tick for a velocity, as if ticks came at 1024 Hz
-  reads_the_clock,    // tires with the time of day
-  takes_every_frame,  // the newest to arrive, whenever it was captured
-  drops_silently,     // a dropped frame is not told
+  fixed_rate,         // uses the motion per tick as a velocity, as if ticks came at 1024 Hz
+  reads_the_clock,    // weakens as time passes
+  takes_every_frame,  // uses the newest frame to arrive, whenever it was captured
+  drops_silently,     // does not report a dropped frame
   jolts_at_frames,    // every frame moves the proxy a little further
 };
 
@@ -145,7 +145,7 @@ class WrongRenderer final : public Renderer {
   int frames_ = 0, ordinal_ = 0;
 };
 
-// Entry such as a line of the catalog makes.
+// Returns an entry as a line of the catalog makes it.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
   return {{name, "wrong in one way", []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {

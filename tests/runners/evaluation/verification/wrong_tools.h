@@ -1,4 +1,4 @@
-// Renderers of a tool that are wrong in one way each, for tests of the checks that should tell.
+// Renderers of a tool that are wrong in one way each, for tests of the checks that should find it.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +25,9 @@ enum class ToolFault {
   lies_flat,        // ignores how the device is turned
   fixed_gap,        // stays 2 mm further off, whatever its size
   fixed_strength,   // no force above 2 N, whatever the stiffness
-  fixed_rate,       // takes a way per tick for a velocity, as if ticks came at 1024 Hz
-  reads_the_clock,  // tires with the time of day
-  drops_silently,   // a dropped frame is not told
+  fixed_rate,       // uses the motion per tick as a velocity, as if ticks came at 1024 Hz
+  reads_the_clock,  // weakens as time passes
+  drops_silently,   // does not report a dropped frame
   jolts_at_frames,  // every frame moves the tool further
   has_no_pose,      // an orientation that is not finite
 };
@@ -127,7 +127,7 @@ class WrongTool final : public Renderer {
   int frames_ = 0, ordinal_ = 0;
 };
 
-// Entry such as a line of the catalog makes.
+// Returns an entry as a line of the catalog makes it.
 template <ToolFault kFault>
 RendererEntry wrong_tool(const char* name) {
   return {{name, "wrong in one way",

@@ -43,7 +43,7 @@ TEST(Catalog, OtherSeedsGiveOtherNoise) {
     const PointCloud b = entry.make()->build(NoiseKey{2}, scenes::kernels())->cloud(0);
     std::size_t other = 0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-      other += std::abs(a.y[i] - b.y[i]) > 0 ? 1 : 0;  // not where a pixel saw nothing
+      other += std::abs(a.y[i] - b.y[i]) > 0 ? 1 : 0;  // false for a pixel that saw nothing
     EXPECT_GT(other, a.size() / 10) << name;
   }
 }

@@ -80,7 +80,7 @@ TEST(ExperimentSections, SectionsOfTheLiveLoopAreKept) {
   EXPECT_HAS(why("safety.max_force=3"), "safety.max_force: unknown");
 }
 
-TEST(ExperimentSections, AreLeftOutWhereTheyAreNotAskedFor) {
+TEST(ExperimentSections, OptionalSectionsAreNotWrittenUnlessGiven) {
   const Json json = Json::parse(Experiment::load("fig4.11").to_json());
   for (const char* section : {"faults", "guidance", "sequence", "operator", "device", "live", "safety"})
     EXPECT_FALSE(json.contains(section));
@@ -121,7 +121,7 @@ TEST(ExperimentSections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
 
 // --- refused ---
 
-TEST(ExperimentSections, RefuseValuesThatAreNone) {
+TEST(ExperimentSections, RefuseInvalidValues) {
   EXPECT_HAS(why("sequence.0.deadline_s=soon"), "sequence.0.deadline_s = \"soon\": expected 0 to 86400");
   EXPECT_HAS(why("sequence.1.action=open"),
              "sequence.1.action = \"open\": expected lock, unlock, activate, release, wait");
@@ -177,7 +177,7 @@ TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
       why("operator=null"),
       "sequence.1.button = 2: expected a button of operator.presses (any button in experiments with a section live)");
   EXPECT_EQ(resolved({"operator=null", "live={}"})["sequence"].size(), 3u);  // a real device has buttons
-  EXPECT_EQ(resolved({R"(sequence=[{"action": "wait"}])"})["sequence"].size(), 1u);  // one needs no step
+  EXPECT_EQ(resolved({R"(sequence=[{"action": "wait"}])"})["sequence"].size(), 1u);  // presses may be unused
   EXPECT_EQ(refusal([] {
               task({"sequence=[]", R"(fixtures.0={"name": "everywhere", "role": "guidance"})"});
             }),

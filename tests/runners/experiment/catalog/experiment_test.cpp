@@ -82,7 +82,7 @@ Json resolved(const std::vector<std::string>& overrides) {
   return Json::parse(Experiment::from_json(kSmall, "small", overrides).to_json());
 }
 
-TEST(Experiments, DefaultsThenFileThenOverrides) {
+TEST(Experiments, ApplyDefaultsThenFileThenOverrides) {
   const Json plain = resolved({});
   EXPECT_EQ(plain["seed"], 5);
   EXPECT_EQ(plain["scenario"]["columns"], 7);
@@ -114,7 +114,7 @@ TEST(Experiments, OverridesAreJsonOrPlainText) {
             Json::parse("[[0.0, 0.01, 0.0, 0.0], [0.1, 0.01, 0.0, 0.01]]"));
 }
 
-TEST(Experiments, RefuseOverridesThatAreNone) {
+TEST(Experiments, InvalidOverridesAreRefused) {
   const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
   EXPECT_HAS(why("seed"), "--set seed: expected key=value");
   EXPECT_HAS(why("=3"), "--set =3: expected key=value");
@@ -149,7 +149,7 @@ TEST(Experiments, FixturesAreAListInOrder) {
   EXPECT_EQ(changed[1]["radius_m"], 0.5);
 }
 
-TEST(Experiments, RefuseFixturesThatAreNone) {
+TEST(Experiments, RefuseInvalidFixtures) {
   const auto why = [](const std::string& list, const std::string& change = "seed=1") {
     return refusal([&] { resolved({"fixtures=" + list, change}); });
   };
@@ -188,7 +188,7 @@ TEST(Experiments, DefaultsFitTogether) {
       expect_no_contradiction(renderers()), expect_no_contradiction(trajectories());
 }
 
-TEST(Experiments, TheMessageIsThatOfTheManual) {
+TEST(Experiments, RefuseWithTheMessageOfTheManual) {
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"renderer.stiffness_N_per_m=-3"}); }),
             "renderer.stiffness_N_per_m = -3: expected 0 to 10000");
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"haptic_rate_hz=fast"}); }),
@@ -207,7 +207,7 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
   EXPECT_HAS(nearest("trajectory.waypoint=3"), "did you mean trajectory.waypoints");
   EXPECT_HAS(nearest("duration=3"), "duration: unknown; did you mean duration_s");
   EXPECT_HAS(nearest("sede=3"), "did you mean seed");
-  // Sections stand beside the parameters of the run.
+  // Sections are searched together with the parameters of the run.
   EXPECT_HAS(nearest("fixturs=3"), "fixturs: unknown; did you mean fixtures");
   EXPECT_HAS(nearest("saftey.ramp_s=3"), "did you mean safety");
   EXPECT_HAS(nearest("renderer.nam=proxy"), "did you mean renderer.name");

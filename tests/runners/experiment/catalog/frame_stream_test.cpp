@@ -1,4 +1,4 @@
-// Frames between capture and arrival: which ones a renderer gets, when, and with which fixtures.
+// Frames between capture and arrival: which frames a renderer receives, when, and with which fixtures.
 #include "runners/experiment/catalog/frame_stream.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace remote_touch::frame_stream_test {
 namespace {
 
-// Notes what it is given.
+// Records the frames that it receives.
 class Recorder final : public Renderer {
  public:
   void on_frame(const Frame& frame) override { frames.push_back(frame); }
@@ -149,8 +149,8 @@ TEST(FrameStream, FramesOfASimulationCarryTheTruthForOracles) {
       EXPECT_EQ(frame.truth->signed_distance(p, t), lift.signed_distance(p, t));
 }
 
-// However often the stream is asked, frames come in the same order.
-TEST(FrameStream, OneLateRequestHandsOverTheSameFrames) {
+// The frames come in the same order, however often the stream is polled.
+TEST(FrameStream, OneLateCallDeliversTheSameFrames) {
   const Walk walk(300);
   const Transport transport{0.01, 0.05, 0.2};
   FrameStream stream(walk, {}, transport, {7}, false);
@@ -164,7 +164,7 @@ TEST(FrameStream, DropsItsShareOfTheFrames) {
   EXPECT_TRUE(received(Walk(2000), 21, {0, 0, 1}).empty());
   const auto frames = received(Walk(2000), 19.995, {0, 0, 0.3});
   EXPECT_NEAR(static_cast<double>(frames.size()) / 2000, 0.7, 4 * std::sqrt(0.3 * 0.7 / 2000));
-  // Each for itself: the frames after a lost one are lost as often as any.
+  // Losses are independent: the frame after a lost one is lost as often as any other.
   std::vector<bool> came(2000);
   for (const Frame& frame : frames) came[static_cast<std::size_t>(frame.index)] = true;
   int lost = 0, twice = 0;
@@ -198,7 +198,7 @@ TEST(FrameStream, ASceneAtRestIsSentOnce) {
   EXPECT_EQ(received(Walk(1), 1, {}, 1, everywhere(0.02, {0, 0.5, 1, 0.5})).size(), 1u);
 }
 
-TEST(FrameStream, ASceneAtRestIsSentOnWhenItsFixturesChange) {
+TEST(FrameStream, ASceneAtRestIsSentAgainWhenItsFixturesChange) {
   const auto frames = received(Walk(1), 0.3, {0.01}, 1, everywhere(0.02, {0.1, 0, 0.2, 1}));
   ASSERT_EQ(frames.size(), 30u);
   for (int j = 0; j < 30; ++j) {
@@ -212,8 +212,8 @@ TEST(FrameStream, ASceneAtRestIsSentOnWhenItsFixturesChange) {
   }
 }
 
-// The camera sees it all the time: a lost frame is not the last one.
-TEST(FrameStream, ASceneAtRestIsSentOnWhenFramesGetLost) {
+// The camera sends frames all the time, so others follow a lost one.
+TEST(FrameStream, ASceneAtRestIsRepeatedIfFramesCanBeLost) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
     const auto frames = received(Walk(1), 1, {0, 0, 0.5}, seed);
     ASSERT_GT(frames.size(), 25u) << seed;
@@ -250,8 +250,8 @@ TEST(FrameStream, TheNewestHashIsThatOfTheNewestFrame) {
   for (std::size_t tick = 5; tick < late.size(); ++tick) EXPECT_EQ(late[tick], plain[tick - 5]) << tick;
 }
 
-// Its points are made when asked for, by the frame's number: a scene that is sent on shows its last frame.
-TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
+// The points are made on request, by the number of the frame. A scene that is sent on shows its last frame.
+TEST(FrameStream, ARepeatedFrameHasTheHashOfTheLastFrame) {
   MovingLift::Settings settings;
   settings.grid = {4, 4, 0.0015, 0, 0}, settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
   const MovingLift lift(settings, {1}, scenes::kernels());
@@ -292,7 +292,7 @@ TEST(FrameStream, TheHashChangesWithTheFixtures) {
   EXPECT_NE(changing[9], changing[10]);
 }
 
-TEST(FrameStream, HashesAreNotMadeUnasked) {
+TEST(FrameStream, TheHashIsZeroUnlessRequested) {
   const Walk walk(3);
   FrameStream stream(walk, {}, {}, {1}, false);
   Recorder recorder;
@@ -313,7 +313,7 @@ TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
   const RecordedScene scene(settings, {}, scenes::kernels());
   EXPECT_EQ(indices(received(scene, 1, {})), (std::vector<int>{0, 1}));
 
-  // It goes on at its rate while fixtures change, with what the camera saw last.
+  // The recording continues at its rate while fixtures change, with the last image of the camera.
   const auto frames = received(scene, 0.5, {}, 1, everywhere(0.02, {0, 0, 0.5, 1}));
   ASSERT_EQ(frames.size(), 11u);
   for (std::size_t j = 0; j < frames.size(); ++j) {

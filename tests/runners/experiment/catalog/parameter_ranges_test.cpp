@@ -37,7 +37,7 @@ Json written(Owner& owner) {
   return json;
 }
 
-// The message with which a parameter refuses a value; empty when it takes it.
+// Returns the message with which a parameter refuses a value, or an empty text if it accepts the value.
 std::string refused(const Parameter& parameter, const Json& value) {
   try {
     read_parameters({{parameter.name, value}}, {parameter}, "part");
@@ -79,7 +79,8 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
   });
 }
 
-// Pure numbers, counts and places in an image; everything else says its unit, or of what it is the share.
+// True for pure numbers, counts and pixels, which have no unit, and for names that end in their unit or in
+// the kind of fraction that they are.
 bool carries_unit(const std::string& name) {
   static const std::set<std::string> kPure = {"gamma",
                                               "max_missed_frames",
@@ -192,9 +193,9 @@ TEST(Parameters, EveryValueSurvivesARoundTrip) {
   });
 }
 
-// --- what a parameter takes and refuses ---
+// --- values that a parameter accepts and refuses ---
 
-// Checks each kind of parameter at both ends of its range and just outside.
+// Checks each kind of parameter at both ends of its range and slightly outside.
 struct Bounds {
   const Parameter& p;
   double below() const { return std::nextafter(p.low, -kInfinity); }
@@ -251,7 +252,7 @@ struct Bounds {
   }
 };
 
-TEST(Parameters, TakeTheEndsOfTheRangeAndRefuseJustOutside) {
+TEST(Parameters, AcceptTheEndsOfTheRangeAndRefuseValuesOutside) {
   for_each_owner([](const std::string& label, const auto& make) {
     const auto owner = make();
     for (const Parameter& p : owner->settings()) {

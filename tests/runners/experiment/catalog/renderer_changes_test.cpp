@@ -38,7 +38,7 @@ std::string why(const std::string& changes) {
 
 // --- what is refused ---
 
-TEST(RendererChanges, OnlyLiveParametersInTheirRange) {
+TEST(RendererChanges, AcceptOnlyLiveParametersInTheirRange) {
   EXPECT_EQ(
       why("[" + change("0.1", "renderer.gamma", "0.2") + "]"),
       "changes.0.parameter = renderer.gamma: expected one of renderer.r1_m, renderer.r2_m, renderer.r3_m, "

@@ -18,7 +18,7 @@
 namespace remote_touch::renderer_contacts_test {
 namespace {
 
-// The HIP comes down on a flat cloud at rest and stays so deep below it for 0.2 s.
+// The HIP comes down on a flat cloud at rest and stays depth_m below it for 0.2 s.
 Trace pressed(const std::string& renderer, double spacing_m, double depth_m) {
   const int nodes = static_cast<int>(0.03 / spacing_m);
   const Json experiment = {
@@ -32,7 +32,7 @@ Trace pressed(const std::string& renderer, double spacing_m, double depth_m) {
   return simulate(Experiment::from_json(experiment), options);
 }
 
-// So dense that a ball does not sink between points: by 0.1^2 / 4 / r_c = 0.5 um.
+// The grid is so dense that a ball sinks between points by only 0.1^2 / 4 / r_c = 0.5 um.
 constexpr double kDense_m = 0.0001;
 
 struct Pressed {
@@ -108,7 +108,7 @@ TEST(RendererContacts, APenaltyForceIsJudgedWhereItWouldEnd) {
   EXPECT_NEAR(max_sink_m(pressed(R"({"name": "penalty"})", kDense_m, 0.01)), 0.015, 5e-6);
 }
 
-// The same truth for the ball, the point and the spring: what is not asked for is not computed.
+// The true contact is computed only if a measure needs it.
 TEST(RendererContacts, AreComputedWhereAMeasureAsks) {
   const Experiment experiment = Experiment::from_json(
       R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"},

@@ -1,4 +1,4 @@
-// The table of sections: what each line owes to reading, writing and help.
+// The table of sections: what each line must provide for reading, writing and help.
 #include "runners/experiment/catalog/sections.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace remote_touch::sections_test {
 namespace {
 
-// One that has every section.
+// An experiment with every section.
 constexpr const char* kAll = R"({"scenario": {"name": "camera-scene"}, "faults": {}, "depth_pipeline": {},
     "fixtures": [{"name": "everywhere", "role": "guidance", "label": "all", "radius_m": 0.01}], "guidance": {},
     "sequence": [{"action": "activate", "fixture": "all"}], "renderer": {"name": "proxy"},
@@ -98,7 +98,8 @@ TEST(Sections, RefuseUnknownParametersByTheirPath) {
   }
 }
 
-// Sections that may be left out can be null too, and are then not written; others say that they are missing.
+// An optional section may be left out or null, with the same result. A required one is reported as missing in
+// both cases.
 TEST(Sections, LeftOutAndNullAreTheSame) {
   for (const ExperimentSection& section : experiment_sections()) {
     if (section.is_top_level) continue;
@@ -109,7 +110,7 @@ TEST(Sections, LeftOutAndNullAreTheSame) {
         json[section.key] = nullptr;
       else
         json.erase(section.key);
-      if (section.key == std::string("fixtures")) json.erase("guidance");  // which belongs to a fixture
+      if (section.key == std::string("fixtures")) json.erase("guidance");  // guidance needs a fixture
       return Experiment::from_json(json).to_json();
     };
     SCOPED_TRACE(section.key);
@@ -123,7 +124,7 @@ TEST(Sections, LeftOutAndNullAreTheSame) {
   }
 }
 
-// A hint that a key has another name now has to be right.
+// A hint that a key was renamed must give a name that exists.
 TEST(Sections, RenamedNamesAreThoseOfParametersMeasuresAndColumns) {
   std::set<std::string> names = {"max_replicates", "guidance_active", "tool_penetration"};
   for (const ExperimentSection& section : experiment_sections())

@@ -83,7 +83,8 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
   expect_fraction(late, 300, 0.3);
   EXPECT_GT(overtaken, 20);
   EXPECT_EQ(came.size(), 300u);
-  // Beyond the last frame of the scenario, where others could be lost, none is taken for the last.
+  // A stream that may lose frames continues beyond the last frame of the scenario. The frames there are not
+  // late.
   const auto continues = received(sensor, 11, {0, 0, 1e-300});
   EXPECT_GT(continues.back().index, 320);
   for (const Frame& frame : continues)
@@ -134,15 +135,15 @@ TEST(SensorFaultFrames, ShearMovesAlongTheNormalOfATiltedPlane) {
   s.rolling_shutter_s = 0.02;
   const PointCloud before = bare(tilted)->cloud(20), after = faulty(s, bare(tilted)).cloud(20);
   const Vec3 normal(-0.5, std::sqrt(0.75), 0);
-  // The first row was read 20 ms before; at its ends the plane of then reached elsewhere.
+  // The first row was read 20 ms earlier. Its ends are left out, because the plane ended elsewhere then.
   for (std::size_t i = 2; i < 58; ++i) {
     const Vec3 displacement = after.point(i) - before.point(i);
-    // The plane rises by 0.3 m/s, along its normal by the cosine of that.
+    // The plane rises at 0.3 m/s, which is 0.3 m/s times the cosine of the tilt along its normal.
     EXPECT_LT((displacement + 0.3 * 0.02 * std::sqrt(0.75) * normal).norm(), 1e-9);
   }
 }
 
-TEST(SensorFaultFrames, NoShearIfTheTruthIsUnknownOrAtRest) {
+TEST(SensorFaultFrames, FramesAreNotShearedIfTheTruthIsUnknownOrAtRest) {
   SensorFaults s;
   s.rolling_shutter_s = 0.02;
   MovingShape::Settings rests = rising_plane();
@@ -164,7 +165,7 @@ TEST(SensorFaultFrames, NoShearIfTheTruthIsUnknownOrAtRest) {
   EXPECT_EQ(measured(built(R"({"dropout_probability": 1})")->cloud(1)), 0u) << "recordings can wear faults";
 }
 
-// A plane that comes along the rays: what its pixels saw then lies on the same rays.
+// A plane approaches the camera. The points that its pixels saw earlier lie on the same rays.
 TEST(SensorFaultFrames, ShearMovesThePointsOfAnImageAlongTheirRays) {
   class Wall final : public Scenario {
    public:
@@ -232,7 +233,7 @@ TEST(SensorFaultFrames, SeveralAtOnceKeepTheirDefinitions) {
       far += std::abs(cloud.y[i] - height) > 0.022 ? 1 : 0;
     }
   }
-  // Holes take their share and up to one more hole; dropouts theirs of what is left.
+  // Holes remove their fraction and up to one more hole. Dropouts remove their fraction of what is left.
   EXPECT_LT(left / all, 0.8 * 0.9 + 0.01);
   EXPECT_GT(left / all, (0.8 - 0.011) * 0.9 - 0.01);
   EXPECT_GT(far / left, 0.015);
@@ -251,7 +252,7 @@ TEST(SensorFaultFrames, ARunWithEverythingEnds) {
             simulate(Experiment::load("fig4.12", {"scenario.truth=moving"}), {}).proxy_position_m);
 }
 
-// Its path is planned in what the camera would have seen.
+// The path of the hand is planned on the images without faults.
 TEST(SensorFaultFrames, TheHandIsThatOfTheBareScenario) {
   for (const char* name : {"fig4.12", "fig4.16"}) {
     const Experiment plain = Experiment::load(name),
@@ -282,8 +283,9 @@ TEST(SensorFaultFrames, TheSectionSurvivesARoundTripCompletely) {
   EXPECT_FALSE(Json::parse(Experiment::load("fig4.12").to_json()).contains("faults"));
 }
 
-// The recorded frames have them already. What is asked for then comes on top, and the session still ends.
-TEST(SensorFaultFrames, ALiveSessionRunsAgainWithoutThem) {
+// The recorded frames have the faults already. Faults that are requested for the replay are added to them,
+// and the session still ends.
+TEST(SensorFaultFrames, AReplayedLiveSessionHasNoFaults) {
   const TestFolder folder("sensor_faults_test");
   const std::string file = (folder / "session.h5").string();
   const SensorView view{{64, 2, 60, 60, 31.5, 0.5}, 0.001, 30, false, RigidTransform::Identity()};
@@ -309,7 +311,7 @@ TEST(SensorFaultFrames, ALiveSessionRunsAgainWithoutThem) {
   EXPECT_EQ(worse->arrives_s(0), 0);
 }
 
-TEST(SensorFaultFrames, RefusesWhatIsNone) {
+TEST(SensorFaultFrames, InvalidSettingsAreRefused) {
   const auto why = [](const std::string& assignment) {
     return refusal([&] { Experiment::load("fig4.12", {assignment}); });
   };

@@ -25,8 +25,9 @@ TEST(DeviceMotors, ADeviceWithAllOfThemExertsWhatIsCommanded) {
   }
 }
 
-// Whatever the orientation: about the handle's own axis nothing, about the other two as told.
-TEST(DeviceMotors, AMissingTurnIsThatOfTheHandle) {
+// The torque about the missing axis of the handle is zero and that about the other two is as commanded, in
+// every orientation.
+TEST(DeviceMotors, TorquesAreRemovedAboutTheHandleAxes) {
   std::mt19937 random(2);
   for (int missing = 0; missing < 3; ++missing) {
     MotorSettings motors;
@@ -45,7 +46,7 @@ TEST(DeviceMotors, AMissingTurnIsThatOfTheHandle) {
   }
 }
 
-// Turned by a quarter the handle's x is the base's y.
+// The x axis of a handle that is turned by 90 degrees is the y axis of the base.
 TEST(DeviceMotors, TheRollOfATurnedHandleIsAnotherAxisOfTheBase) {
   MotorSettings motors;
   motors.torque_x = false;
@@ -53,7 +54,7 @@ TEST(DeviceMotors, TheRollOfATurnedHandleIsAnotherAxisOfTheBase) {
   EXPECT_LT((exerted(motors, quarter, {Vec3::Zero(), {1, 2, 3}}).torque_Nm - Vec3(1, 0, 3)).norm(), 4e-15);
 }
 
-TEST(DeviceMotors, AMissingMoveIsThatOfTheBase) {
+TEST(DeviceMotors, ForcesAreRemovedAlongTheBaseAxes) {
   std::mt19937 random(3);
   MotorSettings motors;
   motors.force_x = motors.force_z = false;

@@ -71,7 +71,7 @@ inline double wall(double z_m) {
   return z_m;
 }
 
-// A cylinder that stands upright in front of the camera: radius 4 cm, height 10 cm, front at 0.5 m.
+// An upright cylinder in front of the camera: radius 4 cm, height 10 cm, front at 0.5 m.
 inline double mug(double x, double y) {
   const double radius = 0.04, centre = 0.54, a = x * x + 1;
   const double root = centre * centre - a * (centre * centre - radius * radius);
@@ -94,11 +94,11 @@ inline double plate(double x, double y, double z, double x_from, double x_to, do
 
 struct Course {
   double deepest_m = -1e9;   // farthest behind the surface
-  double on_object_s = 0;    // 5 mm or more inside the surface that is_object() holds
+  double on_object_s = 0;    // time spent 5 mm or more inside the object of is_object()
   double farthest_m = -1e9;  // largest depth of the hand
 };
 
-// Goes along the path in milliseconds.
+// Follows the path in steps of 1 ms.
 inline Course course(const Trajectory& hand, double duration_s,
                      const std::function<Surface(double)>& surface_at,
                      const std::function<bool(double, double)>& is_object) {
@@ -106,7 +106,7 @@ inline Course course(const Trajectory& hand, double duration_s,
   for (double t = 0; t < duration_s; t += 0.001) {
     const Vec3 p = hand.at(t).position_W;
     const double x = p.x() / p.z(), y = p.y() / p.z(), behind = p.z() - surface_at(t)(x, y);
-    if (behind > course.deepest_m) course.deepest_m = behind;  // not if nothing is seen
+    if (behind > course.deepest_m) course.deepest_m = behind;  // false if nothing is seen there
     if (behind > 0.005 && is_object(x, y)) course.on_object_s += 0.001;
     course.farthest_m = std::max(course.farthest_m, p.z());
   }

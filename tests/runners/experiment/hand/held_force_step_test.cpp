@@ -177,7 +177,7 @@ StepEnergy expected_energy(const Drawn& d) {
     e.path_damper_J += static_cast<double>(system.path_damping * square_integral(system, start, slip, t));
     e.ground_damper_J +=
         static_cast<double>(system.ground_damping * square_integral(system, start, speed, t));
-    // Newton's law, integrated, has the impulse of spring and damper.
+    // The integral of Newton's law gives the impulse of the path's spring and damper.
     const Real impulse = m * change(1) - d.start.force(axis) * t + system.ground_damping * change(0);
     e.path_work_J += static_cast<double>(d.start.path_velocity(axis) * impulse);
   }

@@ -1,4 +1,4 @@
-// Frames of another size or camera than the first, as a hand meets them that follows a pixel. The oracle is a
+// Frames whose size or camera is not that of the first, for a hand that follows a pixel. The oracle is a
 // plane whose points are computed for each camera.
 #include "runners/experiment/hand/image_frames.h"
 
@@ -79,7 +79,8 @@ TEST(ImageFrames, RefusesAFrameOfAnotherCamera) {
   EXPECT_HAS(refusal_of_second(without_image(plane(0.5, longer))), "frame 1 is not an image");
 }
 
-// Few points may not suffice to fit a camera to a frame of a PCD recording: their places tell.
+// Few points may not suffice to fit a camera to a frame of a PCD recording. Their positions show that they
+// lie on the rays.
 TEST(ImageFrames, AcceptsPointsOnTheRaysOfTheFirstFrame) {
   EXPECT_EQ(refusal_of_second(without_image(plane(0.6))), "no InputError");
   const Frames scene({plane(0.5), without_image(plane(0.6))});
@@ -87,7 +88,7 @@ TEST(ImageFrames, AcceptsPointsOnTheRaysOfTheFirstFrame) {
   EXPECT_NEAR(hand.at(kInSecond_s).position_W.z(), 0.6 - 0.03, 1e-12);
 }
 
-// The hand waits in front of the surface that was shown last.
+// The hand waits in front of the surface of the last frame.
 TEST(ImageFrames, AFrameWithoutPointsIsAnImageOfHoles) {
   for (const PointCloud& nothing : {PointCloud{}, without_image(plane(kNaN)), plane(kNaN)}) {
     const Frames scene({plane(0.5), nothing});
@@ -97,7 +98,7 @@ TEST(ImageFrames, AFrameWithoutPointsIsAnImageOfHoles) {
   }
 }
 
-// A camera that is carried along looks along the ray of the pixel from its new place.
+// A camera that is carried along faces the ray of the pixel from its new position.
 TEST(ImageFrames, TheCameraMayMove) {
   RigidTransform X_WC = RigidTransform::Identity();
   X_WC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;

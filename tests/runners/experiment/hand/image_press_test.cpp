@@ -185,7 +185,7 @@ TEST(ImagePress, ProposesAPixelThatCanBeTouched) {
   EXPECT_HAS(refusal([&] { ImageScan(scan, scene); }), "expected -1 (the nearest object: row ");
 }
 
-// bridged() against a plain search of all measured pixels for each hole.
+// bridged() compared with a plain search over all measured pixels for each hole.
 TEST(Bridging, ClosesHolesUpToTheLimit) {
   std::mt19937 random(7);
   for (const double p : {0.02, 0.3, 0.9}) {

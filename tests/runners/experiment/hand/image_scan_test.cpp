@@ -26,7 +26,7 @@ TEST(ImageScan, ScansAMugOfDenseDepth) {
   EXPECT_EQ(kinds(hand), Kinds{});
 }
 
-// 30 % of the pixels, as in depth that was warped to a colour camera of more pixels. At 0.5 m a disc of 8 mm
+// 30 % of the pixels, as in depth that was warped to a colour camera of more pixels. A disc of 8 mm at 0.5 m
 // has 55 pixels: it is empty with a probability of 3e-9. Steep parts differ more from pixel to measured
 // pixel, so less of the mug is a surface.
 TEST(ImageScan, ScansAMugOfSparseDepth) {
@@ -132,7 +132,7 @@ TEST(ImageScan, PassesAThinObjectInFront) {
   EXPECT_NEAR(before_pen, 0.42 - 0.03, 1e-6) << "a clearance in front of it";
 }
 
-// A frame without an inner part: its middle row and column cross nothing at the medians of its pixels.
+// A hollow object: nothing lies at the medians of the rows and of the columns of its pixels.
 TEST(ImageScan, ScansAnObjectThatIsHollow) {
   const Surface ring = [](double x, double y) {
     const double r = std::hypot(0.5 * x, 0.5 * y);

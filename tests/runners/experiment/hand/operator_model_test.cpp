@@ -28,17 +28,17 @@ DeviceState at(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
 struct Oscillator {
   explicit Oscillator(double m, double c, double k)
       : decay(c / (2 * m)), omega(std::sqrt(k / m - decay * decay)) {}
-  // x / (f / k) for a force f from 0 on.
+  // x / (f / k) for a constant force f that begins at t = 0.
   double after_a_force(double t) const {
     return 1 - std::exp(-decay * t) * (std::cos(omega * t) + decay / omega * std::sin(omega * t));
   }
-  // x / v for an intended place that moves with the speed v from 0 on, which the damper feels too.
+  // x / v for an intended position that moves at the speed v from t = 0 on. The damper feels that speed, too.
   double after_a_start(double t) const { return t - std::exp(-decay * t) * std::sin(omega * t) / omega; }
   double decay, omega;
 };
 
-// The largest distance from `expected` over half a second; drive(t) is the path at t and what the hand felt
-// in the tick before.
+// Returns the largest deviation from `expected` within half a second. drive(t) gives the path at t and what
+// the hand felt in the tick before.
 template <class Drive, class Expected>
 double max_error(const OperatorSettings& s, double tick_s, const Drive& drive, const Expected& expected) {
   OperatorModel hand(s, tick_s);
@@ -82,7 +82,7 @@ TEST(OperatorModel, AConstantWrenchHoldsItAside) {
   EXPECT_LT((rotation_vector(d.orientation_W) - torque_Nm / 1).norm(), 1e-12);
 }
 
-// The grip is a share of the springs.
+// The grip is a fraction of the stiffness of the springs.
 TEST(OperatorModel, HalfAGripGivesWayTwiceAsFar) {
   OperatorSettings s;
   s.grip = {0, 0.5};
@@ -143,7 +143,7 @@ TEST(OperatorModel, TheDeviceLeadsTheHandIfThereIsNoGrip) {
   DeviceState before, d;
   for (int i = 0; i < 4000; ++i) {
     before = d;
-    // Wherever the path goes.
+    // The path has no effect.
     d = hand.move(at({std::sin(0.01 * i), 0, 0}, {0, 0, 0.001 * i}), i * kTick_s, {{0, 3, 0}, {0.01, 0, 0}});
   }
   EXPECT_LT(((d.position_W - before.position_W) / kTick_s - Vec3(0, 3 / 15.0, 0)).norm(), 1e-9);
@@ -225,7 +225,8 @@ TEST(OperatorModel, EnergyNeverGrowsByItself) {
   }
 }
 
-// The hand is, after n missed ticks, where n ticks of the same force and of an even path take it.
+// A step over n missed ticks moves the hand to the position after n ticks of the same force and of an even
+// path.
 TEST(OperatorModel, MovesOnThroughMissedTicks) {
   const OperatorSettings s;
   const Wrench wrench{{3, -2, 1}, {0, 0, 0.02}};
@@ -259,7 +260,7 @@ TEST(OperatorModel, PressesButtonsAtTheGivenTimes) {
     EXPECT_EQ(hand.move(at({0, 0, 0}), time_s, {}).buttons, buttons) << time_s;
 }
 
-TEST(OperatorModel, RefusesWhatCannotBe) {
+TEST(OperatorModel, RefusesImpossibleSettings) {
   OperatorSettings s;
   EXPECT_EQ(validate(s), "");
   s.mass_kg = 0.01, s.stiffness_N_per_m = 100000;
@@ -295,8 +296,8 @@ TEST(OperatorModel, AnAllowedSpringIsStableAtTheSlowestRate) {
     ASSERT_LT(hand.move(at({0.01, 0, 0}), 0.01 * i, {}).position_W.norm(), 0.0201) << i;
 }
 
-// And a damper that would stop the mass a thousand times within a tick: the hand creeps aside as the spring
-// lets it, 1 - exp(-k t / c), without a step back.
+// A damper that would stop the mass a thousand times within a tick is stable as well. The hand creeps aside
+// as 1 - exp(-k t / c), without a step back.
 TEST(OperatorModel, EveryAllowedDamperIsStable) {
   OperatorSettings s;
   s.mass_kg = 0.01, s.stiffness_N_per_m = 100, s.damping_Ns_per_m = 1000;

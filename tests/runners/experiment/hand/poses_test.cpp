@@ -45,7 +45,7 @@ TEST(Poses, GoStraightAndTurnEvenly) {
   expect_at(device.at(99), {1, 1, 1}, about(Vec3::UnitX(), 90));
 }
 
-// The turn from one to the other about a fixed axis: slerp.
+// Slerp turns from one orientation to the other about a fixed axis.
 TEST(Poses, TakeTheShorterWayRound) {
   const Poses device = poses({0, 0, 0, 20, -50, 80, 0, 0, 0, 0, -100, 30, 10, 1, 0, 0, 0, 0, 0, 200, 1});
   const Eigen::Quaterniond a = about({20, -50, 80}, Vec3(20, -50, 80).norm());

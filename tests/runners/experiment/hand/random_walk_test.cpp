@@ -54,7 +54,7 @@ TEST(RandomWalk, EverySeedIsAnotherWalk) {
   EXPECT_EQ(one.duration_s(), 10);
 }
 
-TEST(RandomWalk, RefusesAPlaceWithoutRoom) {
+TEST(RandomWalk, RefusesABoxThatIsTooSmall) {
   RandomWalk::Settings s;
   EXPECT_EQ(validate(s), "");
   s.extent_m = {1e-7, 0, 0};

@@ -52,7 +52,7 @@ TEST(SimulatedHand, FeelsWhatTheDeviceExerts) {
   EXPECT_GT(turn.z(), 0);
 }
 
-// A renderer of three degrees of freedom has no torque; what was felt before is forgotten.
+// A renderer of three degrees of freedom has no torque, so that of the tick before is cleared.
 TEST(SimulatedHand, FeelsNoTorqueWithoutATool) {
   SimulatedHand hand(OperatorSettings{}, {}, kTick_s);
   const DeviceState d = hand.move(at({0, 0, 0}), 0);

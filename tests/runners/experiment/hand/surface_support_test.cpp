@@ -29,7 +29,8 @@ DepthImage uneven(double z_m) {
   return image;
 }
 
-// NaN unless every pixel of the square can be compared with those to its left and above it.
+// Median of the depths of the square. NaN unless every pixel of the square is joined to those to its left and
+// above it.
 double plain_depth(const DepthImage& image, int u, int v, int half, double edge_jump_m) {
   const auto at = [&](int x, int y) {
     const bool is_inside = x >= 0 && y >= 0 && x < image.width && y < image.height;
@@ -47,8 +48,8 @@ double plain_depth(const DepthImage& image, int u, int v, int half, double edge_
   return seen[seen.size() / 2];
 }
 
-// 1 cm is 6 pixels at 0.4 m, 2 at 1 m, and less than one, which counts as one, at 5 m. Where any jump is
-// allowed, a pixel that is read outside the image is no edge: what is beside it must not be asked.
+// 1 cm is 6 pixels at 0.4 m, 2 at 1 m, and less than one, which counts as one, at 5 m. If any jump is
+// allowed, a pixel that is read outside the image is no edge, so no pixel outside may be read.
 TEST(SurfaceSupport, IsTheMedianOfASquareWithoutHolesEdgesAndBorders) {
   const struct {
     double z_m;
@@ -88,7 +89,7 @@ TEST(SurfaceSupport, ALengthReachesOnePixelAtLeastAndTheImageAtMost) {
   EXPECT_EQ(reach_px(image, kFocal_px, 0.01, kNaN), 1);
 }
 
-// Against the distances of all pixels that the plain loop supports.
+// Compared with the distances of all pixels that the plain loop supports.
 TEST(SurfaceSupport, FindsTheNearestPixelThatCanBeTouched) {
   const DepthImage image = uneven(1);
   for (const ImagePixel& to : {ImagePixel{15, 9}, {15, 24}, {0, 0}, {30, 39}, {14, 30}}) {

@@ -26,7 +26,7 @@ Made made(const typename Made::Settings& settings = {}) {
   return Made(settings, NoiseKey{}, scenes::kernels());
 }
 
-// Points without a surface that could be asked for.
+// A scenario of points without a true surface.
 class PointsOnly final : public Scenario {
  public:
   double frame_rate_hz() const override { return 30; }
@@ -53,7 +53,7 @@ TEST(PolylinePath, EachPieceHasItsSpeed) {
   expect_at(path.end(), {1, 0.3, 0});
 }
 
-TEST(PolylinePath, JumpsWaitsAndEnds) {
+TEST(PolylinePath, CanJumpWaitAndEnd) {
   PolylinePath path({0, 0, 0});
   path.wait(1);
   path.go_to({5, 0, 0}, 0);  // a jump at 1 s
@@ -78,7 +78,7 @@ TEST(PolylinePath, PieceOfNoLengthTakesNoTime) {
   expect_at(path.at(0.5), {0.5, 0, 0});
 }
 
-TEST(Waypoints, RowsArePlacesWithTheSpeedOnTheWayThere) {
+TEST(Waypoints, ARowIsAPositionAndTheSpeedOfTheMotionToIt) {
   const FlatGrid scene = made<FlatGrid>();
   const Waypoints device({{0, 0.01, 0, 7, 0.1, 0.01, 0, 0.05, 0.1, -0.01, 0, 0, 0.1, -0.01, 0.3, 0.1}},
                          scene);
@@ -135,8 +135,8 @@ TEST(FollowSurface, StaysInsideAWaveByItsDepth) {
   double deepest = 0;
   for (double t = 0.6; t < device.duration_s() - 0.6; t += 0.001) {
     const Vec3 hip = device.at(t).position_W;
-    // Samples 1e-4 m apart, 1.4e-4 along the flanks: their circles of 5 mm sag by that squared over 8 times 5
-    // mm between them, and the straight piece between two places cuts the corner by as much.
+    // Samples are 1e-4 m apart, 1.4e-4 m along the flanks. Their circles of 5 mm sag by that squared over 8
+    // times 5 mm between two samples. The straight piece between two positions cuts the corner by as much.
     ASSERT_LE(wave.signed_distance(hip, t), -s.depth_m + 1e-6) << hip.transpose();
     deepest = std::min(deepest, wave.signed_distance(hip, t));
     const double moved = (device.at(t + 1e-4).position_W - hip).norm();
@@ -161,8 +161,8 @@ TEST(FollowSurface, LiftsOffOverSteps) {
           << hip.transpose();  // the ramp is 0.4 mm lower 1 mm away
       ++over_steps;
     }
-    // Away from walls it is inside: level parts, and the slope of 0.4 where depth is measured along the
-    // normal.
+    // The HIP is inside away from walls: on level parts, and on the slope of 0.4, where depth is measured
+    // along the normal.
     const auto expect_depth = [&](double low, double high, double surface, double below) {
       if (hip.z() < low || hip.z() > high) return;
       ASSERT_NEAR(hip.y(), surface - below, 1e-6) << hip.transpose();
@@ -190,7 +190,7 @@ TEST(FollowSurface, RefusesEndsThatDifferOnlyInHeight) {
   EXPECT_EQ(validate(s), "");
 }
 
-TEST(HeightFields, AreNeededToPressAndToFollow) {
+TEST(HeightFields, PressAndFollowSurfaceRefuseOtherScenes) {
   const PointsOnly scene;
   EXPECT_THROW(Press({}, scene), InputError);
   EXPECT_THROW(FollowSurface({}, scene), InputError);
@@ -246,7 +246,7 @@ TEST(ImageScan, TouchesWhatWasSeenWithoutGaps) {
 
 TEST(ImageScan, FindsAnObjectOnTheTableAndObeysGivenColumns) {
   const CameraScene scene = made<CameraScene>();
-  // Ramp or box, not the table: it holds most of the image and is nearer at the image's lower edge.
+  // The scan finds ramp or box, not the table, which fills most of the image and is nearer at its lower edge.
   const ImageScan automatic({}, scene);
   double highest = 0;
   for (double t = 0; t < automatic.duration_s(); t += 0.001) {

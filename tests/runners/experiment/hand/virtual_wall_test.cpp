@@ -23,7 +23,7 @@ struct Wall {
   }
 };
 
-// The matrix that takes (x, x', x a tick ago) to the same numbers a tick later.
+// Returns the matrix that maps (x, x', x one tick ago) to their values one tick later.
 Eigen::Matrix3d closed_loop(const Wall& wall, double mass_kg, double damping_Ns_per_m) {
   const HeldForceStep step({mass_kg, 0, 0, damping_Ns_per_m}, kTick_s);
   Eigen::Matrix3d next;
@@ -64,8 +64,8 @@ TEST(VirtualWall, TheExampleOfALightDeviceIsStableUpTo300NewtonPerMetre) {
   EXPECT_NEAR(largest_stable_stiffness(0.5, 0.1, 0.05), 300, 9);
 }
 
-// The largest energy that the wall has given to a hand on a device with the damper b, less what this damper
-// took, at any time of a motion that begins outside the wall, which is where x > 0.
+// Returns the largest energy that the wall has given to a hand on a device with the damper b, less what this
+// damper took, at any time of a motion. The wall is at x > 0, and the motion begins outside it.
 double largest_gain_J(const Wall& wall, double b, unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return low + (high - low) * random() / 4294967296.0; };
@@ -105,7 +105,7 @@ TEST(VirtualWall, GivesEnergyOutsideTheBound) {
 
 // --- finding B1: what a step that conserves energy under a held force hides ---
 
-// A hand that a held push set in motion towards a wall of 600 N/m at x >= 0, and that comes back.
+// A push of ten ticks sets a hand in motion towards a wall of 600 N/m at x >= 0. The hand comes back.
 TEST(VirtualWall, AHandWithoutDampingLeavesItFasterThanItCame) {
   OperatorSettings s;
   s.mass_kg = 0.5, s.stiffness_N_per_m = s.damping_Ns_per_m = 0;

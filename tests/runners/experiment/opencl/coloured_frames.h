@@ -1,4 +1,5 @@
-// Coloured frames with forbidden regions by hue: all at once on a device beside one after another on the CPU.
+// Coloured frames with forbidden regions by hue: all at once on a device, compared with one step after
+// another on the CPU.
 #pragma once
 
 #include <cmath>
@@ -15,7 +16,7 @@
 
 namespace remote_touch::coloured_frames {
 
-// Every colour may come, and many greys, pure colours and points without a colour.
+// Random colours, among them many greys, pure colours and points without a colour.
 inline std::vector<std::uint32_t> colours(std::size_t count) {
   std::vector<std::uint32_t> all;
   std::uint32_t random = 1;
@@ -30,7 +31,8 @@ inline std::vector<std::uint32_t> colours(std::size_t count) {
   return all;
 }
 
-// Hues through red and others, faded or not, with and without a radius or a stiffness.
+// Ranges of hue through red and others, at full and at partial strength, with and without a radius or a
+// stiffness.
 inline FixtureAssignment rules_by_hue() {
   const auto rule = [](double radius_m, double stiffness, double strength, double from_deg, double to_deg) {
     HueRange::Settings settings;
@@ -70,7 +72,7 @@ inline PointCloud on_cpu(PointCloud cloud, const depth_cases::Settings& settings
   return cloud;
 }
 
-// Returns what differs; empty: nothing.
+// Returns the difference, or an empty text if there is none.
 inline std::string cloud_differs(DepthProcessor& device, const depth_cases::Settings& settings,
                                  const PointCloud& measured, std::uint64_t off) {
   const FixtureAssignment fixtures = rules_by_hue();
@@ -102,7 +104,7 @@ inline std::string image_differs(DepthProcessor& device, const depth_cases::Sett
 }
 
 // Compares the device with the CPU on a cloud with all rules, with some and with none, and on a sensor's
-// image. Returns what differs; empty: nothing.
+// image. Returns the difference, or an empty text if there is none.
 inline std::string differs(DepthProcessor& device, const depth_cases::Settings& settings,
                            const scenes::DepthScene& scene, const RigidTransform& X_WC) {
   PointCloud measured = cloud_from_depth(scene.depth, scene.camera, X_WC);

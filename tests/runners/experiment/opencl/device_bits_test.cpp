@@ -1,4 +1,5 @@
-// The bits of a real OpenCL device beside those of the CPU. Debian's pocl is one on every processor.
+// The bits of a real OpenCL device compared with those of the CPU. Debian's pocl provides a device on every
+// processor.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -35,7 +36,7 @@ class DeviceBits : public testing::Test {
     }
     if (devices_.empty()) GTEST_SKIP() << "no OpenCL device: scripts/install tests has pocl";
   }
-  // One frame as an image and as a cloud, on the device and on the CPU.
+  // Checks that device and CPU give the same bits for one frame, as an image and as a cloud.
   void expect_same(const Settings& settings, const scenes::DepthScene& scene, const RigidTransform& X_WC) {
     for (const OpenClDevice& device : devices_) {
       if (!device.inexact_because.empty() || !device.unfit_because.empty()) continue;
@@ -66,7 +67,7 @@ TEST_F(DeviceBits, AreThoseOfTheCpuForOddSizesAndHoles) {
     expect_same({}, with_holes(width, height), some_pose());
 }
 
-// Its compiler takes seconds for each: opencl_double_test.cpp has the others.
+// The device's compiler takes seconds for each window. opencl_double_test.cpp has the other windows.
 TEST_F(DeviceBits, AreThoseOfTheCpuForOtherWindows) {
   for (const int window : {5, 11}) {
     Settings settings;

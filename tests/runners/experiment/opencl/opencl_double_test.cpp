@@ -35,7 +35,7 @@ class OpenClDoubleTest : public testing::Test {
     begin_anew();
     EXPECT_TRUE(everything_is_released());
   }
-  // A device that failed is tidied up by a thread that nobody waits for.
+  // A device that failed is cleaned up by a thread for which no other thread waits.
   static bool everything_is_released() {
     return wait_until([] { return library().objects == 0; });
   }
@@ -77,7 +77,7 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpu) {
   EXPECT_TRUE(told_.empty());
 }
 
-// The same source as on a device, compiled as C++.
+// The double compiles the source of the device's kernels as C++.
 TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
   scenes::DepthScene scene = noisy_waves(83, 37);
   scenes::add_holes(scene.depth, 0.1, 3, kNoDepth);
@@ -92,7 +92,7 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
     }
 }
 
-// Each function that a frame calls, from its first and from a later call of the frame on.
+// Each function that a frame calls fails, from its first or from a later call of the frame on.
 TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
   std::vector<const char*> functions(std::begin(kFrameFunctions), std::end(kFrameFunctions));
   functions.insert(functions.end(), {"clCreateBuffer", "clEnqueueWriteBufferRect"});
@@ -145,7 +145,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_NE(told_[0].find("no answer within 2 s"), std::string::npos) << told_[0];
   pipeline.reset();  // does not wait for the driver
   library().let_go = true;
-  EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver lets it go
+  EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver returns
 }
 
 TEST_F(OpenClDoubleTest, AShortLimitIsReportedInFractionsOfASecond) {
@@ -159,7 +159,7 @@ TEST_F(OpenClDoubleTest, AShortLimitIsReportedInFractionsOfASecond) {
   EXPECT_TRUE(everything_is_released());
 }
 
-// A sweep of short runs: the second run finds what the first one built and tried.
+// A sweep of short runs: the second run uses what the first one built and tried.
 TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
   library().failing = "clBuildProgram", library().failing_call = 1000;
   DepthDeviceSettings settings;
@@ -199,13 +199,13 @@ TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
   processed_by(*processor);
   EXPECT_EQ(depth_device_of(settings), "opencl:0:0 (double, double), which failed: then the CPU");
   settings.sigma_f_m = 0.03;
-  EXPECT_EQ(depth_device_of(settings), "");  // of other settings
+  EXPECT_EQ(depth_device_of(settings), "");  // no device has these settings
 }
 
 TEST_F(OpenClDoubleTest, ListingOfDevicesTimesOutIfDriversHang) {
   library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
   EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
-  // The call throws at once while they still hang; ctest would not wait 10 hours for a test.
+  // The call throws at once while they still hang. ctest would not wait 10 hours for a test.
   EXPECT_THROW(listed_devices(std::chrono::hours(10)), OpenClTimeout);
   EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
   EXPECT_TRUE(refusal("auto").empty());

@@ -52,14 +52,15 @@ TEST_F(CacheSizeTest, OnlyItsOwnFilesGo) {
   EXPECT_EQ(names(), (std::vector<std::string>{"l.partial-AbCdEf", "notes.txt"}));
 }
 
-// Also small files of a size that is known: they do not count, but programs that write them can be killed.
+// This includes writers of small files of a size that is known. Such files do not count, but programs that
+// write them can be killed.
 TEST_F(CacheSizeTest, EveryWriterRemovesWhatKilledProgramsLeft) {
   add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60), add("a.tool", 100, 9999);
   ASSERT_TRUE(write_cache_file(folder_.path(), {"levels", 1, 4096}, "m", [](CacheWriter&) {}));
   EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "l.partial-AbCdEf", "m.levels"}));
 }
 
-TEST_F(CacheSizeTest, NoFolderHoldsNothing) {
+TEST_F(CacheSizeTest, AMissingFolderCountsAsEmpty) {
   EXPECT_EQ(cache_size(folder_ / "nowhere").files, 0u);
   EXPECT_EQ(shrink_cache(folder_ / "nowhere", 0).files, 0u);
 }
@@ -81,7 +82,7 @@ TEST_F(CacheSizeTest, WritingKeepsTheCacheBelowItsMaximum) {
   EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "c.tool"}));
 }
 
-// A small file is written whatever the maximum says, and one that is longer than its kind can be is not read.
+// A small file is written whatever the maximum is. A file that is longer than its kind can be is not read.
 TEST_F(CacheSizeTest, AKindCanHaveAMaximum) {
   ::setenv("REMOTE_TOUCH_CACHE_MB", "wrong", 1);
   const auto take = [](Unpacker& unpack) {

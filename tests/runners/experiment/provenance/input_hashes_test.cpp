@@ -1,6 +1,6 @@
-// The hashes in result files of the recordings that they were made from. The hashes below are from sha256sum,
-// as runners/experiment/provenance/input_hashes.h describes; tests/system/command_line/inputs runs it on real
-// files.
+// Hashes, in result files, of the recordings that the results were made from. The hashes below are from
+// sha256sum, as runners/experiment/provenance/input_hashes.h describes. The test
+// tests/system/command_line/inputs runs it on real files.
 #include "runners/experiment/provenance/input_hashes.h"
 #include "analysis/trace/trace.h"
 
@@ -32,7 +32,7 @@ class Inputs : public ::testing::Test {
     return list;
   }
 
-  // True if the text changes when the first such letter of this file changes.
+  // True if the text changes when the first such letter in this file is changed.
   bool depends_on(const std::string& name, char letter, int first = 0, int last = -1) const {
     const std::string before = text(first, last), bytes = bytes_of(folder_ / name);
     std::string changed = bytes;
@@ -120,7 +120,7 @@ TEST_F(Inputs, NamedFromElsewhereComeFromTheFolder) {
   EXPECT_TRUE(fs::equivalent(folder_ / name, file));
 }
 
-TEST_F(Inputs, HaveOneLineARecordingForSeveralParts) {
+TEST_F(Inputs, HaveOneLinePerRecording) {
   write_depth_folder(false);
   const std::string cloud = folder_.write("x.pcd", "cloud").string();
   InputHashes hashes;
@@ -130,7 +130,7 @@ TEST_F(Inputs, HaveOneLineARecordingForSeveralParts) {
   EXPECT_EQ(rest(all).substr(0, 14), ": 3 file(s), 1");
   EXPECT_HAS(all, "\n" + cloud + ": 1 file(s), 5 bytes, sha256 ");
   EXPECT_EQ(input_hashes({{cloud}, part(2, 2), part(0, 0), part(2, 2)}), all);
-  // The union counts, not how it came about.
+  // Only the union of the parts counts.
   EXPECT_EQ(input_hashes({part(0, 0), part(1, 1), part(2, 2)}), text());
   EXPECT_EQ(input_hashes({part(0, 1), part(1, 2)}), text());
 }
@@ -226,7 +226,7 @@ TEST(ChangedInputs, AreListedByPath) {
   EXPECT_EQ(changed_inputs(a, b)[1].before, "absent");
 }
 
-// --- who names recordings ---
+// --- recordings that experiments and sweeps name ---
 
 TEST(NamedInputs, AreThoseOfTheScenario) {
   EXPECT_TRUE(Experiment::load("fig4.12").inputs().empty());
@@ -244,7 +244,7 @@ TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
   EXPECT_EQ(sweep.inputs(), (std::vector<RecordingPart>{{"x", 0, 1}, {"x", 0, 2}, {"y", 0, 1}, {"y", 0, 2}}));
 }
 
-// Runs on x are done, those on y are not: y may be mended.
+// Runs on x are done, and those on y are not. Recording y may therefore be repaired.
 TEST(NamedInputs, AnUnfinishedSweepKeepsThoseOfDoneRuns) {
   const TestFolder folder("input_hashes_test_session");
   const Sweep sweep = Sweep::from_json(

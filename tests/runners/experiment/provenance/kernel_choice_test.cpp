@@ -53,7 +53,8 @@ TEST_F(KernelChoiceTest, AForcedLevelIsNeitherMeasuredNorKept) {
              "REMOTE_TOUCH_ISA = x86-64-v9: expected x86-64 up to x86-64");
 }
 
-// Any byte changed, cut anywhere, longer, a folder, or a sound file of times that cannot be.
+// The file has one byte changed, is cut anywhere, is longer, is a folder, or is intact but holds times that
+// are impossible.
 TEST_F(KernelChoiceTest, DamagedFilesAreMeasuredAgain) {
   if (levels() == 1) GTEST_SKIP() << "this machine has one level only: nothing to choose";
   const std::size_t last = levels() - 1;
@@ -109,7 +110,7 @@ TEST_F(KernelChoiceTest, TheKeyIsTheSameAtEveryStart) {
   EXPECT_EQ(level_times_key(), level_times_key());
 }
 
-// The measurement itself: what it gives can be kept, and chooses a level of this machine.
+// The measurement itself: its result can be stored, and it chooses a level of this machine.
 TEST_F(KernelChoiceTest, TheMachineIsMeasured) {
   const LevelTimes measured = time_supported_levels();
   ASSERT_EQ(measured.size(), levels());

@@ -10,7 +10,8 @@
 namespace remote_touch::level_timing_test {
 namespace {
 
-// A processor whose clock advances only while it works: so long for each level, and longer when disturbed.
+// A processor whose clock advances only while it works: by a given time for each level, and by more while it
+// is disturbed.
 struct Processor {
   double now_s = 100;
   std::map<const Kernels*, double> needs_s = {};
@@ -26,7 +27,7 @@ struct Processor {
     return time_levels(
         levels, tasks, [this] { return now_s; }, max_s);
   }
-  // Any two tables do: they are not called.
+  // Any tables will do, because they are not called.
   std::vector<const Kernels*> levels = {&tables[0], &tables[1], &tables[2]};
   inline static const Kernels tables[3] = {kernels_for(Isa::x86_64), kernels_for(Isa::x86_64),
                                            kernels_for(Isa::x86_64)};
@@ -78,7 +79,7 @@ TEST(FastestLevel, AHigherOneMustBeClearlyFaster) {
 }
 
 // The measured tasks do the real work, on every level, without an access that a sanitizer would stop.
-TEST(KernelTasks, RunOnEveryLevelAndTakeTime) {
+TEST(KernelTasks, RunOnEveryLevelForAMeasurableTime) {
   const std::vector<KernelTask> tasks = representative_tasks();
   ASSERT_EQ(tasks.size(), 4u);
   for (const KernelTask& task : tasks)

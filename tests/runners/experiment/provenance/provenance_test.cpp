@@ -5,7 +5,7 @@
 namespace remote_touch::provenance_test {
 namespace {
 
-// The identity is the whole program's: other tests see the project's own again.
+// The identity belongs to the whole program, so it is reset for the other tests.
 class Provenance : public testing::Test {
  protected:
   ~Provenance() override { identify_program({}); }

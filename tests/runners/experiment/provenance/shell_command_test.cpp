@@ -1,4 +1,4 @@
-// Commands that are stored in results can be typed.
+// Commands that are stored in results can be typed into a shell.
 #include "runners/experiment/provenance/shell_command.h"
 
 #include <gtest/gtest.h>

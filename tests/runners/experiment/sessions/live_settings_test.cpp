@@ -9,7 +9,7 @@
 namespace remote_touch::live_settings_test {
 namespace {
 
-// Every parameter sets a field of its own, which the name is that of, and allows its default.
+// Every parameter sets the field of its name and allows its default.
 TEST(LiveSettings, ParametersReachTheSettings) {
   LiveSettings s;
   std::set<std::string> names;
@@ -35,7 +35,7 @@ TEST(LiveSettings, ParametersReachTheSettings) {
   EXPECT_EQ(validate(s), "");
 }
 
-// Turned first, then moved. A quarter about z takes x to y.
+// The camera is turned first, and then moved. A quarter turn about z maps x to y.
 TEST(LiveSettings, ACameraIsTurnedAndMoved) {
   EXPECT_EQ(camera_registration({}).matrix(), Eigen::Matrix4d::Identity());
   LiveSettings s;
@@ -45,7 +45,7 @@ TEST(LiveSettings, ACameraIsTurnedAndMoved) {
   EXPECT_EQ(camera_registration(s).translation(), Vec3(1, 2, 3));
 }
 
-TEST(LiveSettings, PlaceOfTheDeviceDoesNotMoveTheCamera) {
+TEST(LiveSettings, PositionOfTheDeviceDoesNotMoveTheCamera) {
   LiveSettings s;
   s.device_position_m = Vec3(1, 2, 3), s.device_rotation_deg = Vec3(0, 0, 90), s.device_scale = 2;
   EXPECT_EQ(camera_registration(s).matrix(), Eigen::Matrix4d::Identity());

@@ -31,8 +31,8 @@ TEST(SafetyLimits, ParametersReachFieldsOfTheirOwnAndAllowTheDefaults) {
   for (int i = 0; i < 9; ++i) EXPECT_EQ(set[i], i + 1);
 }
 
-// Whatever the force is, in 10 ms it is gone: 5 N at 500 N/s.
-TEST(SafetyLimits, ASlewRateThatCannotLetGoIsRefused) {
+// Any force must fall to zero within 10 ms: 5 N at 500 N/s.
+TEST(SafetyLimits, ASlewRateThatCannotReleaseIsRefused) {
   EXPECT_EQ(validate(SafetyLimits{}), "");
   SafetyLimits force;
   force.force_slew_N_per_s = 500;

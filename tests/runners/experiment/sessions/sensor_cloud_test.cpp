@@ -10,7 +10,7 @@
 namespace remote_touch::sensor_cloud_test {
 namespace {
 
-// Neither square pixels nor a centre in the middle.
+// The pixels are not square, and the centre is not in the middle.
 const SensorView kView{{4, 3, 200, 250, 1.25, 0.75}, 0.0005, 30, false, RigidTransform::Identity()};
 
 SensorFrame frame_of(std::uint16_t first_depth) {

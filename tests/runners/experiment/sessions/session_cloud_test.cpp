@@ -52,7 +52,7 @@ TEST(SessionCloud, GivesBackCloudsWithAndWithoutNormalsAndColour) {
   }
 }
 
-// Before it is shown, a frame must have all that its view promises.
+// A frame must have all that its view promises before it is used.
 TEST(SessionCloud, AFrameWithHalfAPointIsNotComplete) {
   SensorView view;
   view.cloud = {true, 0, 1};

@@ -78,7 +78,7 @@ TEST(SessionFile, GivesBackChangesOfParameters) {
   EXPECT_EQ(read.changes()[2].tick, 2147483647u);
 }
 
-// They go to the disk a thousand at a time: the last ones only at the end.
+// Ticks are written to the disk a thousand at a time, and the last ones at the end.
 TEST(SessionFile, GivesBackThousandsOfTicks) {
   const TestFolder folder("session_file");
   for (const int count : {999, 1000, 1001, 2000, 4500}) {
@@ -138,7 +138,7 @@ TEST(SessionFile, ASessionMayHaveNoTicksAndNoFrames) {
   EXPECT_EQ(read.frame_count(), 0u);
 }
 
-TEST(SessionFile, OneThatIsNotFinishedLeavesNothing) {
+TEST(SessionFile, AnUnfinishedSessionLeavesNoFile) {
   const TestFolder folder("session_file");
   SmallSession session;
   session.add_frame(0, 0);
@@ -207,7 +207,7 @@ struct RawSession {
   std::vector<std::int32_t> changed{1, 0};
   std::vector<double> value{0.02, 0.004};
   unsigned long long width = 3, height = 2;  // size of the images as stored
-  std::string left_out;                      // a dataset that is not there
+  std::string left_out;                      // a dataset that is not written
 
   void view_with(const std::string& old, const std::string& now) {
     view.replace(view.find(old), old.size(), now);
@@ -376,7 +376,7 @@ TEST(SessionFile, AViewThatNoCameraHasIsRefused) {
       {[](RawSession& s) { s.config = "{}"; }, attributes},
       {[](RawSession& s) { s.config = R"({"haptic_rate_hz": 0})"; }, "haptic_rate_hz = 0"},
       {[](RawSession& s) { s.config = R"({"haptic_rate_hz": -1})"; }, "haptic_rate_hz = -1"},
-      // Together they have as many pixels as the images.
+      // Their product is as many pixels as the images have.
       {[](RawSession& s) { s.view_with("3, \"height\": 2", "-3, \"height\": -2"); }, "width = -3"},
       {[](RawSession& s) { s.view_with("\"width\": 3", "\"width\": 1e99"); }, "width = 1e+99"},
       {[](RawSession& s) { s.view_with("\"height\": 2", "\"height\": 0"); }, "height = 0"},

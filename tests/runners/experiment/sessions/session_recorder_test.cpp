@@ -77,7 +77,7 @@ struct Recorded {
     return {{"config", session.config}, {"command", "a \xff byte\nand a line"}};
   }
 
-  // done(ticks, frames): what was appended so far.
+  // Calls done(ticks, frames) after each tick, with the numbers appended so far.
   template <class Done>
   void fill(SessionRecorder& recorder, const Done& done) const {
     std::size_t change = 0, frame = 0;
@@ -96,7 +96,7 @@ struct Recorded {
     return SessionRecorder(file, session.view, session.registered, provenance(), kParameters);
   }
 
-  // The whole, written without a journal.
+  // Returns the whole recording, written without a journal.
   Hdf5Content whole(const TestFolder& folder) const {
     SessionWriter writer(folder / "whole.h5", session.view, session.registered, provenance(), kParameters);
     session.fill(writer);
@@ -180,7 +180,7 @@ TEST_P(SessionRecorderOf, MakesTheFileThatTheWriterMakes) {
 
 // kill -9 at forty moments over the whole recording, its end included: by the process itself between two
 // ticks, and from outside at any point of a write. The counts are in memory that outlasts the process.
-TEST_P(SessionRecorderOf, KilledAtAnyMomentKeepsEveryBlock) {
+TEST_P(SessionRecorderOf, AKilledRecordingKeepsEveryBlock) {
   const TestFolder folder("session_recorder");
   const Recorded recorded(2500, view());
   const Hdf5Content whole = recorded.whole(folder);
@@ -232,7 +232,7 @@ TEST_P(SessionRecorderOf, KilledAtAnyMomentKeepsEveryBlock) {
         expect_beginning(part, whole);
         EXPECT_EQ(rows_of(part, "/ticks/number"), found.ticks);
         EXPECT_EQ(rows_of(part, "/frames/number"), found.frames);
-        const SessionReader read(folder / "r.h5");  // it is one that can be run
+        const SessionReader read(folder / "r.h5");  // it can be run
         EXPECT_EQ(read.tick_count(), found.ticks);
         midway += found.ticks < last ? 1 : 0;
       }
@@ -248,7 +248,7 @@ TEST_P(SessionRecorderOf, KilledAtAnyMomentKeepsEveryBlock) {
 }
 
 // Every cut of the file: as a full disk or a power cut leaves it.
-TEST_P(SessionRecorderOf, CutAnywhereItIsTheBeginning) {
+TEST_P(SessionRecorderOf, AJournalThatIsCutAnywhereGivesItsBeginning) {
   const TestFolder folder("session_recorder");
   const Recorded recorded(230, view());
   const Hdf5Content whole = recorded.whole(folder);
@@ -333,7 +333,8 @@ TEST(SessionRecorder, LeavesNothingWhereNothingWasRecorded) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
-// The recording ended, and its file found no place: the whole is recovered, with the attributes of its end.
+// The recording ended, but its file could not be written. The whole is recovered, with the attributes of its
+// end.
 TEST(SessionRecorder, AFileThatCannotBeMadeLeavesTheWhole) {
   const TestFolder folder("session_recorder");
   const Recorded recorded(500, images());

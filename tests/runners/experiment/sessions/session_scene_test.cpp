@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Ticks 3, 4, 7, 9 and 12 of 500 a second; of three frames the second was overtaken.
+// Ticks 3, 4, 7, 9 and 12 at 500 Hz. The second of three frames was overtaken.
 class SessionSceneTest : public testing::Test {
  protected:
   SessionSceneTest() {
@@ -67,7 +67,7 @@ TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
   EXPECT_TRUE(std::isnan(scene.signed_distance(Vec3::Zero(), 0))) << "there is no truth";
 }
 
-// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer got the first and the last.
+// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer received the first and the last.
 TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
   const SessionScene scene = this->scene();
   scene.cloud(0), scene.points(0);
@@ -83,7 +83,7 @@ TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
   EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
 }
 
-TEST_F(SessionSceneTest, AFrameThatWasReplacedIsNotSaidToBeAfterTheEnd) {
+TEST_F(SessionSceneTest, AReplacedFrameIsNotReportedAsBeyondTheEnd) {
   const SessionScene scene = this->scene();
   scene.points(2);
   ASSERT_EQ(scene.input_notes().size(), 1u);
@@ -115,7 +115,7 @@ TEST_F(SessionSceneTest, TheHandIsThatOfTheTickOrTheOneBefore) {
   for (const double rounding : {-0.4, -1e-9, 1e-9, 0.4}) EXPECT_EQ(tick_at(7 + rounding), 7) << rounding;
 }
 
-TEST_F(SessionSceneTest, OutsideOfTheSessionTheHandIsThatOfItsEnds) {
+TEST_F(SessionSceneTest, TheHandIsConstantBeforeAndAfterTheSession) {
   const SessionHand hand = this->hand();
   for (const double number : {-1e9, -1.0, 0.0, 2.0})
     EXPECT_EQ(hand.at(number / 500).position_W.x(), 3) << number;
@@ -192,7 +192,7 @@ TEST_F(SessionSceneTest, AnExperimentOfNoSessionIsRefused) {
       refusal([this] { session_experiment(session_.write(file_)); }),
       file_.string() +
           ": damaged (its attributes view and config cannot be read): expected a result of this program");
-  // It would be printed by a function that calls itself for every level.
+  // The title would be printed by a function that calls itself for every level.
   session_.config =
       R"({"haptic_rate_hz": 1000, "title": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}";
   EXPECT_HAS(refusal([this] { session_experiment(session_.write(file_)); }), "nested too deep");

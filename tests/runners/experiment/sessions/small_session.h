@@ -26,7 +26,7 @@ struct SmallSession {
     ticks.push_back(tick);
   }
 
-  // Every pixel one unit farther than the one before.
+  // Adds a frame in which every pixel is one unit farther than the one before.
   void add_frame(int number, double at_s, std::uint16_t first_depth = 500, std::uint64_t off = 0) {
     SensorFrame frame;
     frame.number = number;

@@ -56,7 +56,7 @@ class UnfinishedSessionFile : public testing::Test {
   static JournalBlock changes(const std::vector<SessionChange>& list) {
     return block(SessionBlock::ticks, packed_ticks(std::vector<SessionTick>{tick(4)}, list));
   }
-  // The last block follows a session of one frame and one tick. It is left out, and so is all that follows.
+  // The last block follows a session of one frame and one tick. It is left out, as is everything after it.
   void expect_left_out(const JournalBlock& last) {
     const std::vector<JournalBlock> good{start(), frame(0), ticks({tick(3, 0)})};
     const std::size_t size = block_bytes(folder_, good).size();

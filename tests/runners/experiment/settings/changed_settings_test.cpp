@@ -63,7 +63,7 @@ TEST(Titles, NameWhatWasChanged) {
   EXPECT_EQ(titled(kLift, {"scenario.noise_sigma_m=0", "scenario.path=my/hand"}),
             "a lift, changed: scenario.noise_sigma_m=0, scenario.path=my/hand");
   EXPECT_EQ(titled(kLift, {}), "a lift");
-  EXPECT_EQ(titled(kLift, {"seed=1", "scenario.noise_sigma_m=6e-3"}), "a lift");  // as they were
+  EXPECT_EQ(titled(kLift, {"seed=1", "scenario.noise_sigma_m=6e-3"}), "a lift");  // the values do not change
   EXPECT_EQ(titled(kLift, {"seed=2", "seed=3"}), "a lift, changed: seed=3");
   EXPECT_EQ(titled(R"({"title": "a lift, changed: seed=3"})", {"duration_s=2"}),
             "a lift, changed: seed=3, duration_s=2");
@@ -76,7 +76,7 @@ TEST(Titles, TitlesOfTheUserAreKept) {
   EXPECT_EQ(titled("{}", {"seed=2", "title=mine"}), "mine");
 }
 
-// 120 characters of changes, the count of the others, and no value longer than 40.
+// A title has at most 120 characters of changes, then the count of the others. No value is longer than 40.
 TEST(Titles, HaveALimitedLength) {
   Texts many;
   for (int i = 0; i < 100; ++i)
@@ -91,7 +91,7 @@ TEST(Titles, HaveALimitedLength) {
   EXPECT_EQ(titled(R"({"title": "a"})", {"w=" + list}), "a, changed: w=" + list.substr(0, 40) + "...");
 }
 
-// A character of several bytes is whole, or is not there.
+// A character of several bytes is kept whole, or is left out.
 TEST(Titles, AreUtf8) {
   for (std::size_t more = 0; more < 4; ++more) {
     std::string path = std::string(more, 'x');

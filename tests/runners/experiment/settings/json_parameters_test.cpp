@@ -36,8 +36,8 @@ TEST(ApplyOverride, TakesNumbersAsTheyAreTyped) {
     EXPECT_EQ(with("{}", std::string("a=") + text)["a"], text);
 }
 
-// Each level is one call of what prints or destroys the value: 60000 of them exhausted the stack.
-TEST(ApplyOverride, APathHasSoManyLevels) {
+// Printing or destroying a value makes one call for each level. 60000 levels exhausted the stack.
+TEST(ApplyOverride, APathOfMoreThan64LevelsIsRefused) {
   const auto path = [](int levels) {
     std::string keys = "title";
     for (int i = 1; i < levels; ++i) keys += ".a";
@@ -48,7 +48,7 @@ TEST(ApplyOverride, APathHasSoManyLevels) {
   EXPECT_HAS(refused(R"({"title": null})", path(60000)), "expected at most 64 levels");
 }
 
-TEST(ApplyOverride, IsUtf8) {
+TEST(ApplyOverride, ATextThatIsNotUtf8IsRefused) {
   for (const char* assignment : {"title=\xff", "ti\xfftle=1", "scenario.name.\xff=1", "a=\"\xff\""})
     EXPECT_HAS(refused("{}", assignment), "expected UTF-8") << assignment;
   EXPECT_EQ(with("{}", "title=grün").dump(), R"({"title":"grün"})");

@@ -31,7 +31,7 @@ TEST(RenamedNames, OneOldNameHasTheNewNameThatIsKnownThere) {
   EXPECT_EQ(new_name("seed", {"seed"}), std::nullopt);
 }
 
-// Whatever is nearer in spelling.
+// The new name is the hint even if another name is nearer in spelling.
 TEST(RenamedNames, AreTheHintOfAnOldKey) {
   double max_force_N = 0, longest_force_N = 0;
   const Parameters parameters = {{"longest_force_N", &longest_force_N, 0, 1, "another"},

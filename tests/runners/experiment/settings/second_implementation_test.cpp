@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-// The stored table, read by its own way.
+// Reads the stored table without second_number().
 nlohmann::json stored_chapter_4() {
   std::ifstream file(REMOTE_TOUCH_SOURCE_DIR "/data/second_implementation/chapter_4.json");
   return nlohmann::json::parse(file);
@@ -22,7 +22,7 @@ TEST(SecondImplementation, GivesTheNumberAtAPlace) {
             stored_chapter_4()["lifts"]["noisy"]["survived"].get<double>());
 }
 
-// A loop over a part of a table that is gone reads what was there before, or nothing.
+// A loop over a part of a table that no longer exists would read wrong values, or none.
 TEST(SecondImplementation, GivesAColumnOfEveryRow) {
   const nlohmann::json table = stored_chapter_4(), rows = table["map"]["regions"];
   ASSERT_GT(rows.size(), 20U);

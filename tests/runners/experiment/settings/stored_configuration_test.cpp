@@ -1,4 +1,4 @@
-// Configurations of older results, whose lifts were told in frames.
+// Configurations of older results, whose lifts were given in frames.
 #include "runners/experiment/settings/stored_configuration.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(StoredConfiguration, CountsOfFramesBecomeTimesInTheirPlaces) {
       R"("acceleration_m_per_s2":0.0,"acceleration_s":0.45,"vanish_at_s":-1.0,"empty_frame_at_s":0.25},"seed":1})");
 }
 
-// The motion was updated with the frames and linear between them.
+// The motion of older lifts was updated with the frames and linear between them.
 TEST(StoredConfiguration, TheMotionKeepsItsUpdates) {
   const std::string lift =
       R"({"experiment": {"scenario": {"name": "moving-lift", "frame_rate_hz": 90, "rise_frames": 45,

@@ -13,7 +13,7 @@
 
 namespace remote_touch::cloud_kinds {
 
-// A flat plate at y = 0, seen from above, whose cloud has as much as is asked for.
+// A flat plate at y = 0, seen from above, whose cloud has what the settings demand.
 class Plate final : public Scenario {
  public:
   struct Settings {
@@ -84,7 +84,7 @@ class CloudKinds : public ::testing::Test {
   }
   static void TearDownTestSuite() { use_catalog(built_in_catalog()); }
 
-  // All that a cloud without a camera can be.
+  // Returns all kinds of clouds without a camera.
   static std::vector<Kind> plates() {
     std::vector<Kind> all;
     const auto word = [](bool is_on) { return std::string(is_on ? "true" : "false"); };

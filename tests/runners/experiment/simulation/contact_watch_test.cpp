@@ -79,7 +79,7 @@ TEST(ContactWatch, ReportsAStartAtPointsWithoutATrueSurface) {
 }
 
 // The plate is there, but the sensor does not see it, because it is too high: nothing is touched.
-TEST(ContactWatch, AStartBehindASurfaceWithoutPointsIsNone) {
+TEST(ContactWatch, AStartBehindASurfaceWithoutPointsIsNotReported) {
   const std::string hidden =
       R"({"name": "plates", "plates": [[0, 0.03, 0, 0.2, 0.2, 0, 0, 0, 0]], "max_height_m": 0.01})";
   EXPECT_FALSE(run(hidden, straight_down(0, 0)).has("starts in contact"));
@@ -178,7 +178,7 @@ TEST(ContactWatch, ALaterLossIsNoneAtTheFirstTouch) {
   EXPECT_EQ(made.kinds(), std::vector<std::string>{});
 }
 
-// Too wide spacing, not motion, loses this one at its first touch.
+// This proxy is lost at its first touch because the points are too far apart, not because of motion.
 TEST(ContactWatch, ASurfaceAtRestLosesNoProxyAtTheFirstTouch) {
   EXPECT_EQ(run(flat("0.0075"), press_from(0.0003, 0.02)).kinds(), std::vector<std::string>{"wide spacing"});
 }

@@ -41,7 +41,7 @@ const Case kCases[] = {{"fig4.11", {"duration_s=2"}},
                        {"sliding-ridge", {"duration_s=1", "scenario.shape=sphere", "scenario.tilt_deg=9"}},
                        {"faulty-lift", {"faults.rolling_shutter_s=0.01", "scenario.truth=moving"}}};
 
-TEST(Determinism, EveryInstructionSetAndNumberOfThreads) {
+TEST(Determinism, EveryInstructionSetAndNumberOfThreadsGivesTheSameBits) {
   struct Other {
     Isa isa;
     int threads;
@@ -61,7 +61,7 @@ TEST(Determinism, EveryInstructionSetAndNumberOfThreads) {
   omp_set_num_threads(threads_before);
 }
 
-// A press and slide over a noisy cloud, with the points held by one kind of search.
+// Returns the path of a press and slide over a noisy cloud, whose points are held by one kind of search.
 std::vector<Vec3> slide(const std::shared_ptr<const NeighbourSearch>& points) {
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame({0, 0, 0, points});
@@ -104,8 +104,9 @@ TEST(Determinism, EveryOrderOfThePointsGivesTheSameBits) {
   }
 }
 
-// The kept list of neighbours must not show: a renderer that was elsewhere before ends in the same place.
-TEST(Determinism, HistoryOfTheNeighbourListDoesNotShow) {
+// The kept list of neighbours must have no effect: a renderer that was elsewhere before ends in the same
+// position.
+TEST(Determinism, TheHistoryOfTheNeighbourListChangesNoBits) {
   const auto points = std::make_shared<UniformGridSearch>(bumpy_cloud(), 0.004);
   const auto settle = [&](const Vec3& detour) {
     ProxyRenderer renderer = scenes::renderer();

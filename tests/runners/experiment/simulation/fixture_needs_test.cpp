@@ -1,5 +1,5 @@
-// Every fixture rule on every kind of cloud: either the run is refused in one line that says what is
-// expected, or the rule has its effect. Likewise guidance.
+// Every fixture rule on every kind of cloud. Either the run is refused in one line that states what is
+// expected, or the rule has its effect. The same holds for guidance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace cloud_kinds;
 class FixtureNeeds : public CloudKinds {};
 
 struct Rule {
-  const char* json;   // but for its closing brace
+  const char* json;   // the closing brace is missing
   const char* needs;  // "", "colours" or "image"
 };
 
@@ -35,7 +35,7 @@ void expect_region_or_refusal(const Kind& kind, const Rule& rule) {
     EXPECT_GT(trace.proxy_position_m[trace.length() - 1].dot(kind.outwards) - kind.outwards.z() * 0.5, 0.015);
     return;
   }
-  // Also where it would begin after the end of the run.
+  // The rule is refused even if it would begin after the end of the run.
   for (const char* more : {"", R"(, "schedule": [[9, 0], [10, 1]])"}) {
     const std::string line = refusal([&] { run(json(more)); });
     EXPECT_HAS(line, "fixtures.0: ");
@@ -65,8 +65,8 @@ TEST_F(FixtureNeeds, EveryFixtureRuleWorksOrIsRefused) {
 
 // --- guidance ---
 
-// The plane of a target faces the sensor. Without an image that has to be at the origin, as in a recording
-// whose camera was not moved.
+// The plane of a target faces the sensor. If there is no image, the sensor has to be at the origin, as in a
+// recording whose camera was not moved.
 TEST_F(FixtureNeeds, GuidanceAcrossAPlaneNeedsToKnowWhereTheSensorIs) {
   const std::string across = R"(, "fixtures": [{"name": "everywhere", "role": "guidance"}],
       "guidance": {"orientation": "plane", "approach_axis": [0, 0, 1], "standoff_m": 0.05})";

@@ -1,4 +1,4 @@
-// When force begins, how it goes on over frame updates, and when it ends: through the whole renderer.
+// When force begins, how it continues over frame updates, and when it ends: through the whole renderer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,13 +23,13 @@ TEST(ForceOverTime, EndsWithTheContact) {
   const auto stay = [&](const Vec3& hip) { return renderer.step({hip}, time += 0.001); };
   stay(Vec3(0, 0.02, 0));
   for (int tick = 0; tick < 20; ++tick) EXPECT_GT(stay(Vec3(0, -0.01, 0)).force_N.y(), tick > 0 ? 5 : 0);
-  // Far above, and then beside: a contact that was not let go of would pull the hand back.
+  // The hand is far above the cloud, and then beside it. A contact that was not released would pull it back.
   for (int tick = 0; tick < 20; ++tick)
     EXPECT_TRUE(stay(Vec3(0.001 * tick, 0.04, 0)).force_N.isZero(0)) << tick;
   EXPECT_GT(stay(Vec3(0, -0.01, 0)).force_N.y(), 5);
 }
 
-// Steps end when one changes nothing, bit for bit: a free proxy is at the HIP with the first.
+// The steps of a tick end when one changes nothing, bit for bit. A free proxy is at the HIP with the first.
 TEST(ForceOverTime, AFreeProxyTakesTwoStepsATick) {
   ProxyRenderer renderer = scenes::renderer();
   renderer.on_frame(scenes::frame(scenes::flat_grid(60)));
@@ -40,8 +40,8 @@ TEST(ForceOverTime, AFreeProxyTakesTwoStepsATick) {
   }
 }
 
-// A cloud that rises evenly; one step a tick, so the tick of an update ends before the proxy is in contact
-// again.
+// A cloud that rises evenly. A tick has one step, so the tick of an update ends before the proxy is in
+// contact again.
 TEST(ForceOverTime, TheLatestContactIsCarriedWithTheCloud) {
   ProxyParameters parameters;
   parameters.steps_per_tick = 1;
@@ -50,7 +50,7 @@ TEST(ForceOverTime, TheLatestContactIsCarriedWithTheCloud) {
   for (int tick = 0; tick < 1000; ++tick) {
     const double time = 0.001 * tick;
     const int frame = tick / 40;
-    // 25 frames a second, 0.1 m/s; from frame 12 on 1 m/s^2 faster.
+    // 25 frames a second at 0.1 m/s. The cloud accelerates by 1 m/s^2 from frame 12 on.
     const auto height = [](int j) {
       const double s = std::max(0, j - 12) / 25.0;
       return 0.004 * j - 0.03 + 0.5 * s * s;
@@ -88,8 +88,8 @@ TEST(ForceOverTime, CountsFromTheArrivalOfTheFrame) {
   }
 }
 
-// The cloud stops to come while v_hat is 0.1 m/s: the force may go on as if it rose for max_prediction_s,
-// no longer.
+// The frames stop while v_hat is 0.1 m/s. The force may continue as if the cloud rose for max_prediction_s,
+// but no longer.
 TEST(ForceOverTime, IsBoundedWhenTheStreamStops) {
   const Trace trace = simulate(Experiment::load(
       "fig4.12", {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0",

@@ -1,4 +1,4 @@
-// Every renderer on every kind of cloud: either the run is refused in one line that says what to add, or
+// Every renderer on every kind of cloud. Either the run is refused in one line that states what to add, or
 // there is a force. There is no third outcome, such as a tool that feels nothing.
 #include "runners/experiment/catalog/frame_needs.h"
 
@@ -23,7 +23,7 @@ struct Method {
   const char* reason;    // why it needs that, or nothing
 };
 
-// Independent of the catalog.
+// The table is independent of the catalog.
 const Method kMethods[] = {
     {"proxy", "", "", "a ball among points"},
     {"tracked-sheet", "", "", "fits its sheet to points in cells"},

@@ -29,7 +29,8 @@ Trace beside_a_ball(const std::string& sequence) {
                                         "test"));
 }
 
-// Frames come at n / 30 s, before the tick of that time: what a tick switches is seen from the frame after.
+// Frames come at n / 30 s, before the tick of that time. A change that a tick makes takes effect with the
+// next frame.
 TEST(GuidedLoop, RegionsAreSwitchedWithTheNextFrame) {
   const Trace trace = beside_a_ball(R"([{"action": "lock", "fixture": "ball", "not_before_s": 0.5},
                     {"action": "unlock", "fixture": "ball", "not_before_s": 1.0}])");
@@ -57,7 +58,7 @@ TEST(GuidedLoop, ARegionThatIsUnlockedFirstBeginsLocked) {
 
 // --- guidance ---
 
-// Before the middle of a flat grid, 5 cm above it, is the goal; the hand wants to be 2 cm beside that.
+// The goal is 5 cm above the middle of a flat grid. The hand intends to be 2 cm beside it.
 Trace beside_a_goal(const std::vector<std::string>& overrides, double duration_s = 4) {
   std::vector<std::string> all{"duration_s=" + std::to_string(duration_s)};
   all.insert(all.end(), overrides.begin(), overrides.end());
@@ -82,7 +83,7 @@ Trace of_a_tool(const std::string& rotation_deg, const std::vector<std::string>&
   return beside_a_goal(all);
 }
 
-// Two springs in a row: 300 N/m to the intended place, 200 N/m to the goal.
+// Two springs in a row: 300 N/m to the intended position, 200 N/m to the goal.
 TEST(GuidedLoop, HandAndGuidanceMeetWhereTheirSpringsAreEven) {
   const Trace trace = beside_a_goal({});
   const std::size_t end = trace.length() - 1;
@@ -99,8 +100,8 @@ TEST(GuidedLoop, AHandThatReleasesItsGripIsLedToTheGoal) {
   EXPECT_LT((trace.hip_position_m[trace.length() - 1] - Vec3(0, 0.05, 0)).norm(), 1e-9);
 }
 
-// The guidance pulls from the press on. The step ends when the tool is within 5 mm; then nothing pulls any
-// more.
+// The guidance pulls from the press of the button on. The step ends when the tool is within 5 mm, and then
+// the guidance stops.
 TEST(GuidedLoop, ATaskIsPlayedByThePressesOfTheHand) {
   const Trace trace = beside_a_goal(
       {R"(sequence=[{"action": "activate", "fixture": "valve", "start": "button", "button": 4, "done": "reached"},
@@ -129,7 +130,8 @@ TEST(GuidedLoop, TurnsMeetWhereTheirSpringsAreEven) {
   EXPECT_EQ(trace.device_torque_Nm[end], trace.torque_Nm[end]);
 }
 
-// 7.5.2: a device without a motor for the roll cannot exert the torque that is left, and it never vanishes.
+// 7.5.2: a device without a motor for the roll cannot exert the torque that remains, so this torque never
+// vanishes.
 TEST(GuidedLoop, ATorqueRemainsIfTheRollHasNoMotor) {
   const Trace trace = of_a_tool("[40,0,0]", {"device.torque_x=false", "operator.grip=[[0,0]]"});
   for (std::size_t i = 0; i < trace.length(); i += 100) {
@@ -139,7 +141,7 @@ TEST(GuidedLoop, ATorqueRemainsIfTheRollHasNoMotor) {
   }
 }
 
-// Turned about all axes the hand ends where the torque is about its own roll alone.
+// The goal is turned about all axes. The hand ends where the torque is about its own roll alone.
 TEST(GuidedLoop, TheTorqueThatRemainsIsAboutTheHandle) {
   const Trace trace =
       of_a_tool("[40,30,-20]", {"device.torque_x=false", "operator.grip=[[0,0]]", "duration_s=20"});
@@ -157,7 +159,7 @@ TEST(GuidedLoop, TheTorqueThatRemainsIsAboutTheHandle) {
 
 // --- traces ---
 
-TEST(GuidedLoop, TheTraceHasGuidanceAndHandWhereThereAreSuch) {
+TEST(GuidedLoop, TheTraceHasTheColumnsOfGuidanceAndHandIfTheyExist) {
   const auto has = [](const Trace& trace, const std::string& name) {
     const std::vector<Column> columns = trace.columns();
     return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
@@ -170,7 +172,7 @@ TEST(GuidedLoop, TheTraceHasGuidanceAndHandWhereThereAreSuch) {
   EXPECT_TRUE(!has(unguided, "guidance_force") && has(unguided, "device_force"));
 }
 
-TEST(GuidedLoop, SameTaskSameBits) {
+TEST(GuidedLoop, TheSameTaskGivesTheSameBits) {
   const std::vector<std::string> overrides{"operator.grip=[[1,1],[1,0]]", "device.torque_x=false"};
   const Trace a = beside_a_goal(overrides), b = beside_a_goal(overrides);
   ASSERT_EQ(a.hip_position_m.size(), b.hip_position_m.size());

@@ -1,5 +1,5 @@
-// The measures of lateral force through the whole loop: which runs have them, and that scenes whose answer is
-// known give it.
+// The measures of lateral force through the whole loop: which runs have them, and scenes whose result is
+// known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ bool is_measured(const Trace& trace) {
   return false;
 }
 
-// Pressed down 5 mm into a level or leaning plane without noise. In the middle of the grid the proxy touches
-// four points alike.
+// The hand presses 5 mm into a level or leaning plane without noise. The proxy touches four points alike in
+// the middle of the grid.
 const std::string kPress =
     R"(trajectory={"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.005, 0, 0.2]]})";
 

@@ -1,4 +1,4 @@
-// Gaps between points: against every triangle of points, from the definition.
+// Gaps between points, compared with every triangle of points by the definition.
 #include "runners/experiment/simulation/point_gap.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ std::optional<Vec3> centre_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return a + Vec3(ac.y() * b2 - ab.y() * c2, ab.x() * c2 - ac.x() * b2, 0) / d;
 }
 
-// No angle of the triangle is obtuse, so that its corners hold the circle through them all around.
+// True if no angle of the triangle is obtuse, so that the corners surround the centre of the circle through
+// them.
 bool holds(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).dot(c - a) >= 0 && (a - b).dot(c - b) >= 0 && (a - c).dot(b - c) >= 0;
 }

@@ -19,8 +19,8 @@ Trace run(const std::string& json) {
   return simulate(Experiment::from_json(json, "test"), options);
 }
 
-// The hand presses 5 mm into a flat cloud; the proxy of surfels lies in the plane, behind it by rounding or
-// by noise in some runs.
+// The hand presses 5 mm into a flat cloud. The proxy of surfels lies in the plane, or behind it by rounding
+// or by noise in some runs.
 Trace pressed_on_surfels(double start_x_m, double noise_sigma_m, int seed) {
   return run(R"({"scenario": {"name": "flat-grid", "noise_sigma_m": )" + std::to_string(noise_sigma_m) +
              R"(}, "renderer": {"name": "surfels"}, "trajectory": {"name": "press", "press_at_s": 0.05,
@@ -29,7 +29,7 @@ Trace pressed_on_surfels(double start_x_m, double noise_sigma_m, int seed) {
              std::to_string(seed) + "}");
 }
 
-TEST(PopThrough, IsNotThatAProxyRestsOnTheSurface) {
+TEST(PopThrough, AProxyThatRestsOnTheSurfaceDidNotPopThrough) {
   int behind = 0;
   for (int seed = 1; seed <= 8; ++seed) {
     const Trace trace = pressed_on_surfels(0.0003, 0.001, seed);
@@ -42,8 +42,8 @@ TEST(PopThrough, IsNotThatAProxyRestsOnTheSurface) {
   for (const double x_m : {0.0003, 0.004}) EXPECT_EQ(popped_through(pressed_on_surfels(x_m, 0, 1)), 0);
 }
 
-// A hand that lifts no faster than the frames show loses nothing; a surface that rises 20 m/s^2 is lost.
-TEST(PopThrough, IsThatTheSurfaceIsLost) {
+// A surface that rises with 20 m/s^2 is lost.
+TEST(PopThrough, AProxyThatLosesTheSurfacePoppedThrough) {
   const std::string renderer = R"(renderer={"name": "surfels"})";
   const Trace lost = simulate(Experiment::load(
       "fig4.12", {renderer, "scenario.acceleration_m_per_s2=20", "scenario.noise_sigma_m=0"}));
@@ -52,7 +52,7 @@ TEST(PopThrough, IsThatTheSurfaceIsLost) {
 }
 
 // The hand presses 5 mm into a plate of 10 cm, is drawn off its edge, and stays below its plane beside it.
-TEST(PopThrough, IsNotThatTheHandSlidesOffTheEdge) {
+TEST(PopThrough, DoesNotCountAHandThatSlidesOffTheEdge) {
   for (const char* scenario :
        {R"({"name": "plates", "plates": [[0, 0, 0, 0.1, 0.1, 0, 0, 0, 0]]})",
         R"({"name": "sheet", "normal": [0, 1, 0], "width_m": 0.1, "height_m": 0.1, "spacing_m": 0.0015})",

@@ -31,7 +31,7 @@ TEST(Predecessor, PopsThroughAboveItsVelocityBound) {
 
 // Noise often makes a tick end a step away from contact. The printed gate of the force then drops out; the
 // gate in use does not.
-TEST(ForceGate, LatestContactHasNoDropouts) {
+TEST(ForceGate, TheLatestContactGivesAForceInEveryTick) {
   const auto silent = [](const std::string& gate) {
     const Trace trace = simulate(Experiment::load(
         "fig4.11", {"scenario.noise_sigma_m=0.003", "renderer.force_gate=" + gate, "duration_s=3"}));

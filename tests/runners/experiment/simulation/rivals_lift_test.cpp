@@ -37,8 +37,8 @@ TEST(RivalsUnderALift, DirectRenderingIsLostWithoutAnyLift) {
   EXPECT_GT(lost_m(R"({"name": "penalty"})", 0), 0.99 * kPressed_m);
 }
 
-// The frame that jumps by more than half of its thickness, 8.6 mm, or than R: measured between 0.5 and 1
-// m/s^2.
+// The surface is lost at the frame that jumps by more than half of its thickness, 8.6 mm, or by more than R.
+// The limit was measured between 0.5 and 1 m/s^2.
 TEST(RivalsUnderALift, AnImplicitSurfaceHoldsASlowLiftAndLosesAFastOne) {
   for (const std::string& renderer : kImplicit) {
     for (const double a : {0.0, 0.2}) EXPECT_LT(lost_m(renderer, a), 1e-9) << renderer << " at " << a;
@@ -48,7 +48,7 @@ TEST(RivalsUnderALift, AnImplicitSurfaceHoldsASlowLiftAndLosesAFastOne) {
 }
 
 // Any frame that passes the god-object leaves it behind: by a lift, or by noise that is drawn anew.
-TEST(RivalsUnderALift, AGodObjectHoldsWhatRestsOnly) {
+TEST(RivalsUnderALift, AGodObjectHoldsOnlyASurfaceAtRest) {
   const std::string renderer = R"({"name": "god-object"})";
   EXPECT_LT(lost_m(renderer, 0), 1e-9);
   EXPECT_GT(lost_m(renderer, 0.05), 0.99 * kPressed_m);

@@ -12,8 +12,9 @@ Trace run(const std::string& duration_s) {
   return simulate(Experiment::load("fig4.11", {"duration_s=" + duration_s}));
 }
 
-// Sums of times are off by their rounding, 0.1 + 0.1 + 0.1 upwards. A millionth of a tick may be that.
-TEST(RunLength, ADurationThatRoundingMakesLongerHasNoTickMore) {
+// Sums of times carry rounding errors: 0.1 + 0.1 + 0.1 is above 0.3. An excess of a millionth of a tick
+// counts as rounding.
+TEST(RunLength, RoundingOfTheDurationAddsNoTick) {
   static_assert(0.1 + 0.1 + 0.1 > 0.3);
   for (const char* duration_s : {"0.3", "0.30000000000000004", "0.2999999999999999", "0.3000000005"}) {
     const Trace trace = run(duration_s);
@@ -22,8 +23,8 @@ TEST(RunLength, ADurationThatRoundingMakesLongerHasNoTickMore) {
   }
 }
 
-TEST(RunLength, APartOfATickIsATick) {
-  EXPECT_EQ(run("0.30000001").length(), 301u);  // a hundred-thousandth of it
+TEST(RunLength, APartOfATickCountsAsATick) {
+  EXPECT_EQ(run("0.30000001").length(), 301u);  // a hundred-thousandth of a tick more
   EXPECT_EQ(run("0.3009").length(), 301u);
   EXPECT_EQ(run("0.00001").length(), 1u);
   EXPECT_HAS(refusal([] { run("0.0000000005"); }), "shorter than a tick");

@@ -11,7 +11,7 @@
 namespace remote_touch::run_report_test {
 namespace {
 
-// A press into a plane at rest, as JSON with two places to fill in: the scene and the hand.
+// A press into a plane at rest, as JSON with two gaps to fill: the scene and the hand.
 RunReport report_of_run(const std::string& scenario, const std::string& trajectory,
                         const std::string& rest = R"("duration_s": 0.3)") {
   const std::string text = R"({"scenario": )" + scenario +
@@ -93,8 +93,8 @@ TEST(RunReport, ReportsPointsThatAreTooFarApart) {
   EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
 }
 
-// A rule that never begins, a change, a press of a button, ...: each that the run does not reach is named
-// once.
+// Every event that the run does not reach is named once: a rule that never begins, a change, a press of a
+// button and others.
 TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
   const std::string still = R"({"name": "waypoints", "waypoints": [[0, 0.003, 0, 0], [0, 0.003, 0, 0.1]]})";
   const std::string plates = R"({"name": "plates", "plates": [[0, 0, 0, 0.2, 0.2, 0.1, 0, 2, 3],

@@ -24,7 +24,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr CameraIntrinsics kCamera{100, 80, 100, 100, 49.5, 39.5};
 
-// A plane before the camera at a depth of each frame; nothing is measured in the left half of the image.
+// A plane in front of the camera, with a depth for each frame. The left half of the image has no measurement.
 class MovingPlane final : public Scenario {
  public:
   explicit MovingPlane(std::vector<double> depths_m) : depths_m_(std::move(depths_m)) {}
@@ -37,7 +37,7 @@ class MovingPlane final : public Scenario {
     DepthImage image{kCamera.width, kCamera.height, {}};
     for (int i = 0; i < kCamera.width * kCamera.height; ++i)
       image.z_m.push_back(i % kCamera.width < 50 ? kNaN : depths_m_[static_cast<std::size_t>(frame)]);
-    // The camera stands at (1, 2, 3) and looks along x.
+    // The camera is at (1, 2, 3) and faces along x.
     RigidTransform X_WC = RigidTransform::Identity();
     X_WC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     X_WC.translation() = Vec3(1, 2, 3);
@@ -94,7 +94,7 @@ TEST(SurfaceWatch, ReportsAHandThatFliesBehind) {
   for (const auto& plan : {kTouches, kLifted}) {
     const std::vector<Note> notes = watched(depths, plan, {0.1, 0, 0.51});
     EXPECT_EQ(kinds(notes), Kinds{"behind the surface"});
-    // 20, 60 and 82 mm in 3 of 5 ticks; 10 mm are planned.
+    // The hand is 20, 60 and 82 mm behind in 3 of 5 ticks; up to 16 mm are planned.
     EXPECT_HAS(notes[0].text, "in 60 % of the ticks, first at 0.15 s, by up to 82 mm; at most 16 mm");
   }
 }
@@ -188,9 +188,9 @@ TEST(SurfaceWatch, ReportsAScanOfASceneThatMoves) {
             Kinds{"frames unused"});
 }
 
-// A box before a wall is taken away in frame 5: the pixel shows the wall, which is 0.4 m farther away. The
+// A box before a wall is removed in frame 5. The pixel then sees the wall, which is 0.4 m farther away. The
 // hand has nothing to lift off from, and jumps.
-TEST(SurfaceWatch, ReportsAPressWhosePixelShowsAnotherPlace) {
+TEST(SurfaceWatch, ReportsAPressWhosePixelSeesAnotherPosition) {
   const TestFolder folder("box_taken_away");
   folder.write("camera.json", R"({"width": 320, "height": 240, "fx": 300, "fy": 300, "cx": 159.5, "cy": 119.5,
     "depth_scale_m": 0.0001, "frame_rate_hz": 30})");
@@ -210,7 +210,8 @@ TEST(SurfaceWatch, ReportsAPressWhosePixelShowsAnotherPlace) {
   EXPECT_EQ(attribute(attributes, "hand"), report.hand);
 }
 
-// A mug as one cloud: organised it is scanned without a note, without order it is refused in one line.
+// A mug as one cloud: an organised cloud is scanned without a note, and an unorganised one is refused in one
+// line.
 TEST(SurfaceWatch, HasNoNoteOnAScanOfOneCloudOfAMug) {
   const TestFolder folder("mug");
   const auto write = [&](const char* name, bool is_organised) {

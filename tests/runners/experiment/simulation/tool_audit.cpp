@@ -6,12 +6,13 @@
 namespace remote_touch {
 
 namespace {
-// A point as deep as the tolerance to the last digit: no interval would be short enough.
+// Halving ends at this length: no interval would be short enough for a point exactly as deep as the
+// tolerance.
 constexpr double kRounding_m = 1e-12;
 constexpr std::size_t kGroupPoints = 32;
 }  // namespace
 
-// A point as the tool sees it while it moves; s from 0 to 1.
+// Position of a point in the tool frame while the tool moves; s from 0 to 1.
 struct ToolAuditor::Way {
   const ToolPose& from;
   const Vec3 shift_W, turn_W;

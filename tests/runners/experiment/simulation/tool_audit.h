@@ -2,10 +2,10 @@
 // every point on the exact distance to the tool's mesh. It shares nothing with the renderers' contact rules:
 // no grid, no disks, no constraints.
 //
-// The distance to a solid, negative inside, changes by no more than the point moves. So where it is s at the
-// middle of an interval of the way, and the point moves by at most l in half of it, the point is nowhere
-// deeper than l - s. If that is above the tolerance the interval is halved, until all of it is certified or a
-// place is found at which the point is deeper.
+// The distance to a solid, negative inside, changes by no more than the point moves. Let it be s at the
+// middle of an interval of the way, and let the point move by at most l in half of the interval. The point is
+// then nowhere deeper than l - s. If that is above the tolerance, the interval is halved, until all of it is
+// certified or a position is found at which the point is deeper.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,12 @@ class ToolAuditor {
   // mesh: closed, in the tool frame.
   ToolAuditor(const TriangleMesh& mesh, double tolerance_m);
 
-  // The points from now on, with the tool at this pose; those that are not finite are left out.
+  // Replaces the points by those of this cloud. Points that are not finite are left out.
   void on_frame(const PointCloud& cloud);
-  // The same points elsewhere, each on a line from where it was, while the tool goes from one pose to the
-  // other as in tick(). pre: as many points as before, in their order.
+  // Moves the points to those of this cloud, each on a line, while the tool moves from one pose to the other
+  // as in tick(). pre: as many points as before, in their order.
   void tick_with_frame(const PointCloud& cloud, const ToolPose& from, const ToolPose& to);
-  // The tool goes from one pose to the other: its origin along a line, its orientation about one axis, both
+  // Moves the tool from one pose to the other: its origin along a line, its orientation about one axis, both
   // evenly. pre: `from` is the pose at which the tick before ended, if the points are the same.
   void tick(const ToolPose& from, const ToolPose& to);
 
@@ -45,11 +45,12 @@ class ToolAuditor {
  private:
   struct Point {
     Vec3 p_W;
-    double clear_m = 0;  // no less than this from the tool; below 0: not known
+    double clear_m = 0;  // lower bound of the distance to the tool; below 0: not known
     bool is_inside = false, is_known = false;
-    int face = 0;  // nearest to it when it was looked at
+    int face = 0;  // the face that was nearest at the last query
   };
-  // Neighbours in the cloud, in a ball: while it is beyond the tool's reach none of them is looked at.
+  // Neighbours in the cloud, enclosed by a ball. None of them is checked while the ball is beyond the tool's
+  // reach.
   struct Group {
     Vec3 centre_W;
     double radius_m;

@@ -1,4 +1,4 @@
-// The auditor against motions whose crossings are known.
+// The auditor on motions whose crossings are known.
 #include "tests/runners/experiment/simulation/tool_audit.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(ToolAuditor, KnowsTheDistanceToASolid) {
   }
 }
 
-// Outside before and after, far on both sides: only the way between shows it.
+// The point is outside before and after, far on both sides. Only the motion in between crosses it.
 TEST(ToolAuditor, FindsAPointThatIsCrossedBetweenTwoPoses) {
   const ToolAudit audit = of_bar(Vec3::Zero(), {{0, 0.03, 0}, {1, 0, 0, 0}}, {{0, -0.03, 0}, {1, 0, 0, 0}});
   EXPECT_EQ(audit.entered, 1);
@@ -112,7 +112,7 @@ TEST(ToolAuditor, AgreesWithDenseSamplesOfRandomMotions) {
   EXPECT_GT(clear, 100);
 }
 
-// Tick by tick, what is known of a point goes on.
+// The auditor keeps its knowledge of a point from tick to tick.
 TEST(ToolAuditor, FollowsAPointThroughATool) {
   ToolAuditor auditor(box_mesh(kSides_m), kTolerance_m);
   auditor.on_frame(one_point(Vec3::Zero()));

@@ -42,7 +42,8 @@ double deepest(const Trace& trace) {
   return *std::max_element(trace.tool_penetration_m.begin(), trace.tool_penetration_m.end());
 }
 
-// Degrees about y at which a bar of 80 x 10 mm comes to rest in a slot of 40 mm, turned to 30 degrees.
+// Returns the angle about y, in degrees, at which a bar of 80 x 10 mm comes to rest in a slot of 40 mm when
+// it is turned to 30 degrees.
 double bar_stops_at(const std::string& rule, double spacing_m, double phase_m) {
   const Trace trace = run(R"({"name": "slot"})", tool("bar", rule),
                           poses("[0,0,0,0,0,0,0], [0,0,0,0,30,0,1], [0,0,0,0,30,0,0.2]"),
@@ -53,16 +54,16 @@ double bar_stops_at(const std::string& rule, double spacing_m, double phase_m) {
 
 // The closed form is 40 sin(a) + 5 cos(a) = 20: 22.62 degrees. Disks hold the corner as a wall would,
 // wherever the columns of points are.
-TEST(ToolContact, ABarInASlotStopsWhereItMustByLookAhead) {
+TEST(ToolContact, LookAheadStopsABarInASlotAtItsLimit) {
   for (const double spacing : {0.001, 0.002, 0.005})
     for (const double phase : {0.0, 0.3, 0.5})
       EXPECT_NEAR(bar_stops_at("look-ahead", spacing, phase * spacing), 22.62, 0.02)
           << spacing << " " << phase;
 }
 
-// The least angle at which the corner has sunk behind the wall so far that a column of points meets a face of
-// the bar: the one before the corner the long face, which falls by tan(a) away from it, or the next one the
-// end. Millimetres.
+// Returns the least angle, in degrees, at which the corner has sunk so far behind the wall that a column of
+// points meets a face of the bar. The column before the corner meets the long face, which recedes by tan(a).
+// The next column meets the end. Lengths are in millimetres.
 double bar_sinks_to(double spacing, double phase) {
   for (double degrees = 22.62;; degrees += 0.001) {
     const double a = degrees * kRadiansPerDegree;
@@ -73,8 +74,8 @@ double bar_sinks_to(double spacing, double phase) {
   }
 }
 
-// Voxels let the corner sink between the columns. Where these lie alike at both corners the bar stays in the
-// middle; interpolation in voxels of half a millimetre blunts its edges, and 0.06 mm are 0.1 degrees.
+// Voxels let the corner sink between the columns. If these lie alike at both corners, the bar stays in the
+// middle. Interpolation in voxels of half a millimetre blunts its edges: 0.06 mm are 0.1 degrees.
 TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
   for (const double spacing : {1.0, 2.0, 5.0})
     for (const double phase : {0.0, 0.5 * spacing})
@@ -82,7 +83,7 @@ TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
           << spacing << " " << phase;
 }
 
-// A plane rises at a speed under a slab that is held; true when the slab is carried.
+// A plane rises at this speed under a slab that is held. Returns true if the slab is carried.
 bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string& rule) {
   const double rise = 0.08 + 0.006 * thickness_mm;
   const Trace trace =
@@ -93,7 +94,7 @@ bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string&
   return trace.signed_distance_m.back() > 0;
 }
 
-// A frame that jumps by more than the interior of the tool passes through it: v < f_c (h - 2w).
+// A frame that jumps by more than the interior of the tool passes through it. The bound is v < f_c (h - 2w).
 TEST(ToolContact, SlabsAreLiftedUpToTheBoundByVoxels) {
   for (const int h : {5, 10, 20, 40}) {
     const double bound = 30 * (0.001 * h - 0.001);
@@ -111,9 +112,9 @@ TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
 }
 
 // The continuous rule moves a tool out at a frame only if it was held when the frame came. A slab at rest is
-// held from the first frame on that shows the plane in it. If one frame shows it below the slab and the next
-// above, it is lost: in a fraction 1 - f_c h / v of all start times, although a held slab is carried at this
-// speed.
+// held from the first frame in which the plane is inside it. If one frame has the plane below the slab and
+// the next one above it, the slab is lost. This happens in a fraction 1 - f_c h / v of all start times,
+// although a held slab is carried at this speed.
 TEST(ToolContact, ASlabAtRestIsCarriedIfAFrameShowsThePlaneInItByContinuous) {
   constexpr double kSpeed = 0.5, kJump_m = kSpeed / 30, kStart_m = -0.03, kHalf_m = 0.005;
   int lost = 0;
@@ -133,9 +134,8 @@ TEST(ToolContact, ASlabAtRestIsCarriedIfAFrameShowsThePlaneInItByContinuous) {
   EXPECT_NEAR(lost / 5.0, 1 - 30 * 0.01 / kSpeed, 1e-12);
 }
 
-// (4.15) for a tool: a plane rises evenly under a held slab at 0.1 m/s, 10 cm in 1 s, 3.33 mm a frame.
-// Without the term the force jumps by k v / f_c at each frame, with it not at all, with the printed sign by
-// twice that.
+// (4.15) for a tool: a plane rises evenly under a held slab at 0.1 m/s, 3.33 mm a frame. The force jumps by k
+// v / f_c at each frame without the term, not at all with it, and by twice that with the printed sign.
 TEST(ToolContact, ForceFollowsTheSurfaceBetweenFrames) {
   const auto max_jump_N = [](const std::string& sign) {
     const Trace trace =
@@ -156,8 +156,7 @@ TEST(ToolContact, ForceFollowsTheSurfaceBetweenFrames) {
 }
 
 // The frames of a constant acceleration from rest differ by a / f_c^2. That is all that the tool has to
-// survive if there is an estimate, a < (h - 2w) f_c^2. Without the estimate the speed grows beyond every
-// bound.
+// survive if there is an estimate, a < (h - 2w) f_c^2. If there is none, the speed grows beyond every bound.
 TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
   const double bound = 900 * (0.01 - 0.001);
   for (const std::string rule : {"voxels", "look-ahead"})
@@ -173,14 +172,14 @@ TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
     }
 }
 
-// The tool moves from behind the sheet to 5 mm before it, and back.
+// The tool moves from behind the sheet to 5 mm in front of it, and back.
 Trace from_behind(const std::string& mesh, const std::string& rule) {
   return run(
       R"({"name": "sheet"})", tool(mesh, rule),
       poses("[0,0,-0.03,0,0,0,0], [0,0,0.005,0,0,0,0.5], [0,0,0.005,0,0,0,0.2], [0,0,-0.03,0,0,0,0.5]"));
 }
 
-TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
+TEST(ToolContact, LookAheadHoldsTheToolBehindASheetAndReleasesIt) {
   const struct {
     const char* mesh;
     double half_m;
@@ -196,8 +195,9 @@ TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
   }
 }
 
-// Flush, as it comes or after a turn: the points beside the tool lie in the plane of its face, and must not
-// be walls to its sides; at its corners the field is blunt, and must not be taken for a ridge inside.
+// The slab lies flush, as it comes or after a turn. The points beside the tool lie in the plane of its face,
+// and must not act as walls at its sides. The field is blunt at its corners, which must not count as a ridge
+// inside.
 TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
   for (const std::string tilt : {"0", "3"})
     for (const std::string width : {"0.078", "0.15"}) {
@@ -236,7 +236,7 @@ TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
 }
 
 // The normal as printed pulls a tool through from behind. Look-ahead corrects this.
-TEST(ToolContact, TheBackOfASheetSucksTheToolThroughByVoxels) {
+TEST(ToolContact, VoxelsPullTheToolThroughASheetFromBehind) {
   const Trace trace = from_behind("ball", "voxels");
   double max_distance = -1;
   for (std::size_t i = 0; i < trace.length(); ++i)
@@ -259,7 +259,7 @@ TEST(ToolContact, ATrappedToolFollowsAlongAWedgeAndRecovers) {
       for (std::size_t i = 620; i < 1000; ++i)
         EXPECT_NEAR(trace.proxy_position_m[i].x(), trace.hip_position_m[i].x(), 1.5e-3)
             << rule << " " << where << " " << i;
-      // 10 mm in 6 mm: 2 mm at either side, and a share more where the printed rule leaves it uneven
+      // 10 mm in 6 mm: 2 mm at either side, and more if the printed rule leaves it uneven
       EXPECT_LT(deepest(trace), rule == "look-ahead" ? 2.1e-3 : 4.5e-3) << where;
       const std::size_t last = trace.length() - 1;
       EXPECT_LT((trace.proxy_position_m[last] - trace.hip_position_m[last]).norm(), 1e-12)

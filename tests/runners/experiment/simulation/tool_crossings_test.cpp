@@ -1,5 +1,5 @@
-// Every tick of the experiments with a tool, audited: whether points got into it between two frames. The
-// ticks in which a frame comes are left out, because its points can be anywhere.
+// Audits every tick of the experiments with a tool for points that got into it between two frames. The ticks
+// in which a frame comes are left out, because its points can be anywhere.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -21,7 +21,7 @@
 namespace remote_touch::tool_crossings_test {
 namespace {
 
-// Less than this deep is no collision for the look-ahead rule (look_ahead_program.h).
+// A point less deep than this is no collision for the look-ahead rule (look_ahead_program.h).
 constexpr double kLookAhead_m = 1e-4;
 constexpr double kContinuous_m = 1e-5;
 // The printed rule lets points into the shell: a point of it is within 1.5 sqrt(3) voxels of the centre of a
@@ -32,7 +32,7 @@ ToolPose pose_at(const Trace& trace, std::size_t tick) {
   return {trace.proxy_position_m[tick], trace.tool_orientation[tick]};
 }
 
-// Frames: what is done with the ticks in which one comes.
+// The treatment of the ticks in which a frame comes.
 enum class Frames { left_out, followed };
 
 ToolAudit audited(const Trace& trace, const std::map<int, PointCloud>& clouds, ToolAuditor auditor,
@@ -91,7 +91,7 @@ void expect_none(const std::string& name, const std::string& rule, double tolera
   }
 }
 
-TEST_P(ToolCrossings, ThereAreNoneByLookAhead) {
+TEST_P(ToolCrossings, LookAheadHasNone) {
   expect_none(GetParam(), "look-ahead", kLookAhead_m);
 }
 
@@ -117,8 +117,8 @@ TEST(ToolCrossings, VoxelsPullAToolThroughFromTheBack) {
   EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
 }
 
-// Points are followed through frames too, because the position of each point in the frame before is known. A
-// surface that rises by more than the plate's thickness in every frame takes the plate along and does not
+// Points are followed through frames, too, because the position of each point in the frame before is known. A
+// surface that rises by more than the plate's thickness in every frame carries the plate along and does not
 // pass through it.
 TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
   for (const char* surface : {"scenario.shape=flat", "scenario.tilt_deg=30", "scenario.tilt_deg=-45"}) {

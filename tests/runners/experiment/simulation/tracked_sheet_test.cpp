@@ -33,11 +33,12 @@ Trace run(const std::string& experiment, std::vector<std::string> settings) {
   return simulate(Experiment::load(experiment, settings));
 }
 
-// A proxy at rest on a noisy plane, r_c above it but for two errors, each of which is larger once in ten
+// A proxy at rest on a noisy plane is r_c above it except for two errors, each of which is larger once in ten
 // thousand times. The height of the sheet has the standard error of a mean over its widest window, a square
-// of 10 r_c. And the proxy sinks into the gaps between the points, which noise along the sheet disorders. At
-// worst they lie at random: the circle through the three points on which the proxy rests is then larger than
-// d with the probability (1 + a) exp(-a), a = pi d^2 / spacing^2, 1e-4 for a = 11.8.
+// of 10 r_c. The proxy also sinks into the gaps between the points, which noise along the sheet disorders.
+// The worst case is that they lie at random. The circle through the three points on which the proxy rests is
+// then larger than d with the probability (1 + a) exp(-a), where a = pi d^2 / spacing^2. That is 1e-4 for a =
+// 11.8.
 void expect_rests_on_plane(double height_m, double sigma, double spacing_m = 0.0015) {
   constexpr double kPi = 3.14159265358979;
   const double error_m = 3.9 * sigma * kRc / (10 * kRc / spacing_m);
@@ -112,7 +113,7 @@ TEST(TrackedSheet, TheUpperOfTwoSheetsIsHeld) {
     }
 }
 
-// The paper's proxy is passed by a plane of 1 m/s.
+// A plane that rises at 1 m/s passes the paper's proxy.
 TEST(TrackedSheet, APlaneThatRisesPastAFreeProxyTakesItAlong) {
   EXPECT_LT(run("hit-free-probe", {kProxy}).signed_distance_m.back(), -kRc);
   for (int seed = 31; seed <= 34; ++seed) {
@@ -122,7 +123,7 @@ TEST(TrackedSheet, APlaneThatRisesPastAFreeProxyTakesItAlong) {
   }
 }
 
-// The sheet is gone; a frame is bridged, then the proxy is let go.
+// The sheet vanishes. One frame is bridged, then the proxy is released.
 TEST(TrackedSheet, ForceOfAVanishedSheetEndsOneFrameLaterThanTheProxys) {
   const double paper = last_force_time_s(run("vanishing-plane", {kProxy}));
   const double ours = last_force_time_s(run("vanishing-plane", {kSheet}));
@@ -132,7 +133,8 @@ TEST(TrackedSheet, ForceOfAVanishedSheetEndsOneFrameLaterThanTheProxys) {
               paper, 0.002);
 }
 
-// Its cells lie along the world's axes, so a turned scene is not answered to the last bit; but alike.
+// The cells of the sheet lie along the world's axes, so a turned scene does not give the same bits. The proxy
+// is held alike.
 TEST(TrackedSheet, ALeaningPlaneIsHeldLikeALevelOne) {
   for (const double tilt_deg : {0.0, 20.0, 40.0}) {
     const Trace trace =
@@ -173,7 +175,7 @@ TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
   EXPECT_GT(min_force, 5);
 }
 
-// The proxy among the points of a noisy plane around a place, after 20 frames.
+// Returns the position of the proxy, relative to `around`, after 20 frames of a noisy plane there.
 Vec3 resting_place(const Vec3& around) {
   TrackedSheetRenderer renderer({}, 1000, kernels_for(best_isa()));
   std::mt19937 random(3);

@@ -27,7 +27,7 @@ class MeshFileTest : public testing::Test {
   TestFolder folder_{"mesh_file"};
 };
 
-TEST_F(MeshFileTest, ObjWithPolygonsOfFourAndAllKindsOfFaces) {
+TEST_F(MeshFileTest, ReadsObjWithPolygonsAndAllKindsOfFaces) {
   const MeshCheck cube =
       check("cube.obj", kVertices +
                             "vt 0 0\nvn 0 0 1\nf 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1//1 2//1 6//1 5//1\n"
@@ -65,7 +65,7 @@ TEST_F(MeshFileTest, StlHasNoSharedVertices) {
   EXPECT_NEAR(check_of.volume_m3, -1.0 / 6, 1e-9);
 }
 
-TEST_F(MeshFileTest, Ply) {
+TEST_F(MeshFileTest, APlyFileIsRead) {
   const MeshCheck solid =
       check("t.ply",
             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -106,7 +106,7 @@ TEST_F(MeshFileTest, PolygonsThatCrossThemselvesAreRefused) {
              "u.obj: cannot be read (a face of 8 corners, the first at 4 4 2, crosses or touches itself");
 }
 
-TEST_F(MeshFileTest, ACornerTwiceInARowIsOne) {
+TEST_F(MeshFileTest, ARepeatedCornerCountsOnce) {
   const MeshCheck cube = check("cube.obj", kVertices +
                                                "f 1 1 3 4 2\nf 5 6 8 7 5\nf 1 2 6 5\nf 3 7 8 4\n"
                                                "f 1 5 7 3\nf 2 2 4 8 8 6 2\n");
@@ -139,7 +139,7 @@ TEST_F(MeshFileTest, FacetsOfStlWithAnotherNumberOfCornersAreRefused) {
 constexpr const char* kMark = "\xEF\xBB\xBF";
 const std::string kCube = kVertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 
-TEST_F(MeshFileTest, ByteOrderMarksArePassedOver) {
+TEST_F(MeshFileTest, ByteOrderMarksAreSkipped) {
   EXPECT_TRUE(check("cube.obj", kMark + kCube).closed());
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -157,7 +157,7 @@ TEST_F(MeshFileTest, ObjFacesMayNameWhatIsMissing) {
           .closed());
 }
 
-// The library would leave out such a vertex, and take others for those behind it.
+// The library would leave out such a vertex, so that the numbers of all later vertices would be wrong.
 TEST_F(MeshFileTest, ObjVerticesMayHaveColours) {
   std::string cube = kCube;
   cube.replace(cube.find("v 1 1 0"), 7, "v 1 1 0 0.5 0.5 0.5 1  # with alpha");
@@ -177,8 +177,8 @@ TEST_F(MeshFileTest, ObjFacesMayHaveAComment) {
   EXPECT_TRUE(check("cube.obj", cube).closed());
 }
 
-// The refusal of a cube or a tetrahedron in which one text is replaced by another. Without the refusal the
-// library reads another shape: the beginning of a word for a number, or the next line for what is missing.
+// A cube or a tetrahedron in which one text is replaced by another. If it were not refused, the library would
+// read another shape: the beginning of a word as a number, or the next line for what is missing.
 class ChangedMeshTest : public MeshFileTest {
  protected:
   std::string problem(const std::string& name, std::string text, const std::string& old,
@@ -258,7 +258,7 @@ TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
     return refusal([&] { read_mesh(folder_.write("b.ply", header + bytes)); });
   };
   EXPECT_HAS(error(data + "face"), "b.ply: cannot be read (it has 4 bytes after the last element)");
-  data[4 * 13 - 13] = '\7';  // a list that takes the bytes of the next elements
+  data[4 * 13 - 13] = '\7';  // a list that reads the bytes of the next elements
   EXPECT_HAS(error(data), "b.ply: cannot be read (it ends after ");
 }
 
@@ -309,7 +309,7 @@ TEST_F(MeshFileTest, StlTextMayBeInCapitalsAndHaveManySolids) {
       check("x.stl", kStlText.substr(0, half) + "endsolid\nsolid b\n" + kStlText.substr(half)).closed());
 }
 
-// The library takes a line feed there for the end of the header.
+// The library reads the line feed there as the end of the header.
 TEST_F(MeshFileTest, BinaryPlyMayBeginWithALineFeed) {
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
@@ -349,7 +349,7 @@ std::string ply(const std::string& format, const std::string& vertices, const st
          "\nproperty list uint int vertex_indices\nend_header\n";
 }
 
-// Each made the library take gigabytes or go on for ever.
+// Each of these files made the library allocate gigabytes or run for ever.
 TEST_F(MeshFileTest, FilesThatClaimMoreThanTheyHoldAreRefused) {
   const std::string points(9 * 4, '\0');
   const auto refused = [&](const std::string& name, const std::string& bytes) {

@@ -41,7 +41,7 @@ TEST_F(PlyHeader, IsRefusedIfItDoesNotEnd) {
   EXPECT_HAS(problem("ply\nformat ascii 1.0\nproperty end_header\nend_headers\n"), "its header has no end");
 }
 
-// One byte less than what is claimed, and far less.
+// The file holds one byte less than what is claimed, or far less.
 TEST_F(PlyHeader, CountsBeyondTheFileAreRefused) {
   EXPECT_HAS(problem(header("binary_little_endian", "3", "1") + std::string(3 * 16, '\0')),
              "its header claims 4 elements, more than its 48 bytes hold");
@@ -53,7 +53,7 @@ TEST_F(PlyHeader, CountsBeyondTheFileAreRefused) {
   }
 }
 
-TEST_F(PlyHeader, CountsThatAreNoneAreRefused) {
+TEST_F(PlyHeader, InvalidCountsAreRefused) {
   for (const char* none : {"-1", "many", "18446744073709551616", "3.5", ""})
     EXPECT_HAS(problem(header("ascii", none, "1") + "0 0 0\n"),
                "its header has a count that is not a number: ")

@@ -28,7 +28,7 @@ TEST_P(RealMeshTest, IsAsItsReadmeSays) {
   EXPECT_EQ(check.parts, GetParam().parts);
 }
 
-// Coarse voxels, for time: interior and shell make the volume of the mesh, but for parts that overlap, which
+// Coarse voxels save time. Interior and shell together have the volume of the mesh, but parts that overlap
 // count twice in the mesh.
 TEST_P(RealMeshTest, BecomesATool) {
   const fs::path file = data_root() / "meshes" / GetParam().file;

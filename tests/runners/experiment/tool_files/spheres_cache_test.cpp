@@ -67,7 +67,7 @@ TEST_F(SpheresCacheTest, EveryNumberOfLeavesHasItsOwn) {
   EXPECT_GT(load_tool_of_spheres(slab_, 40).spheres->spheres.leaves().size(), 8u);
 }
 
-// Cut or changed: it is made anew.
+// A file that is cut or changed is made anew.
 TEST_F(SpheresCacheTest, ADamagedFileIsMadeAnew) {
   const ToolOfSpheres fresh = load_tool_of_spheres(slab_, 20);
   const fs::path file = spheres_file();

@@ -72,7 +72,8 @@ TEST_F(ToolCacheTest, EverySettingHasATool) {
   EXPECT_EQ(load_tool(finer)->grid.size_m, 9e-4);
 }
 
-// Any byte changed, the file cut anywhere, longer, empty, of another tool, or a folder: it is made anew.
+// A file is made anew if any byte is changed, if it is cut anywhere, longer, empty or of another tool, and if
+// a folder has its name.
 TEST_F(ToolCacheTest, ADamagedFileIsMadeAnew) {
   const auto fresh = bar();
   const fs::path file = only_file();
@@ -109,7 +110,7 @@ TEST_F(ToolCacheTest, AFolderThatCannotBeUsedIsNoError) {
   EXPECT_EQ(bytes_of(in_the_way), "a file");
 }
 
-TEST_F(ToolCacheTest, ManyAtOnceGetTheSameAndLeaveOneFile) {
+TEST_F(ToolCacheTest, ManyProgramsAtOnceGetTheSameToolAndLeaveOneFile) {
   const auto fresh = bar();
   fs::remove_all(folder_ / "cache");
   std::vector<std::shared_ptr<const VoxelTool>> got(8);

@@ -88,7 +88,7 @@ TEST(FigureFolder, ALongClaimKeepsTheEndOfItsLine) {
   EXPECT_HAS(all.out, std::string(3000, 'x') + ": 1 m (at most 2)\nfigure 4.12 -> ");
 }
 
-// Whichever fails, whatever else is claimed before or after it.
+// The exit code reports a failed claim, whatever else is claimed before or after it.
 TEST(FigureFolder, AFailedClaimIsTheExitCode) {
   const Claim none = claim_not_run("4.11", "needs a recording", "it is not there");
   const Claim open = [] {

@@ -14,7 +14,7 @@ TEST(OtherKind, NamesTheCommand) {
             "is a figure: expected `remote-touch figure latency -o FOLDER`");
 }
 
-TEST(OtherKind, IsNoneForTheCommandsOwnForFilesAndForNothing) {
+TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
   EXPECT_EQ(other_kind("fig4.12", "run"), "");
   EXPECT_EQ(other_kind("fig4.13", "sweep"), "");
   EXPECT_EQ(other_kind("4.13", "figure"), "");

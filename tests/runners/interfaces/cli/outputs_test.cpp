@@ -27,7 +27,7 @@ constexpr const char* kNone = "no InputError";
 TEST_F(Outputs, OneFileForTwoOptionsIsRefusedHoweverItIsWritten) {
   fs::create_directory(folder_ / "sub");
   fs::create_directory_symlink(folder_ / "sub", folder_ / "other");
-  fs::create_symlink("sub/report", folder_ / "link");  // to what is not there yet
+  fs::create_symlink("sub/report", folder_ / "link");  // to a file that does not exist yet
   EXPECT_EQ(refusal_of(file("x"), file("x")),
             "--junit " + file("x") + ": is also the file of --json: expected another file");
   const std::string here = fs::relative(folder_.path()).string();
@@ -50,7 +50,7 @@ TEST_F(Outputs, AnEmptyNameAndADeviceMayComeTwice) {
   EXPECT_EQ(refusal_of("/dev/null", "/dev/null"), kNone);
 }
 
-// Not even with --force.
+// An input is no output, not even with --force.
 TEST_F(Outputs, AnInputOrAPlugInIsNoOutput) {
   CommandLine line;
   line.force = true;

@@ -5,7 +5,7 @@
 namespace remote_touch::progress_test {
 namespace {
 
-TEST(ProgressText, SaysWhatIsKnown) {
+TEST(ProgressText, StatesTheKnownProgress) {
   EXPECT_EQ(progress_text(0.25, 10), " 25 %, 2.5 %/s, 30 s left");
   EXPECT_EQ(progress_text(1, 10), "100 %, 10.0 %/s, 0 s left");
   EXPECT_EQ(progress_text(30, 100, 10, "runs", 10), "30 of 100 runs, 2/s, 35 s left");

@@ -1,4 +1,4 @@
-// The hand of someone with a mouse, against the closed form of the spring that it follows.
+// The hand of a user with a mouse, compared with the closed form of the spring that it follows.
 #include "runners/live/devices/browser_device.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST_F(BrowserDeviceTest, IsAtItsStartUntilItIsMoved) {
 }
 
 // x(t) = d (1 - (1 + w t) e^(-w t)), as long as that is slower than the limit. Steps of a millisecond, the
-// velocity first, are ahead of it by a third of w times the step, 2 % of d, where they are worst.
+// velocity first, are ahead of it by at most a third of w times the step, 2 % of d.
 constexpr double kAhead = BrowserDevice::kNaturalFrequency_rad_per_s * 0.001 / 3;
 TEST_F(BrowserDeviceTest, FollowsAsACriticallyDampedSpringWould) {
   const double d = 0.004, w = BrowserDevice::kNaturalFrequency_rad_per_s;
@@ -81,7 +81,7 @@ TEST_F(BrowserDeviceTest, TurnsToThePoseAndReportsTheButtons) {
   EXPECT_NEAR(after(1000).orientation.angularDistance(turned.orientation_W), 0, 1e-8);
 }
 
-// A loop that missed ticks finds the hand where it is by then.
+// A loop that missed ticks finds the hand where it would be by then.
 TEST_F(BrowserDeviceTest, MovesOnWhileTicksAreMissed) {
   after(1);
   want({start_.position_W + Vec3(0, 0.004, 0)});

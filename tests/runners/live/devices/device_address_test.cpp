@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<std::string> kKnown{"rate", "force"};
 
-TEST(DeviceAddress, APlaceAndItsSettings) {
+TEST(DeviceAddress, HasAPathAndSettings) {
   const DeviceAddress address("fd", "0?rate=500&force=vector", kKnown);
   EXPECT_EQ(address.place(), "0");
   EXPECT_EQ(address.written(), "fd:0?rate=500&force=vector");

@@ -10,7 +10,7 @@
 namespace remote_touch::device_table_test {
 namespace {
 
-// Its trajectory looks at the newest frame of its scenario in every tick.
+// Its trajectory reads the newest frame of its scenario in every tick.
 constexpr const char* kPressInTheImage = R"({
   "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "renderer": {"name": "proxy"},
   "trajectory": {"name": "image-press", "row": 60, "column": 80, "depth_m": 0.01}})";
@@ -40,7 +40,7 @@ struct Positions final : DeviceCycle {
 };
 
 // The scenario lives as long as the device.
-TEST_F(DeviceTable, TheSimulatedHandFollowsATrajectoryThatLooksAtFrames) {
+TEST_F(DeviceTable, TheSimulatedHandFollowsATrajectoryThatReadsFrames) {
   const auto device = open("sim:");
   Positions positions(*device);
   device->run(positions);

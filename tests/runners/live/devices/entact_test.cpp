@@ -1,4 +1,4 @@
-// The adapter of Entact's EntactAPI beside what all adapters promise, with a test double.
+// The adapter of Entact's EntactAPI, with a test double: what it does beyond the contract of all adapters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +16,9 @@ class EntactTest : public testing::Test {
   DoubleInstalled double_{kEntact, &clock_};
 };
 
-// Towards the user 10 mm, to the right 20, up 30; a quarter turn of the handle about the upward axis takes
-// what points to the user to the right.
-TEST_F(EntactTest, MillimetresAndRowsByHand) {
+// The handle is 10 mm towards the user, 20 mm to the right and 30 mm up. A quarter turn of the handle about
+// the upward axis turns the axis that points to the user to the right.
+TEST_F(EntactTest, ConvertsMillimetresAndRows) {
   double_->set([](DeviceDouble::State& state) {
     state.position = {10, 20, 30};
     state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
@@ -39,7 +39,7 @@ TEST_F(EntactTest, DevicesHaveAddresses) {
   EXPECT_EQ(open_entact("", clock_)->traits().name, "Double W5D");
 }
 
-TEST_F(EntactTest, HomedWhereItIsNot) {
+TEST_F(EntactTest, IsHomedIfItIsNot) {
   double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 5; });
   EXPECT_NO_THROW(open_entact("", clock_));
   double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 1000; });

@@ -1,4 +1,4 @@
-// The adapter of Force Dimension's DHD beside what all adapters promise, with a test double.
+// The adapter of Force Dimension's DHD, with a test double: what it does beyond the contract of all adapters.
 #include <gtest/gtest.h>
 
 #include "runners/live/devices/force_dimension.h"
@@ -14,9 +14,9 @@ class ForceDimensionTest : public testing::Test {
   DoubleInstalled double_{kForceDimension, &clock_};
 };
 
-// Towards the user 0.1, to the right 0.2, up 0.3; a quarter turn of the handle about the upward axis takes
-// what points to the user to the right.
-TEST_F(ForceDimensionTest, AxesByHand) {
+// The handle is 0.1 m towards the user, 0.2 m to the right and 0.3 m up. A quarter turn of the handle about
+// the upward axis turns the axis that points to the user to the right.
+TEST_F(ForceDimensionTest, ConvertsTheAxes) {
   double_->set([](DeviceDouble::State& state) {
     state.position = {0.1, 0.2, 0.3};
     state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
@@ -41,14 +41,14 @@ TEST_F(ForceDimensionTest, DevicesAreNumbered) {
   EXPECT_EQ(force_dimension_availability().detail, std::string(kForceDimension.double_file) + ": 2 devices");
 }
 
-TEST_F(ForceDimensionTest, NoDevice) {
+TEST_F(ForceDimensionTest, RefusesIfThereIsNoDevice) {
   double_->set([](DeviceDouble::State& state) { state.devices = 0; });
   EXPECT_HAS(refusal([&] { open_force_dimension("", clock_); }), "fd:0: no device is connected: expected ");
   EXPECT_FALSE(force_dimension_availability().found);
   EXPECT_HAS(force_dimension_availability().detail, "no device is connected");
 }
 
-TEST_F(ForceDimensionTest, RefusedByTheLibrary) {
+TEST_F(ForceDimensionTest, ReportsARefusalOfTheLibrary) {
   double_->set([](DeviceDouble::State& state) { state.switching_error = 20; });
   EXPECT_HAS(refusal([&] { open_force_dimension("0", clock_); }),
              "fd:0: cannot be opened (the double's text): expected ");
@@ -66,7 +66,7 @@ TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {
   EXPECT_EQ(device->traits().tick_rate_hz, 1000);
 }
 
-// Whatever its library says of a turn.
+// A device without a wrist does not turn, whatever its library reports.
 TEST_F(ForceDimensionTest, DoesNotTurnIfItHasNoWrist) {
   double_->set([](DeviceDouble::State& state) {
     state.sensed_axes = state.actuated_axes = 3;

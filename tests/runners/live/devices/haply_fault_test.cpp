@@ -1,5 +1,4 @@
-// The adapter of Haply's Inverse3 against a service on a simulated clock that goes wrong, and letting go of
-// it.
+// The adapter of Haply's Inverse3 with a faulty service on a simulated clock, and the release of the device.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -20,7 +19,7 @@ class HaplyFault : public SimulatedHaplyTest {
     call();
     return (clock_.now_ns() - start_ns) / 1000;
   }
-  // The number of the first tick with a fault, of 300 with this force, and the fault.
+  // The first tick with a fault among 300 with this force, and the fault. The number is -1 if there is none.
   struct FirstFault {
     int tick = -1;
     std::string text;
@@ -42,7 +41,7 @@ TEST_F(HaplyFault, ClosedConnectionStaysAFault) {
   }
 }
 
-// A tick with it ends well before the 10 ms after which the loop counts as hung.
+// A tick with a hanging service ends well before the 10 ms after which the loop counts as hung.
 TEST_F(HaplyFault, WaitsForAHangingServiceForABoundedTime) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device), "");
@@ -57,8 +56,8 @@ TEST_F(HaplyFault, AnAnswerThatIsLateIsWaitedFor) {
   EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->read(reading_)), ""); }), 5900);
 }
 
-// Ticks go on with a fault each, and no command queues up; then the service is back.
-TEST_F(HaplyFault, ServiceThatComesBack) {
+// Every tick has a fault while the service hangs, and no command queues up. Then the service is back.
+TEST_F(HaplyFault, AServiceThatHangsAndReturnsSendsItsLatestState) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device, {1, 0, 0}), "");
   service_.hang();
@@ -75,7 +74,7 @@ TEST_F(HaplyFault, ServiceThatComesBack) {
   EXPECT_EQ(newest_force_N(), 0);
 }
 
-TEST_F(HaplyFault, GarbageInsteadOfAState) {
+TEST_F(HaplyFault, GarbageInsteadOfAStateIsAFault) {
   const auto device = service_.open();
   const std::string nan =
       R"({"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":NaN,"y":0,"z":0}}}]})";
@@ -100,11 +99,11 @@ TEST_F(HaplyFault, ReportsANanForceAndSendsZero) {
   for (const auto& sent : service_.sent()) EXPECT_TRUE(sent.command.force_N.isZero());
 }
 
-// A force that does not follow for 50 ms: ticks begin at 0.2 ms, and the first one is the last whose answer
-// (0.4 ms) tells of a force that was given.
+// The tick that reports a force which has not followed for 50 ms. Ticks begin at 0.2 ms. The answer to the
+// first one, at 0.4 ms, is the last that agrees with the force that was given.
 constexpr int kUnfollowedTick = 51;
 
-TEST_F(HaplyFault, BothForceKeys) {
+TEST_F(HaplyFault, TriesBothForceKeys) {
   EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
   const FirstFault values = first_fault(*service_.open("?force=values"), {0, 1, 0});
   EXPECT_HAS(values.text, "try force=vector");
@@ -120,7 +119,7 @@ TEST_F(HaplyFault, BothForceKeys) {
   EXPECT_EQ(first_fault(*service_.open("?force=vector"), {0, 0.1, 0}).tick, -1) << "too small a force";
 }
 
-TEST_F(HaplyFault, ForceThatDoesNotFollow) {
+TEST_F(HaplyFault, AForceThatDoesNotFollowTheCommandIsAFault) {
   HaplyWorld& world = service_.world;
   world.force_factor = 0.3;  // the gate of the documentation's sample
   EXPECT_EQ(first_fault(*service_.open(), {0, 3, 0}).tick, -1);
@@ -169,7 +168,7 @@ TEST_F(HaplyRelease, ReleaseBetweenTwoTicksSendsZeroForceAtOnce) {
 }
 
 // A thread that hangs between reading and writing sends nothing when it comes back.
-TEST_F(HaplyRelease, WhileATickHangs) {
+TEST_F(HaplyRelease, SendsZeroForceWhileATickHangs) {
   const auto device = service_.open();
   for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(*device, {1, 0, 0}), "");
   ASSERT_EQ(told(device->read(reading_)), "");
@@ -180,8 +179,8 @@ TEST_F(HaplyRelease, WhileATickHangs) {
   EXPECT_EQ(newest_force_N(), 0);
 }
 
-// The call under way gets 5 ms, and no command can be sent beside it: the connection ends.
-TEST_F(HaplyRelease, WhileAReadWaits) {
+// The call in progress is given 5 ms. No command can be sent meanwhile, so the connection is cut.
+TEST_F(HaplyRelease, SendsZeroForceWhileAReadWaits) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device, {1, 0, 0}), "");
   service_.hang();
@@ -192,7 +191,7 @@ TEST_F(HaplyRelease, WhileAReadWaits) {
   EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the Haply service closed the connection");
 }
 
-TEST_F(HaplyRelease, WhileTheServiceHangs) {
+TEST_F(HaplyRelease, CutsTheConnectionAfter20MsIfTheServiceHangs) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device, {1, 0, 0}), "");
   service_.hang();

@@ -1,5 +1,6 @@
 // The WebSocket to Haply's service, over a real socket to a service that is simulated
-// (tests/doubles/haply_service.h). Times are those of the machine: what does not end by its deadline hangs.
+// (tests/doubles/haply_service.h). Times are those of the machine: a call that does not end by its deadline
+// hangs.
 #include "runners/live/devices/haply_link.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +39,7 @@ std::string receive(HaplyLink& link, double within_s = kPatience_s) {
   const DeviceFault fault = link.receive(text, now_s() + within_s);
   return fault ? fault.what : std::string(text);
 }
-// Past the inventory.
+// Opens a link, reads the inventory and sends a command.
 std::unique_ptr<HaplyLink> open_and_send(const HaplyService& service) {
   auto link = open_link(service.address());
   EXPECT_HAS(receive(*link), "session_id");
@@ -46,7 +47,7 @@ std::unique_ptr<HaplyLink> open_and_send(const HaplyService& service) {
   return link;
 }
 
-TEST(HaplyLink, CommandsAndAnswers) {
+TEST(HaplyLink, ExchangesCommandsAndAnswers) {
   const HaplyService service;
   const auto link = open_and_send(service);
   EXPECT_HAS(receive(*link), "cursor_position");
@@ -65,7 +66,7 @@ TEST(HaplyLink, AServiceThatHangsIsWaitedForUntilTheDeadlineAndMayComeBack) {
   EXPECT_HAS(receive(*link), "cursor_position");
 }
 
-TEST(HaplyLink, AServiceThatIsKilled) {
+TEST(HaplyLink, AKilledServiceIsAFault) {
   HaplyServiceProcess service;
   const auto link = open_link(service.address());
   EXPECT_HAS(receive(*link), "session_id");
@@ -74,7 +75,7 @@ TEST(HaplyLink, AServiceThatIsKilled) {
   EXPECT_EQ(receive(*link), "the Haply service closed the connection");
 }
 
-TEST(HaplyLink, AMessageThatStopsInTheMiddle) {
+TEST(HaplyLink, AMessageThatStopsInTheMiddleTimesOut) {
   HaplyService service;
   service.hang_in_the_middle();
   const auto link = open_and_send(service);
@@ -83,7 +84,7 @@ TEST(HaplyLink, AMessageThatStopsInTheMiddle) {
 }
 
 // There is always something to read, and never an answer.
-TEST(HaplyLink, PingsWithoutEnd) {
+TEST(HaplyLink, EndlessPingsTimeOut) {
   HaplyService service;
   service.ping_without_end();
   const auto link = open_and_send(service);
@@ -91,7 +92,7 @@ TEST(HaplyLink, PingsWithoutEnd) {
   EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
 }
 
-TEST(HaplyLink, TextThatEndsTheConnection) {
+TEST(HaplyLink, TextThatIsTooLongOrNoUtf8EndsTheConnection) {
   for (const auto& [answer, fault] :
        {std::pair(std::string(1 << 20, 'x'), "the Haply service sent a message that is too long"),
         std::pair(std::string("\xff\xff"), "the connection to the Haply service failed")}) {
@@ -113,7 +114,7 @@ TEST(HaplyLink, ACutEndsACallUnderWay) {
   other.join();
 }
 
-// A port of this machine that nobody listens at, and that no other program gets meanwhile.
+// A port of this machine on which no program listens, and that no other program gets meanwhile.
 class SilentPort {
  public:
   SilentPort() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -169,7 +170,7 @@ TEST(HaplyOverTheSocket, ReadsAndWrites) {
 }
 
 // The service is in a process of its own: what it allocates is not counted.
-TEST(HaplyOverTheSocket, NoAllocationInATick) {
+TEST(HaplyOverTheSocket, ATickAllocatesNothing) {
   HaplyServiceProcess service;
   const auto device = open_haply(service.address(), steady_clock());
   std::size_t allocations = 0;
@@ -186,7 +187,7 @@ TEST(HaplyOverTheSocket, NoAllocationInATick) {
   EXPECT_EQ(allocations, 0u);
 }
 
-TEST(HaplyOverTheSocket, Availability) {
+TEST(HaplyOverTheSocket, ReportsItsAvailability) {
   const Availability availability = haply_availability(steady_clock());
   EXPECT_TRUE(availability.compiled_in);
   EXPECT_FALSE(availability.detail.empty());

@@ -1,4 +1,5 @@
-// The text that Haply's service and its client exchange: samples of its documentation, and what is none.
+// The text that Haply's service and its client exchange: samples of its documentation, and texts that are no
+// message.
 #include "runners/live/devices/haply_messages.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// The state of the documentation of 3.5, with members in the order of its samples and of no alphabet.
+// The state of the documentation of 3.5, with members in the order of its samples, which is not alphabetical.
 const std::string kState = R"({
   "inverse3": [ { "state": {
       "cursor_velocity": {"z": -0.043197, "x": -0.011969013, "y": 1.2e-3},
@@ -31,7 +32,7 @@ const std::string kState = R"({
     "orientation": {"x": -0.5019531, "y": 0.8632202, "z": -0.048095703, "w": -0.022338867} } } ]
 })";
 
-TEST(HaplyMessage, SampleOfTheDocumentation) {
+TEST(HaplyMessage, ReadsTheSampleOfTheDocumentation) {
   HaplyMessage message;
   ASSERT_TRUE(read_haply_message(kState, "", "", message));
   ASSERT_TRUE(message.device && message.handle);
@@ -45,7 +46,7 @@ TEST(HaplyMessage, SampleOfTheDocumentation) {
   EXPECT_EQ(message.handle->buttons, 0b101u);
 }
 
-TEST(HaplyMessage, DevicesAndHandlesByName) {
+TEST(HaplyMessage, FindsDevicesAndHandlesByName) {
   HaplyMessage message;
   ASSERT_TRUE(read_haply_message(kState, "04BB", "", message));
   ASSERT_TRUE(message.device);
@@ -57,7 +58,7 @@ TEST(HaplyMessage, DevicesAndHandlesByName) {
   EXPECT_FALSE(message.device || message.handle);
 }
 
-TEST(HaplyMessage, WiredHandleAndBasis) {
+TEST(HaplyMessage, ReadsAWiredHandleAndTheBasis) {
   HaplyMessage message;
   ASSERT_TRUE(read_haply_message(
       R"({"inverse3":[{"device_id":"1","config":{"basis":{"permutation":"XZY"}},"state":{}}],)"
@@ -86,8 +87,8 @@ TEST(HaplyMessage, RefusesWhatIsNotAMessage) {
   EXPECT_FALSE(read_haply_message("{\"a\":" + std::string(100000, '['), "", "", message));
 }
 
-// Every beginning of a message, and messages with bytes changed: refused or read, within their bounds. For
-// the address sanitizer, each is in memory of its own.
+// Every beginning of a message, and messages with bytes changed, are refused or read within their bounds.
+// Each is in memory of its own, so that the address sanitizer finds a read outside.
 TEST(HaplyMessage, BrokenTextIsReadWithinItsBounds) {
   HaplyMessage message;
   for (std::size_t size = 0; size < kState.size(); ++size) {

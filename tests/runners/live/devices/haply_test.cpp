@@ -14,7 +14,7 @@ namespace {
 
 using Haply = SimulatedHaplyTest;
 
-TEST_F(Haply, AxesAndUnits) {
+TEST_F(Haply, ConvertsAxesAndUnits) {
   const auto device = service_.open();
   EXPECT_EQ(device->traits().name, "Haply Inverse3 049D");
   EXPECT_EQ(device->traits().actuated_axes, 3);
@@ -34,7 +34,7 @@ TEST_F(Haply, AxesAndUnits) {
   EXPECT_EQ(command.device_id, "049D");
 }
 
-TEST_F(Haply, OrientationAndButtonsOfTheHandle) {
+TEST_F(Haply, ReadsOrientationAndButtonsOfTheHandle) {
   HaplyWorld& world = service_.world;
   world.a = world.c = true;
   world.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitZ());  // about the vertical
@@ -47,7 +47,7 @@ TEST_F(Haply, OrientationAndButtonsOfTheHandle) {
 
   world.b = true;
   world.a = false;
-  world.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitY());  // about what points away from the user
+  world.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitY());  // about the axis that points away from the user
   ASSERT_EQ(tick(*device), "");                               // the answer to what was sent before
   ASSERT_EQ(tick(*device), "");
   EXPECT_EQ(reading_.buttons, 0b110u);
@@ -62,7 +62,7 @@ TEST_F(Haply, OrientationAndButtonsOfTheHandle) {
   EXPECT_EQ(tick(*device), "the handle is no longer in the states of the service");
 }
 
-TEST_F(Haply, NoHandleAndAWiredOne) {
+TEST_F(Haply, AcceptsNoHandleAndAWiredOne) {
   service_.world.has_handle = false;
   EXPECT_EQ(service_.open()->traits().sensed_axes, 3);
   EXPECT_HAS(refusal([&] { service_.open("?handle=61548"); }), "lists no handle \"61548\"; pair it");
@@ -73,7 +73,7 @@ TEST_F(Haply, NoHandleAndAWiredOne) {
   EXPECT_EQ(reading_.buttons, 1u);
 }
 
-TEST_F(Haply, DevicesByName) {
+TEST_F(Haply, FindsDevicesByName) {
   service_.world.devices = {"049D", "04BA"};
   {
     const auto device = service_.open("?device=04BA");
@@ -135,7 +135,7 @@ class CountedTicks final : public DeviceCycle {
 };
 
 // The rate of commands at the service is that of the loop.
-TEST_F(Haply, OneCommandATickAtTheRateThatIsAskedFor) {
+TEST_F(Haply, SendsOneCommandPerTickAtTheRequestedRate) {
   for (const int rate_hz : {1000, 4000}) {
     const auto device = service_.open("?rate=" + std::to_string(rate_hz));
     EXPECT_EQ(device->traits().tick_rate_hz, rate_hz);
@@ -147,7 +147,7 @@ TEST_F(Haply, OneCommandATickAtTheRateThatIsAskedFor) {
     for (const auto& sent : service_.sent())
       if (sent.at_ns >= start_ns && !sent.command.force_N.isZero()) pushed_ns.push_back(sent.at_ns);
     ASSERT_EQ(pushed_ns.size(), static_cast<std::size_t>(rate_hz));
-    // The first tick from which on all answers, which take 0.2 ms, arrive in time.
+    // Returns the first tick from which on all answers, which need 0.2 ms, arrive in time.
     constexpr int kFirst = 10;
     EXPECT_EQ(pushed_ns.back() - pushed_ns[kFirst], (rate_hz - 1 - kFirst) * (ms(1000) / rate_hz));
   }

@@ -55,7 +55,7 @@ TEST_P(HapticDeviceContract, StateIsInOurAxesAndUnits) {
   EXPECT_EQ(reading.buttons, vendor().has_buttons ? 5u : 0u);
 }
 
-// A point of the handle is where position and turn take it, for us as for the vendor.
+// Position and orientation put each point of the handle where the vendor's do.
 TEST_P(HapticDeviceContract, TurnsAreRotationsThatFitThePositions) {
   const auto device = open();
   const Vec3 centre(0.1, 0.2, -0.1), of_handle(0.03, -0.01, 0.02);
@@ -95,10 +95,10 @@ TEST_P(HapticDeviceContract, ForcesAndTorquesArriveAlongTheVendorsAxes) {
   }
 }
 
-// Entact's library does not tell which motors there are.
+// Entact's library does not report which motors there are.
 class TellsOfMotors : public HapticDeviceContract {};
 
-TEST_P(TellsOfMotors, NoTorqueForADeviceWithoutMotorsForIt) {
+TEST_P(TellsOfMotors, ADeviceWithoutTorqueMotorsGetsNoTorque) {
   double_->set([](DeviceDouble::State& state) { state.actuated_axes = 3; });
   const auto device = open();
   EXPECT_EQ(device->traits().sensed_axes, 6);
@@ -122,7 +122,7 @@ TEST_P(HapticDeviceContract, RunsAThousandTicksASecondUntilItIsStopped) {
   EXPECT_EQ(at_us.size(), 300u);
 }
 
-// The others leave it to the scheduler of their vendor.
+// These adapters run their own ticks. The others use the scheduler of their vendor.
 class RunsByTheClock : public HapticDeviceContract {};
 
 // One tick takes 50.3 ms. Ticks that fall into it are skipped; the later ones come at their usual times.
@@ -166,13 +166,13 @@ TEST_P(HapticDeviceContract, AbsentDeviceIsRefused) {
   EXPECT_FALSE(double_->is_open());
 }
 
-TEST_P(HapticDeviceContract, AvailableWithItsLibrary) {
+TEST_P(HapticDeviceContract, IsAvailableWithItsLibrary) {
   const Availability availability = vendor().availability();
   EXPECT_TRUE(availability.compiled_in && availability.found);
   EXPECT_HAS(availability.detail, vendor().double_file);
 }
 
-TEST_P(HapticDeviceContract, UnpluggedWhileRunningIsAFault) {
+TEST_P(HapticDeviceContract, ADeviceThatIsUnpluggedWhileItRunsIsAFault) {
   const auto device = open();
   int good = 0, reading_faults = 0, writing_faults = 0;
   DeviceFault last;
@@ -244,7 +244,7 @@ TEST_P(HapticDeviceContract, ErrorsOfTheVendorArePassedOn) {
   });
   ASSERT_TRUE(read);
   EXPECT_EQ(read.code, vendor().fault_code) << read.what;
-  // OpenHaptics tells of a force in the next frame.
+  // OpenHaptics reports an error of a force in the next frame.
   const DeviceFault& of_force = vendor().drives_itself ? after : written;
   ASSERT_TRUE(of_force);
   EXPECT_EQ(of_force.code, vendor().fault_code) << of_force.what;

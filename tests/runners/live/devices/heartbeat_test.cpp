@@ -61,7 +61,7 @@ TEST_F(HeartbeatTest, ExpectsNoBeatAfterTheLast) {
   EXPECT_EQ(device_.times_let_go, 0);
 }
 
-TEST_F(HeartbeatTest, IsLookedAtFiveTimesInItsTime) {
+TEST_F(HeartbeatTest, IsCheckedFiveTimesInItsTime) {
   EXPECT_DOUBLE_EQ(heartbeat_.period_s(), 0.002);
 }
 

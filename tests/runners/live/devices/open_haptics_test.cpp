@@ -1,4 +1,4 @@
-// The adapter of OpenHaptics beside what all adapters promise, with a test double.
+// The adapter of OpenHaptics, with a test double: what it does beyond the contract of all adapters.
 #include <gtest/gtest.h>
 
 #include "runners/live/devices/open_haptics.h"
@@ -14,8 +14,8 @@ class OpenHapticsTest : public testing::Test {
   DoubleInstalled double_{kOpenHaptics, &clock_};
 };
 
-// The double hands its transform over by columns: a quarter turn about z takes x to y, not back.
-TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
+// The double gives its transform by columns: a quarter turn about z maps x to y, not back.
+TEST_F(OpenHapticsTest, ConvertsMillimetresAndColumns) {
   double_->set([](DeviceDouble::State& state) {
     state.position = {10, 20, 30}, state.velocity = {-1000, 0, 0};
     state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
@@ -30,7 +30,7 @@ TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
   EXPECT_EQ(sent_forces(*double_), (std::vector<std::array<double, 6>>{{1, 2, 3, 4, 5, 6}}));
 }
 
-// Neither a tick without one nor the last.
+// No force remains after a tick without one, nor after the last tick.
 TEST_F(OpenHapticsTest, SendsZeroForceAfterATickWithoutOneAndAfterTheLast) {
   const auto device = open_open_haptics("", clock_);
   std::array<double, 6> sent_in_between{1};
@@ -53,7 +53,7 @@ TEST_F(OpenHapticsTest, DevicesHaveNames) {
              "touch:Right Device: cannot be opened (the double's text, 770/-28): expected ");
 }
 
-TEST_F(OpenHapticsTest, TraitsInOurUnits) {
+TEST_F(OpenHapticsTest, HasTraitsInOurUnits) {
   double_->set([](DeviceDouble::State& state) {
     state.max_force = 3.3, state.continuous_force = 0.88;
     state.max_stiffness = 0.5, state.max_torque = 300;
@@ -89,7 +89,7 @@ TEST_F(OpenHapticsTest, ASchedulerThatDoesNotStartIsAFault) {
   expect_fault_of_the_scheduler(*device, *double_, 0, "OpenHaptics: the scheduler has no timer");
 }
 
-// It is told after more than a second without a call.
+// The fault is reported after more than a second without a call.
 TEST_F(OpenHapticsTest, ASchedulerThatStopsCallingIsAFault) {
   const auto device = open_open_haptics("", clock_);
   expect_fault_of_the_scheduler(*device, *double_, 5, "OpenHaptics: the scheduler has stopped calling");

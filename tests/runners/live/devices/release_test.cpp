@@ -1,5 +1,4 @@
-// The force of every adapter of a vendor's library: when it is off and how it goes, each with its test
-// double.
+// The force of every adapter of a vendor's library, with test doubles: when it is off and how it ends.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -26,8 +25,8 @@ class Release : public Vendors {
       if (event.at_ns > start_ns) max = std::max(max, event.force());
     return max;
   }
-  // Releases the device at that moment, beside the ticks, and stores the time when this is done. No force
-  // follows.
+  // Releases the device at that moment, beside the ticks, and stores the time when the release is done. No
+  // force may follow.
   void let_go_at(HapticDevice& device, double moment_s) {
     clock_.at(moment_s, [&] {
       EXPECT_GT(double_->now().force(), 0);
@@ -42,7 +41,7 @@ class Release : public Vendors {
   std::int64_t gone_ns_ = 0;
 };
 
-TEST_P(Release, NoForceBeforeTheFirstWrite) {
+TEST_P(Release, ThereIsNoForceBeforeTheFirstWrite) {
   const auto device = open();
   EXPECT_TRUE(double_->is_open());
   EXPECT_FALSE(double_->now().has_motors_on);
@@ -70,7 +69,7 @@ TEST_P(Release, MotorsThatDoNotSwitchOnAreAFault) {
 }
 
 // A tick that hangs between two calls of the vendor's library does not delay the release.
-TEST_P(Release, WhileATickHangsIsAtOnce) {
+TEST_P(Release, IsImmediateWhileATickHangs) {
   const auto device = open();
   let_go_at(*device, 0.0205);
   DeviceFault last;
@@ -85,9 +84,10 @@ TEST_P(Release, WhileATickHangsIsAtOnce) {
   EXPECT_TRUE(last) << "a write after letting go";
 }
 
-// A call under way may end; it gets 5 ms. In the end it tells its force, and the hand feels none. OpenHaptics
-// tells a force at the end of its frame, after the call of the tick: nothing is waited for.
-TEST_P(Release, WhileTheVendorsCallHangsTakesFiveMilliseconds) {
+// A call in progress may end, and has 5 ms for it. If it ends later, it sends its force while the motors are
+// off, and the hand feels none. OpenHaptics sends a force at the end of its frame, after the call of the
+// tick, so the release does not wait.
+TEST_P(Release, NeedsFiveMillisecondsWhileTheVendorsCallHangs) {
   const auto device = open();
   let_go_at(*device, 0.0205);
   clock_.at(0.1, [&] { double_->release(); });
@@ -104,7 +104,7 @@ TEST_P(Release, WhileTheVendorsCallHangsTakesFiveMilliseconds) {
 }
 
 // The call that hangs switches the motors on in the end, after they were switched off.
-TEST_P(Release, WhileTheMotorsAreSwitchedOn) {
+TEST_P(Release, LeavesTheMotorsOffIfTheyWereBeingSwitchedOn) {
   double_->hang_next(DeviceDouble::switches_on);
   const auto device = open();
   clock_.at(0.005, [&] { device->release(); });
@@ -120,7 +120,7 @@ TEST_P(Release, WhileTheMotorsAreSwitchedOn) {
   EXPECT_TRUE(sent_forces(*double_).empty());
 }
 
-TEST_P(Release, BeforeTheFirstWrite) {
+TEST_P(Release, MakesTheFirstWriteAFault) {
   const auto device = open();
   device->release();
   device->release();
@@ -133,7 +133,7 @@ TEST_P(Release, BeforeTheFirstWrite) {
   EXPECT_FALSE(double_->now().has_motors_on);
 }
 
-TEST_P(Release, HoldingAgainIsAsAtTheStart) {
+TEST_P(Release, HoldsAgainAsAtTheStart) {
   const auto device = open();
   run_ticks(*device, 9, [&](int i) {
     DeviceReading reading;
@@ -163,7 +163,7 @@ TEST_P(Release, ClosesWithoutForce) {
 
 using ReleaseBesideTicks = Vendors;
 
-// Reads and pushes in a thread of its own until it is told to stop.
+// Reads and pushes in a thread of its own until it is stopped.
 class Pushing {
  public:
   explicit Pushing(HapticDevice& device)

@@ -55,7 +55,7 @@ TEST(SafetyGate, ATorqueKeepsItWaitingToo) {
   EXPECT_EQ(loop.gate.state(), GateState::waiting);
 }
 
-// Below means below, and what is compared is the length: of the torque 0.3 / 5 of its limit, 12 mN m.
+// Both lengths must be below their thresholds. That of the torque is 0.3 / 5 of its limit, 12 mN m.
 TEST(SafetyGate, ForceAndTorqueMustBothBeShorterThanTheirThresholds) {
   const auto begins = [](const Vec3& force_N, const Vec3& torque_Nm) {
     Loop loop;
@@ -187,8 +187,8 @@ TEST(SafetyGate, BeginsAnewAfterALongPause) {
   EXPECT_TRUE(loop.tick({5, 0, 0}).force_N.isZero(0));
 }
 
-// The device holds what was written last through a pause: the tick after it takes off no more than 2 ms of
-// the slew rates allow, whether the command turned round meanwhile or is too old to count.
+// The device holds the last command through a pause. The tick after it changes the command by no more than
+// the slew rates allow in 2 ms, whether the command has turned round meanwhile or is too old to count.
 TEST(SafetyGate, TheTickAfterAPauseMakesNoLargerStep) {
   for (const double gap_s : {0.0005, 0.001, 0.002, 0.003, 0.015, 0.03, 10.0}) {
     Loop loop;
@@ -201,7 +201,7 @@ TEST(SafetyGate, TheTickAfterAPauseMakesNoLargerStep) {
   }
 }
 
-TEST(SafetyGate, RestartLeavesNoForce) {
+TEST(SafetyGate, ARestartLeavesNoForce) {
   Loop loop;
   loop.engage();
   for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});

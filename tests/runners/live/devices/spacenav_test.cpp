@@ -43,7 +43,7 @@ class Spacenav : public testing::Test {
     EXPECT_FALSE(fault) << fault.what;
     return reading;
   }
-  // Readings a millisecond apart, and the last of them.
+  // Reads the device every millisecond and returns the last reading.
   DeviceReading read_for(HapticDevice& device, int ms) {
     DeviceReading reading;
     for (int i = 0; i < ms; ++i) reading = read(device, 1e-3);
@@ -57,7 +57,7 @@ class Spacenav : public testing::Test {
   SpacenavSocket server_;
 };
 
-TEST_F(Spacenav, InputOnly) {
+TEST_F(Spacenav, IsInputOnly) {
   const auto device = open();
   EXPECT_EQ(device->traits().sensed_axes, 6);
   EXPECT_EQ(device->traits().actuated_axes, 0);
@@ -71,7 +71,7 @@ TEST_F(Spacenav, InputOnly) {
 }
 
 // Deflections become speeds in the device's axes: the daemon's z points away from the user.
-TEST_F(Spacenav, AxesAndUnits) {
+TEST_F(Spacenav, ConvertsAxesAndUnits) {
   const auto device = open("?speed=1e-3&turning=2e-3&box=10");
   server_.send({0, 100, 200, 300, 0, 0, 0, 16});
   const DeviceReading moved = read_for(*device, 50);
@@ -92,7 +92,7 @@ TEST_F(Spacenav, TheDisplacementIsSpeedTimesTime) {
   EXPECT_NEAR(read_for(*device, 200).position_m.x(), 0.1 * 0.2, 1e-12);
 }
 
-TEST_F(Spacenav, BoxOfTheWorkspace) {
+TEST_F(Spacenav, StaysInTheBoxOfTheWorkspace) {
   const auto device = open("?speed=0.1&box=0.02");
   for (const std::int32_t count : {kMax, kMin}) {
     server_.send({0, count, count, count, count, count, count, 16});
@@ -104,7 +104,7 @@ TEST_F(Spacenav, BoxOfTheWorkspace) {
   }
 }
 
-// It holds for half a second.
+// A deflection counts for half a second.
 TEST_F(Spacenav, ADeflectionThatIsNotSentAgainEnds) {
   const auto device = open("?speed=1e-3&box=10");
   server_.send({0, 100, 0, 0, 0, 0, 0, 16});
@@ -115,27 +115,27 @@ TEST_F(Spacenav, ADeflectionThatIsNotSentAgainEnds) {
   EXPECT_EQ(read_for(*device, 20).position_m, after.position_m);
 }
 
-// One reading moves it by the time since the last one, 0.1 s at most.
-TEST_F(Spacenav, PauseWithoutReadingsIsNoJump) {
+// One reading moves the position by the time since the last one, 0.1 s at most.
+TEST_F(Spacenav, APauseWithoutReadingsCausesNoJump) {
   const auto device = open("?speed=1e-3&box=10");
   server_.send({0, 100, 0, 0, 0, 0, 0, 16});
   const double before = read_for(*device, 10).position_m.x();
   EXPECT_NEAR(read(*device, 0.3).position_m.x() - before, 0.1 * 0.1, 1e-12);
 }
 
-TEST_F(Spacenav, Buttons) {
+TEST_F(Spacenav, ReadsButtons) {
   const auto device = open();
   server_.send({1, 0, 0, 0, 0, 0, 0, 0});
   server_.send({1, 31, 0, 0, 0, 0, 0, 0});
   server_.send({1, 32, 0, 0, 0, 0, 0, 0});  // more than there are bits
   server_.send({1, -1, 0, 0, 0, 0, 0, 0});
-  server_.send({3, 0, 1, 2, 3, 4, 5, 0});  // a mouse that comes
+  server_.send({3, 0, 1, 2, 3, 4, 5, 0});  // a mouse is plugged in
   EXPECT_EQ(read_for(*device, 10).buttons, 0x80000001u);
   server_.send({2, 0, 0, 0, 0, 0, 0, 0});
   EXPECT_EQ(read_for(*device, 10).buttons, 0x80000000u);
 }
 
-TEST_F(Spacenav, FramesInPieces) {
+TEST_F(Spacenav, JoinsFramesThatComeInPieces) {
   const auto device = open("?speed=1e-3&box=10");
   const std::vector<std::int32_t> frame = {0, 100, 0, 0, 0, 0, 0, 16};
   const char* bytes = reinterpret_cast<const char*>(frame.data());
@@ -154,7 +154,7 @@ TEST_F(Spacenav, ReportsAFaultForWhatIsNoFrame) {
   EXPECT_STREQ(device->read(reading).what, "the socket sends data that are not spacenavd's messages");
 }
 
-TEST_F(Spacenav, DaemonThatCloses) {
+TEST_F(Spacenav, ADaemonThatClosesIsAFault) {
   const auto device = open();
   read_for(*device, 5);
   server_.close();
@@ -164,7 +164,7 @@ TEST_F(Spacenav, DaemonThatCloses) {
   EXPECT_TRUE(device->write({}));
 }
 
-TEST_F(Spacenav, NoAllocationInATick) {
+TEST_F(Spacenav, ATickAllocatesNothing) {
   const auto device = open();
   for (int i = 0; i < 100; ++i) server_.send({0, i, i, i, i, i, i, 16});
   DeviceReading reading;
@@ -174,7 +174,7 @@ TEST_F(Spacenav, NoAllocationInATick) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST_F(Spacenav, SocketOfTheEnvironment) {
+TEST_F(Spacenav, UsesTheSocketOfTheEnvironment) {
   ::setenv("SPNAV_SOCKET", path_.c_str(), 1);
   EXPECT_TRUE(spacenav_availability("", clock_).found);
   EXPECT_EQ(spacenav_availability("", clock_).detail, "spacenavd at " + path_);
@@ -202,7 +202,7 @@ TEST(SpacenavAddress, RefusesWhatCannotBeOpened) {
   EXPECT_HAS(open("?box=1&box=2"), "the setting box is given twice");
 }
 
-// --- the stock daemon: in its own time, of which a busy machine may take much ---
+// --- the stock daemon: in real time, which may take long on a busy machine ---
 
 // Waits until a reading meets the condition, once the daemon has passed on a packet of the mouse. Returns
 // true if one does.
@@ -211,8 +211,8 @@ bool comes(HapticDevice& device, DeviceReading& reading,
   return wait_until([&] { return !device.read(reading) && condition(reading); });
 }
 
-// The daemon asks once what is at its terminal, and waits a quarter of a second for the answer: a busy
-// machine can need more than one daemon until it has heard of the mouse.
+// The daemon queries once which mouse is at its terminal, and waits a quarter of a second for the answer. A
+// busy machine can need more than one daemon until the mouse is found.
 std::unique_ptr<SpacenavDaemon> daemon_with(const SerialMouse& mouse, const std::filesystem::path& folder) {
   std::unique_ptr<SpacenavDaemon> daemon;
   wait_until([&] {
@@ -224,7 +224,7 @@ std::unique_ptr<SpacenavDaemon> daemon_with(const SerialMouse& mouse, const std:
   return daemon;
 }
 
-TEST(SpacenavDaemon, SerialMouseThroughTheStockDaemon) {
+TEST(SpacenavDaemon, DeliversASerialMouse) {
   if (spacenav_daemon_program().empty()) GTEST_SKIP() << "spacenavd is not installed (apt package spacenavd)";
   const TestFolder folder("spacenav_daemon_test");
   SerialMouse mouse;
@@ -232,7 +232,7 @@ TEST(SpacenavDaemon, SerialMouseThroughTheStockDaemon) {
   ASSERT_TRUE(mouse.is_detected()) << bytes_of(folder / "log");
   const auto device = open_spacenav(daemon->socket() + "?speed=1e-3&turning=1e-3&box=10", steady_clock());
   DeviceReading reading;
-  // The daemon passes on what changes, to those that it has let in by then.
+  // The daemon sends what changes, and only to clients that it has accepted by then.
   int moved = 0;
   ASSERT_TRUE(comes(*device, reading, [&](const DeviceReading& r) {
     mouse.deflect({10 + ++moved % 2, 0, 0, 0, 0, 0});

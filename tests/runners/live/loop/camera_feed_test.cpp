@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWidth = 8, kHeight = 4;
 
-// Sends what it is given, one frame a call, and then does what its state says.
+// Sends the given frames, one a call, and then returns the given state.
 class ListedFrames final : public DepthSource {
  public:
   ListedFrames(std::vector<SensorFrame> frames, SensorState then, bool has_colour = false)
@@ -102,7 +102,7 @@ TEST(CameraFeed, CountsGapsAndDropsWhatIsNotNewer) {
   EXPECT_EQ(counts.max_pause_s, 2);
 }
 
-TEST(CameraFeed, DropsWhatIsIncomplete) {
+TEST(CameraFeed, DropsIncompleteFrames) {
   SensorFrame small = frame(1, 1), coloured = frame(2, 2);
   small.depth.resize(5);
   coloured.colour.assign(kWidth * kHeight, 0xff0000);
@@ -133,7 +133,7 @@ TEST(CameraFeed, ReportsHowItEnded) {
   }
 }
 
-// A rule that needs colours gets a frame without any: there are no more frames, and the run is to end.
+// A rule that needs colours receives a frame without any. There are no more frames, and the run must end.
 TEST(CameraFeed, AFrameThatCannotBeProcessedEndsIt) {
   Loop loop(std::make_unique<ListedFrames>(std::vector{frame(1, 1)}, SensorState::waiting));
   std::vector<std::unique_ptr<const FixtureRule>> rules;

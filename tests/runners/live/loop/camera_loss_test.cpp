@@ -11,7 +11,7 @@
 namespace remote_touch::camera_loss_test {
 namespace {
 
-// The experiment's camera until so many frames were sent; then it does what its state says.
+// The experiment's camera until so many frames were sent. Then it returns the given state.
 class CameraThatStops final : public DepthSource {
  public:
   CameraThatStops(std::unique_ptr<DepthSource> camera, int frames, SensorState then)
@@ -33,7 +33,8 @@ class CameraThatStops final : public DepthSource {
 
 class CameraLoss : public testing::Test {
  protected:
-  // Thirty frames, the last of them at 967 ms; lifted at 1.6 s, pressed to another depth at 1.7 s.
+  // Thirty frames, the last of them at 967 ms. The hand is lifted at 1.6 s and presses to another depth at
+  // 1.7 s.
   LiveResult run_with_loss(SensorState then, int frames = 30) {
     hold(kAbove_m);
     clock_.at(kPressed_s, [&] { hold(kBelow_m); });
@@ -56,7 +57,8 @@ class CameraLoss : public testing::Test {
     const Vec3 place = kForceDimension.axes * Vec3(0, height_m_ + above_m, 0);
     double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
   }
-  // The last cloud stays: a force as before, free space free, and another force at another depth.
+  // Checks that the last cloud stays: the force is as before, there is none in free space, and another one at
+  // another depth.
   void expect_the_last_cloud_to_hold() const {
     ForceOverTime force;
     for (const DeviceDouble::Event& event : double_->events())
@@ -75,8 +77,8 @@ class CameraLoss : public testing::Test {
   std::vector<LiveTrouble> troubles_;
 };
 
-// The frame of 29 / 30 s is there at 967 ms. It is older than 0.2 s from 1167 ms on, and the next look is at
-// 1170.
+// The frame of 29 / 30 s arrives at 967 ms. It is older than 0.2 s from 1167 ms on, and the next check is at
+// 1170 ms.
 TEST_F(CameraLoss, ACameraThatStopsSendingLeavesItsLastCloud) {
   const LiveResult result = run_with_loss(SensorState::waiting);
   ASSERT_EQ(told_.size(), 1u);

@@ -77,8 +77,8 @@ class DepthDeviceLoss : public testing::Test {
   std::vector<SeenFrame> frames_;
 };
 
-// The frame in which the call fails is processed by the CPU, no frame is missing, and nothing of what the
-// hand feels tells that something happened.
+// The frame in which the call fails is processed by the CPU, no frame is missing, and the hand feels no
+// difference.
 TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
   const LiveResult on_cpu = run("cpu");
   EXPECT_TRUE(told_.empty());
@@ -96,10 +96,11 @@ TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
     ASSERT_EQ(told_.size(), 1u);
     EXPECT_EQ(told_[0].line, "depth_pipeline.device = opencl:0:0 (double, double) failed: " +
                                  std::string(function) + ": CL_OUT_OF_RESOURCES (-5)" + kTakeover);
-    // The first frame after the failure is that of 0.5 s, and the next look for news is 10 ms later at most.
+    // The first frame after the failure is that of 0.5 s, and the next check for messages is 10 ms later at
+    // most.
     EXPECT_GE(told_[0].at_ns, ms(500));
     EXPECT_LE(told_[0].at_ns, ms(550));
-    // It was the device before: from the sensor's numbers to the columns of fixtures.
+    // The device did all the work before: from the sensor's numbers to the columns of fixtures.
     EXPECT_EQ(frames_[1].kernel_runs, frames_[0].kernel_runs + 6);
     EXPECT_EQ(frames_[frames - 1].kernel_runs, frames_[frames - 2].kernel_runs);
   }
@@ -108,7 +109,7 @@ TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
 TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
   const LiveResult live = run("opencl");
   EXPECT_TRUE(told_.empty());
-  // Frames from the disk come as clouds: they take another path through the device, and have the same bits.
+  // Frames from the disk come as clouds. They go another way through the device, and have the same bits.
   SimulationOptions offline;
   offline.kernels = &scenes::kernels(), offline.hash_frames = true;
   const int before = kernel_runs();
@@ -121,8 +122,9 @@ TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
   EXPECT_EQ(attribute(Hdf5Reader(folder_ / "cpu.h5").attributes(), "depth_device"), "");
 }
 
-// The run is in real time, with the threads of a live run. The camera's thread waits 2 s for the driver, the
-// haptic loop does not wait. The driver hangs in the eleventh frame, and the CPU takes over with the twelfth.
+// The run is in real time, with the threads of a live run. The camera's thread waits 2 s for the driver, but
+// the haptic loop does not wait. The driver hangs in the eleventh frame, and the CPU continues with the
+// twelfth.
 TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   const Experiment experiment = at_the_valves("opencl");
   std::vector<std::string> told;
@@ -140,13 +142,13 @@ TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   const LiveResult result = run_live(experiment, options);
   EXPECT_FALSE(result.failed) << result.ended;
   ASSERT_GE(captured_s.size(), 12u);
-  EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // this is what the hand had no frames for
+  EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // the time for which the hand had no frames
   const auto takeovers = std::count_if(told.begin(), told.end(), [](const std::string& line) {
     return line.find(kTakeover) != std::string::npos;
   });
   EXPECT_EQ(takeovers, 1);
-  // There is time for 1700 ticks. A busy machine leaves many of them out, and a loop that waits for the
-  // driver all.
+  // There is time for 1700 ticks. A busy machine leaves many of them out. A loop that waits for the driver
+  // would leave out all.
   const auto ticks = std::count_if(
       result.log.trace.time_s.begin(), result.log.trace.time_s.end(),
       [&](double time_s) { return time_s > captured_s[10] + 0.1 && time_s < captured_s[11] - 0.1; });

@@ -10,7 +10,7 @@
 namespace remote_touch::depth_library_run_test {
 namespace {
 
-// The camera is at the origin and looks along z at a wall across its axis.
+// The camera is at the origin and faces along z a wall across its axis.
 constexpr double kWall_m = 0.5;
 
 class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
@@ -59,7 +59,7 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
   std::vector<SimulatedRun::Told> told_;
 };
 
-// No force in front of the wall; behind it the spring's, for the depth of the hand below the proxy's rest.
+// There is no force in front of the wall. The spring pushes the hand out behind it.
 TEST_P(DepthLibraryRun, TheHandFeelsWhatTheCameraSees) {
   const LiveResult result = run(0.79);
   EXPECT_FALSE(result.failed) << result.ended;

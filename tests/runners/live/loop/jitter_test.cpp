@@ -16,7 +16,7 @@ TEST(Jitter, NoTickIsLateIfAllComeInTime) {
   EXPECT_EQ(jitter.missed, 0);
 }
 
-// Something else runs from 5.2 to 7.7 ms: the tick of 6 ms comes at 7.7 in place of that of 7 ms.
+// Something else runs from 5.2 to 7.7 ms. The tick of 6 ms never comes, and that of 7 ms comes 0.7 ms late.
 TEST(Jitter, ALateTickIsLateAndOneThatNeverCameIsMissed) {
   SimulatedClock clock;
   clock.at(0.0052, [&] { clock.sleep_s(0.0025); });

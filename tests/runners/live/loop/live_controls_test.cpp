@@ -83,7 +83,7 @@ TEST_F(LiveControlsTest, OtherChangesAreRefusedWithTheReasonAndChangeNothing) {
   EXPECT_EQ(controls_.asked().oldest(), nullptr);
 }
 
-// Each is checked with those before it.
+// Each change is checked together with those before it.
 TEST_F(LiveControlsTest, ChangesAddUp) {
   EXPECT_EQ(change({{"renderer.r3_m", 0.03}}), "");
   EXPECT_EQ(change({{"renderer.r2_m", 0.02}}), "");
@@ -92,7 +92,7 @@ TEST_F(LiveControlsTest, ChangesAddUp) {
   EXPECT_EQ(change({{"renderer.velocity_estimate", 0}}), "");
 }
 
-TEST_F(LiveControlsTest, ALoopThatDoesNotTakeThemIsNotFlooded) {
+TEST_F(LiveControlsTest, ChangesAreLimitedIfTheLoopDoesNotReadThem) {
   int taken = 0;
   while (taken < 1000 && change({{"renderer.r3_m", 0.01 + 1e-5 * taken}}).empty()) ++taken;
   EXPECT_EQ(taken, 64);
@@ -107,7 +107,7 @@ TEST_F(LiveControlsTest, StiffnessOfASoftDeviceDoesNotGrow) {
   EXPECT_HAS(change({{"renderer.stiffness_N_per_m", 601}}), "no greater stiffness");
 }
 
-// Its frames are those of the experiment with that noise.
+// The scenario's frames are those of the experiment with that noise.
 TEST_F(LiveControlsTest, NoiseIsThatOfTheNextFrame) {
   const auto scenario = controls_.scenario();
   const auto noisy = experiment({"scenario.noise_per_m=0.02"}).build_scenario(scenes::kernels());
@@ -117,7 +117,7 @@ TEST_F(LiveControlsTest, NoiseIsThatOfTheNextFrame) {
   EXPECT_EQ(scenario->cloud(3).y, noisy->cloud(3).y);
 }
 
-// A scenario without noise has one frame, which is repeated; a camera may ask for a later one all the same.
+// A scenario without noise has one frame, which is repeated. A camera may still request a later one.
 TEST_F(LiveControlsTest, NoiseCanBeSwitchedOffAndOnAgain) {
   const auto scenario = controls_.scenario();
   const PointCloud before = scenario->cloud(40);

@@ -1,4 +1,4 @@
-// The exchange of data between threads of the live loop; meant for the thread sanitizer too.
+// The exchange of data between threads of the live loop. The tests are meant for the thread sanitizer, too.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kValues = 200'000;
 
-// Torn, it would not hold the same number everywhere.
+// A torn value would not hold the same number everywhere.
 using Wide = std::array<int, 64>;
 
-// Both sides yield where they would spin, so that they alternate on a single free core too.
+// Both sides yield instead of spinning, so that they alternate on a single free core, too.
 TEST(TripleBuffer, GivesTheNewestWholeAndInOrder) {
   TripleBuffer<Wide> buffer;
   std::jthread producer([&](const std::stop_token& enough) {

@@ -1,5 +1,5 @@
-// Force at a haptic device when a part of a live run fails. Test doubles of the vendors' libraries replace
-// the device, the force is measured at the device's side, and all times are those of a simulated clock.
+// Force at a haptic device when a part of a live run fails. Test doubles replace the vendors' libraries, the
+// force is measured at the device's side, and all times are those of a simulated clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace remote_touch::live_failure_test {
 namespace {
 
-// A live run whose device is pressed into the table, until the moment of trouble and on.
+// A live run whose device is pressed into the table until the moment of trouble and after it.
 class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
  protected:
   static constexpr double kTrouble_s = 0.3;
@@ -29,7 +29,7 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
   void at(double moment_s, std::function<void(DeviceDouble&)> what) {
     clock_.at(moment_s, [this, what = std::move(what)] { what(*double_); });
   }
-  // The middle of the device so far above the table.
+  // Puts the centre of the device this far above the table.
   void hold(double above_m) {
     const Vec3 place = GetParam()->length_per_m * (GetParam()->axes * Vec3(0, height_m_ + above_m, 0));
     double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
@@ -40,7 +40,7 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
       force.pieces.push_back({event.at_ns, event.force()});
     return force;
   }
-  // Pressed until then, and nothing from then on.
+  // Checks that the hand is pressed until then, and that there is no force from then on.
   void expect_gone_at(std::int64_t moment_ns) const {
     EXPECT_EQ(force().gone_ns(), moment_ns);
     EXPECT_GT(force().at(moment_ns - 1), 1);
@@ -55,7 +55,7 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
 
 // The tick receives the fault just after 300 ms. The user's part of the run checks every 10 ms, and the tick
 // after its check is the last.
-TEST_P(PressedDevice, UnpluggedTheRunEndsSayingSo) {
+TEST_P(PressedDevice, AnUnpluggedDeviceEndsTheRunWithItsReason) {
   at(kTrouble_s + 0.0005,
      [](DeviceDouble& device) { device.set([](DeviceDouble::State& state) { state.is_unplugged = true; }); });
   const LiveResult result = run();
@@ -105,10 +105,11 @@ TEST_P(PressedDevice, TheEndOfItsDurationEndsTheForceInTheNextTick) {
   EXPECT_EQ(result.log.trace.length(), 300u);
 }
 
-// The tick of 300 ms hangs in the vendor's call. The watch looks every 2 ms and finds more than 10 ms at 312.
-// A call of the adapter gets 5 ms to end, which that of OpenHaptics' scheduler is not; then the motors are
-// off. What hung goes on at 380 ms, and from then on it begins as at the start: pressed in, it waits.
-TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
+// The tick of 300 ms hangs in the vendor's call. The watch checks every 2 ms and finds more than 10 ms at 312
+// ms. A call of the adapter is given 5 ms to end, but the call of OpenHaptics' scheduler is no such call.
+// Then the motors are off. The call that hung continues at 380 ms. The force then begins as at the start: it
+// waits while the hand is pressed in.
+TEST_P(PressedDevice, AHangingLoopIsReleasedAndTheForceBeginsGently) {
   at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
   at(0.38, [](DeviceDouble& device) { device.release(); });
   clock_.at(0.5, [&] { hold(kAbove_m); });
@@ -122,8 +123,8 @@ TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
   EXPECT_FALSE(result.failed);
 }
 
-// The watch releases the device by 317 ms, the user's part sees it at 320 and reports it when it has lasted
-// for more than 0.2 s.
+// The watch releases the device by 317 ms. The user's part sees this at 320 ms and reports it when it has
+// lasted for more than 0.2 s.
 TEST_P(PressedDevice, ALongHangIsReportedWhileItLasts) {
   at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
   at(0.7, [](DeviceDouble& device) { device.release(); });
@@ -150,7 +151,7 @@ TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
 INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
                          [](const auto& device) { return device.param->name; });
 
-// OpenHaptics alone tells how stiff a device can be.
+// OpenHaptics alone reports how stiff a device can be.
 class StiffnessOfADevice : public PressedDevice {
  protected:
   static double max_rendered_N(const LiveResult& result) {
@@ -187,7 +188,7 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
 INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),
                          [](const auto& device) { return device.param->name; });
 
-// An adapter, or its vendor's library, that calls no more ticks.
+// An adapter, or its vendor's library, that stops calling ticks.
 class DeviceThatLeaves final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;

@@ -12,7 +12,7 @@ namespace {
 
 using Paths = std::vector<std::string>;
 
-// Its scenario, its trajectory and its tool each read a file; none is opened here.
+// The scenario, the trajectory and the tool each read a file. None is opened here.
 Experiment experiment() {
   return Experiment::from_json(
       R"({"scenario": {"name": "recording", "path": "scene"}, "depth_pipeline": {},

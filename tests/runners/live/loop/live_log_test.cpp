@@ -15,8 +15,8 @@
 namespace remote_touch::live_log_test {
 namespace {
 
-// A disk that takes nothing: the camera is told that its frame was not taken.
-TEST(LiveLogger, TakesNoMoreFramesThanCanWait) {
+// The disk accepts nothing, so the logger refuses a frame when too many wait.
+TEST(LiveLogger, AcceptsNoMoreFramesThanCanWait) {
   const TestFolder folder("live_logger");
   SensorView view;
   view.camera = {2, 2, 2, 2, 1, 1};
@@ -36,7 +36,7 @@ TEST(LiveLogger, TakesNoMoreFramesThanCanWait) {
   logger.finish();
 }
 
-TEST(Samples, AllUpToTheirMaximum) {
+TEST(Samples, KeepsAllUpToTheirMaximum) {
   Samples samples;
   EXPECT_TRUE(std::isnan(samples.least()));
   for (int i = 0; i < 1000; ++i) samples.push_back(i % 100);

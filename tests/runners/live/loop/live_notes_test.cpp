@@ -61,7 +61,7 @@ TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
   EXPECT_EQ(attribute(session.stored, "notes"), "");
 }
 
-TEST(LiveNotes, ASessionWithoutContactSaysSo) {
+TEST(LiveNotes, ReportASessionWithoutContact) {
   const Session session = run(press(kAbove), 0.5);
   EXPECT_EQ(kinds_of(session.result.report), Kinds{"no contact"});
   EXPECT_EQ(attribute(session.stored, "notes"), "no point was touched, and no force was felt");
@@ -84,7 +84,7 @@ TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
   EXPECT_HAS(attribute(session.stored, "notes"), "a proxy of contact radius 5 mm can fall through it");
 }
 
-// The device of another program moves as it likes: the experiment's hand and scene are not used.
+// The hand at a device of another program moves freely, so the experiment's hand and scene are not used.
 TEST(LiveNotes, PhasesBelongToSimulatedPartsOnly) {
   const Experiment experiment = Experiment::from_json(press(kPress), "test");
   EXPECT_EQ(simulated_phases(experiment, "sim:", "pcd:x", scenes::kernels()).size(), 1u);

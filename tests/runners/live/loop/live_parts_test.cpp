@@ -1,4 +1,4 @@
-// The room that a live run reserves for the points of its camera, and its end if a frame cannot be used.
+// The memory that a live run reserves for the points of its camera, and its end if a frame cannot be used.
 #include "runners/live/loop/live_parts.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace remote_touch::live_parts_test {
 namespace {
 
-// The tiles of an image in which every pixel is measured are the most that a renderer keeps of it.
+// An image in which every pixel is measured gives the most tiles that a renderer keeps.
 TEST(ExpectedPoints, EveryImageHasRoom) {
   for (const int width : {1, 7, 8, 17, 64, 100, 641})
     for (const int height : {1, 9, 16, 31, 97}) {
@@ -54,7 +54,7 @@ TEST(LiveParts, ReportTheFrameThatTheSimulatedHandCannotUse) {
                            "margin_m": 0.02}})";
   for (const double duration_s : {0.05, 0.3}) {
     SimulatedClock clock;
-    // The camera of the run sees another scene: only the hand reads the recording.
+    // The camera of the run sees another scene, so that only the hand reads the recording.
     SimulatedRun run(
         clock, Experiment::from_json(text, "test"),
         [](const Experiment& of, Clock& with) {

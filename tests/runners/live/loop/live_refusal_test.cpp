@@ -74,7 +74,7 @@ class RefusedRun : public testing::Test {
   std::vector<SimulatedRun::Told> told_;
 };
 
-// The user's part looks every 10 ms.
+// The user's part checks every 10 ms.
 TEST_F(RefusedRun, AFrameFromAnotherPlaceEndsTheRun) {
   const LiveResult result = run(true);
   EXPECT_HAS(result.refused, "./scene: frame 6 was captured from another pose (0.2 m and 0 deg");
@@ -95,7 +95,7 @@ TEST_F(RefusedRun, AFileThatHasChangedIsAnInputError) {
   EXPECT_EQ(SessionReader(session()).ended(), result.ended);
 }
 
-TEST_F(RefusedRun, OtherwiseNothingIsRefused) {
+TEST_F(RefusedRun, OtherFailuresAreNoRefusal) {
   int checks = 0;
   check_inputs_ = [&] { ++checks; };
   const LiveResult result = run(false);

@@ -1,5 +1,4 @@
-// The live loop against simulated sensors and devices: what it leaves, and what a recording of it gives
-// again.
+// The live loop with simulated sensors and devices: its results, and the replay of a recording of it.
 #include "runners/live/loop/live_run.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +26,7 @@ LiveOptions options(double duration_s) {
   return all;
 }
 
-// A hand that follows the scene, with small images so that a machine with little to spare keeps up.
+// A hand that follows the scene, with small images so that a slow machine keeps up.
 const char* const kProxy = R"({
   "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "renderer": {"name": "proxy"},
   "trajectory": {"name": "follow-surface", "from_m": [0, 0, -0.1], "to_m": [0, 0, 0.1], "depth_m": 0.003,
@@ -112,7 +111,8 @@ TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
   run.options.controls =
       std::make_shared<LiveControls>(experiment(), scenes::kernels(), LiveControls::Camera::simulated);
   std::size_t asked = 0;
-  // Together; of a switch the other value. Parameters that the renderer has not are left out.
+  // Changes the wanted parameters together. A switch gets the other value. Parameters that the renderer does
+  // not have are left out.
   const auto change = [&](const std::vector<std::pair<std::string, double>>& wanted) {
     const auto& all = run.options.controls->parameters();
     ParameterChanges changes;
@@ -144,7 +144,7 @@ TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
   ASSERT_EQ(session.changes().size(), asked);
   EXPECT_GE(session.changes()[0].tick, 701u);
   EXPECT_LE(session.changes()[0].tick, 706u);
-  // It is of the change that the replay is the same.
+  // The changes matter: the forces differ without them.
   nlohmann::json without = nlohmann::json::parse(Experiment::load(run.options.record.string()).to_json());
   ASSERT_EQ(without["changes"].size(), asked - 1) << "the noise is in the frames";
   without.erase("changes");
@@ -199,7 +199,7 @@ TEST(LiveRun, FollowsItsDurationAndCountsEveryTick) {
   for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(result.log.trace.time_s[i], static_cast<double>(i) / 1000);
 }
 
-// A frame is there in the first tick at or after its time, and rendering takes no time here.
+// A frame arrives in the first tick at or after its time, and rendering takes no time here.
 TEST(LiveRun, MeasuresHowLongAFrameTook) {
   SimulatedClock clock;
   SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());

@@ -1,5 +1,5 @@
-// A live run whose device is behind a service of its vendor, on a simulated clock: Haply's service, and
-// spacenavd, which a socket of the test replaces.
+// A live run whose device is behind a service of its vendor, on a simulated clock. The services are Haply's,
+// and spacenavd, which a socket of the test replaces.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ class PressedInverse3 : public testing::Test {
     clock_.at(kPressed_s, [&] { hold(kBelow_m); });
     run_.options.duration_s = 0.5;
   }
-  // The service's z is up.
+  // The service's z axis points up.
   void hold(double above_m) { service_.world.position_m = Vec3(0, 0, height_m_ + above_m); }
   // Forces that the service received.
   ForceOverTime force() const {

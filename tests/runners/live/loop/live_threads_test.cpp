@@ -1,5 +1,5 @@
-// The threads of a live run, in real time: what they hand to each other, and how they end. Meant for the
-// thread sanitizer too. Nothing here depends on how long anything takes: events are waited for.
+// The threads of a live run, in real time: how they exchange data, and how they end. The tests are meant for
+// the thread sanitizer, too. They do not depend on how long anything takes, because they wait for events.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -127,7 +127,7 @@ TEST_P(LiveThreads, AReportIsMadeWhileTheyRun) {
 INSTANTIATE_TEST_SUITE_P(Vendors, LiveThreads, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
                          [](const auto& device) { return device.param->name; });
 
-TEST(LiveThreadsEnd, MotorsAreOffIfReportingToTheUserThrows) {
+TEST(LiveThreadsEnd, SwitchesTheMotorsOffIfReportingThrows) {
   const DoubleInstalled behind(kForceDimension);
   LiveOptions options;
   options.kernels = &scenes::kernels();

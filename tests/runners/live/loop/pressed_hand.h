@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// A proxy over the table of `camera-scene`. Without noise a hand at rest commands the same force in every
-// frame.
+// A proxy over the table of `camera-scene`. A hand at rest commands the same force in every frame if there is
+// no noise.
 constexpr const char* kPress = R"({
   "scenario": {"name": "camera-scene", "width": 160, "height": 120, "noise_per_m": 0, "quantisation_per_m": 0},
   "renderer": {"name": "proxy"},
@@ -25,11 +25,11 @@ inline double table_height_m() {
   return press_experiment().build_scenario(scenes::kernels())->surface_height(0, 0, 0);
 }
 
-// Above the table until kPressed_s, then 2 mm below it.
+// The hand is above the table until kPressed_s, then 2 mm below it.
 constexpr double kAbove_m = 0.03, kBelow_m = -0.002, kPressed_s = 0.2;
 
-// The force at the device's side, over time: from each moment on until the next. Of several at one moment the
-// last counts.
+// The force at the device's side over time, from each moment to the next. If there are several at one moment,
+// the last counts.
 struct ForceOverTime {
   struct Piece {
     std::int64_t from_ns;
@@ -49,7 +49,8 @@ struct ForceOverTime {
       if (piece.from_ns > from_ns && piece.from_ns < to_ns) max_N = std::max(max_N, at(piece.from_ns));
     return max_N;
   }
-  // The moment from which on there is none, after one with.
+  // Returns the moment from which on there is no force any more. Returns -1 if there was no force, or if it
+  // has not ended.
   std::int64_t gone_ns() const {
     std::int64_t gone_ns = -1;
     bool has_force = false;

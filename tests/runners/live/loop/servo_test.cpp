@@ -1,4 +1,4 @@
-// The tick of the live loop by itself, with a device that a test scripts, on a simulated clock.
+// The tick of the live loop alone, with a scripted device, on a simulated clock.
 #include "runners/live/loop/servo.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr double kRate_hz = 1000, kStall_s = 0.01, kTick_s = 1e-3;
 constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
-// A tick, a pause of a millisecond, and so on, until it is told to stop or has done so many.
+// Runs a tick and pauses for a millisecond, again and again, until it is stopped or has run max_ticks.
 class ScriptedDevice final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;
@@ -79,7 +79,7 @@ class ServoTest : public testing::Test {
     clock_.sleep_s(0.05);
     clock_.cancel(watch);
   }
-  // Before the n-th reading ends.
+  // Called before the n-th reading ends.
   void in_read(int number, std::function<DeviceFault()> what) {
     device_.on_read = [number, what = std::move(what), calls = 0]() mutable {
       return ++calls == number ? what() : DeviceFault{};
@@ -121,12 +121,12 @@ using Numbers = std::vector<std::int64_t>;
 
 TEST_F(ServoTest, TicksAreNumberedByTheClock) {
   device_.max_ticks = 5;
-  in_read(3, [&] { return hang(0.0035); });  // it begins at 2 ms, the next one at 6.5
+  in_read(3, [&] { return hang(0.0035); });  // it begins at 2 ms, the next one at 6.5 ms
   run();
   EXPECT_EQ(numbers(), (Numbers{0, 1, 2, 7, 8}));
 }
 
-// A recording of it would not be the same run again.
+// A recording of such a run could not be replayed as the same run.
 TEST_F(ServoTest, ATickThatHungWhileTheDeviceWasReadIsNotBeforeTheFrameItTakes) {
   device_.max_ticks = 5;
   in_read(3, [&] {
@@ -138,7 +138,7 @@ TEST_F(ServoTest, ATickThatHungWhileTheDeviceWasReadIsNotBeforeTheFrameItTakes) 
   EXPECT_EQ(numbers(), (Numbers{0, 1, 32, 33, 34}));
 }
 
-TEST_F(ServoTest, TimesOfATick) {
+TEST_F(ServoTest, RecordsTheTimesOfATick) {
   device_.max_ticks = 3;
   in_read(2, [&] {
     send_frame(0.25e-3);
@@ -168,7 +168,7 @@ TEST_F(ServoTest, AnEndIsNoStall) {
   EXPECT_EQ(device_.released_ms, (Numbers{50}));
 }
 
-// Looked at every 2 ms: 10 ms have passed at 12 ms, and more than that at 14 ms.
+// The watch checks every 2 ms: 10 ms have passed at 12 ms, and more than that at 14 ms.
 TEST_F(ServoTest, AHangingReadIsAStallAndTheNextTickHoldsAgain) {
   device_.max_ticks = 5;
   in_read(3, [&] { return hang(0.060); });
@@ -215,8 +215,8 @@ TEST_F(ServoTest, ARefusedForceDoesNotCountAsWritten) {
   EXPECT_EQ(ticks[2].gate, GateState::latched);
 }
 
-// The fault is recognised by its text, not by the text's address: an adapter in a library of its own has its
-// own copy.
+// The fault is recognised by its text, not by the text's address, because an adapter in a library of its own
+// has its own copy.
 TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
   const std::string said = kReleased.what;
   in_read(3, [&] { return DeviceFault{said.c_str()}; });
@@ -243,7 +243,7 @@ TEST_F(ServoTest, TheEndOfItsTimeEndsIt) {
   EXPECT_EQ(device_.released_ms, (Numbers{4}));
 }
 
-TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
+TEST_F(ServoTest, AnExceptionReleasesTheDevice) {
   renderer_.on_step = [&](int before) {
     if (before == 50) throw std::runtime_error("a renderer breaks its contract");
   };
@@ -274,7 +274,7 @@ TEST_F(ServoTest, AnExceptionWithoutATextLetsTheDeviceGo) {
   EXPECT_EQ(device_.released_ms.front(), 0);
 }
 
-TEST_F(ServoTest, AStepWithoutMemoryLetsTheDeviceGo) {
+TEST_F(ServoTest, AStepWithoutMemoryReleasesTheDevice) {
   renderer_.on_step = [&](int before) {
     if (before == 50) throw std::bad_alloc();
   };
@@ -285,8 +285,8 @@ TEST_F(ServoTest, AStepWithoutMemoryLetsTheDeviceGo) {
   EXPECT_EQ(device_.released_ms, (Numbers{50}));
 }
 
-// A command that took longer than 4 ms to render is old: the force is gone in the tick that writes it, and
-// begins anew only where the command is small.
+// A command that took longer than 4 ms to render is too old. The force ends in the tick that writes it, and
+// begins anew only when the command is small.
 TEST_F(ServoTest, AnOldCommandIsNotWritten) {
   limits_.ramp_s = 0, limits_.max_command_age_s = 0.004;
   renderer_.on_step = [&](int before) {

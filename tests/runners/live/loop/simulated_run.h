@@ -41,8 +41,8 @@ class SimulatedRun {
   LiveOptions options;
   const std::vector<Told>& told() const { return told_; }
 
-  // Runs until its duration, its stop or a failure ends it. The work that other threads do in run_live() is
-  // done here in the sleeps of the loop, before a tick of the same moment.
+  // Runs until its duration, its stop or a failure ends it. The sleeps of the loop do the work that other
+  // threads do in run_live(), before a tick of the same moment.
   LiveResult run() {
     LiveParts parts(experiment_, options, clock_, open_device_(experiment_, clock_),
                     open_source_(experiment_, clock_));

@@ -1,5 +1,5 @@
-// The common contract of the adapters of depth cameras' libraries, tested with test doubles of the libraries
-// on a simulated clock.
+// The contract that the adapters of all depth cameras' libraries fulfil, tested with test doubles of the
+// libraries on a simulated clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ class DepthLibraryContract : public testing::TestWithParam<const DepthLibrary*> 
     EXPECT_TRUE(camera_->misuse().empty()) << camera_->misuse().front();
     EXPECT_FALSE(camera_->is_started());
   }
-  // The points of a frame lie on the plane: their depth is rounded by the camera, and once more where its
-  // lens distorts.
+  // The points of a frame lie on the plane. The camera rounds their depth once, and the undistortion rounds
+  // it again if the lens distorts.
   void expect_plane(const SensorFrame& frame, const SensorView& view) {
     const PointCloud cloud = cloud_of(frame, view, RigidTransform::Identity());
     const double tolerance_m = (is_k4a() ? 1.1 : 0.51) * view.metres_per_unit;
@@ -73,7 +73,7 @@ TEST_P(DepthLibraryContract, ShowsWhatTheCameraSees) {
   }
 }
 
-// Frame n is there n / 30 s after the start. It is taken within a millisecond, and the stamps are even.
+// Frame n arrives n / 30 s after the start. It is taken within a millisecond, and the stamps are even.
 TEST_P(DepthLibraryContract, TimesAreOfTheCamerasClock) {
   const auto source = open();
   const double start_s = clock_.now_s();
@@ -90,7 +90,7 @@ TEST_P(DepthLibraryContract, TimesAreOfTheCamerasClock) {
   }
 }
 
-TEST_P(DepthLibraryContract, RowsWithGaps) {
+TEST_P(DepthLibraryContract, ReadsRowsWithGaps) {
   camera_->state.row_gap_bytes = 46;
   const auto source = open();
   SensorFrame frame;
@@ -98,8 +98,8 @@ TEST_P(DepthLibraryContract, RowsWithGaps) {
   expect_plane(frame, source->view());
 }
 
-// Every seventh pixel, in a pattern without rows or columns. Where the lens distorts, a ray is given the
-// depth of the pixel that is nearest to it: of as many rays, but for the image's border.
+// Every seventh pixel is a hole, in a pattern without rows or columns. If the lens distorts, a ray gets the
+// depth of its nearest pixel, so about as many rays are holes, except at the image's border.
 TEST_P(DepthLibraryContract, APixelWithoutAMeasurementIsNoPoint) {
   camera_->state.hole_every = 7;
   const auto source = open();
@@ -126,7 +126,7 @@ TEST_P(DepthLibraryContract, LateReaderGetsTheNewestFrame) {
   EXPECT_EQ(source->next(frame, 0), SensorState::waiting);
 }
 
-TEST_P(DepthLibraryContract, CameraThatSendsNothingMore) {
+TEST_P(DepthLibraryContract, ACameraThatStopsSendingIsWaitedForAndNoFailure) {
   camera_->state.silent_after = 2;
   const auto source = open();
   SensorFrame frame;
@@ -139,7 +139,7 @@ TEST_P(DepthLibraryContract, CameraThatSendsNothingMore) {
   EXPECT_EQ(source->failure(), "");
 }
 
-TEST_P(DepthLibraryContract, CameraThatIsUnplugged) {
+TEST_P(DepthLibraryContract, AnUnpluggedCameraIsReported) {
   camera_->state.lost_after = 2;
   const auto source = open();
   SensorFrame frame;
@@ -152,7 +152,7 @@ TEST_P(DepthLibraryContract, CameraThatIsUnplugged) {
   EXPECT_LT(clock_.now_s() - start_s, 0.2);
 }
 
-TEST_P(DepthLibraryContract, ImagesOfAnotherSize) {
+TEST_P(DepthLibraryContract, ImagesOfAnotherSizeAreRefused) {
   camera_->state.missing_rows = 2;
   const auto source = open();
   SensorFrame frame;
@@ -161,8 +161,8 @@ TEST_P(DepthLibraryContract, ImagesOfAnotherSize) {
   EXPECT_HAS(source->failure(), ": expected those of the camera's mode");
 }
 
-// A frame that the camera sends twice is none; where its clock begins anew, frames go on.
-TEST_P(DepthLibraryContract, FramesThatRepeatOrGoBackInTime) {
+// A frame that the camera sends twice is dropped. Frames continue when the camera's clock begins anew.
+TEST_P(DepthLibraryContract, RepeatedFramesAreDroppedAndAClockMayBeginAnew) {
   camera_->state.stamp_s = [](int number) {
     return number == 3 ? 5 + 2 / 30.0 : (number < 6 ? 5 : -0.1) + number / 30.0;
   };
@@ -196,7 +196,7 @@ TEST_P(DepthLibraryContract, FramesWithoutDepthArePassedOver) {
   EXPECT_EQ(frame.number, 3);
 }
 
-TEST_P(DepthLibraryContract, CamerasBySerialNumber) {
+TEST_P(DepthLibraryContract, FindsCamerasBySerialNumber) {
   for (const char* serial : {"000123", "CL2F"}) {
     const auto source = library().open(serial + address(), clock_);
     SensorFrame frame;
@@ -206,20 +206,20 @@ TEST_P(DepthLibraryContract, CamerasBySerialNumber) {
              "no camera has this serial number: expected 000123, CL2F");
 }
 
-TEST_P(DepthLibraryContract, NoCamera) {
+TEST_P(DepthLibraryContract, RefusesIfThereIsNoCamera) {
   camera_->state.serials.clear();
   EXPECT_HAS(refusal([&] { open(); }), ": no camera is plugged in: expected one ");
   EXPECT_FALSE(library().availability().found);
   EXPECT_HAS(library().availability().detail, ": no camera is plugged in");
 }
 
-TEST_P(DepthLibraryContract, CamerasThatAreThere) {
+TEST_P(DepthLibraryContract, NamesTheCamerasThatAreThere) {
   EXPECT_TRUE(library().availability().found);
   EXPECT_HAS(library().availability().detail, std::string(library().double_file));
   EXPECT_HAS(library().availability().detail, is_k4a() ? ": 2 cameras" : " (2.56.5): 000123, CL2F");
 }
 
-TEST_P(DepthLibraryContract, CameraOfAnotherProgram) {
+TEST_P(DepthLibraryContract, RefusesACameraOfAnotherProgram) {
   camera_->state.held_by_others = 0;
   EXPECT_HAS(refusal([&] { open(); }), "another program may ");
 }
@@ -227,7 +227,7 @@ TEST_P(DepthLibraryContract, CameraOfAnotherProgram) {
 TEST_P(DepthLibraryContract, AbsentLibraryIsNamedWithTheVariable) {
   unsetenv(library().variable);
   std::string message = refusal([&] { open(); });
-  if (!has_loaded(library().library)) {  // it may be installed here
+  if (!has_loaded(library().library)) {  // the library may be installed here
     EXPECT_HAS(message, std::string(library().library) + ": cannot be loaded (" + library().library + ", ");
     EXPECT_HAS(message, library().variable);
     EXPECT_EQ(library().availability().detail, message);
@@ -249,7 +249,7 @@ TEST_P(DepthLibraryContract, AnotherLibraryIsRefused) {
   EXPECT_EQ(library().availability().detail, message);
 }
 
-TEST_P(DepthLibraryContract, ClosedAndOpenedAgain) {
+TEST_P(DepthLibraryContract, CanBeClosedAndOpenedAgain) {
   for (int frames = 0; frames < 4; ++frames) {
     const auto source = open();
     SensorFrame frame;
@@ -257,7 +257,7 @@ TEST_P(DepthLibraryContract, ClosedAndOpenedAgain) {
   }
 }
 
-// Calls that cannot fail, or whose failure costs a frame and not the camera.
+// Calls that cannot fail, or whose failure costs a frame but not the camera.
 bool may_be_silent(const std::string& call) {
   for (const char* part : {"delete_", "release", "_stop", "_close"})
     if (call.find(part) != std::string::npos) return true;
@@ -265,7 +265,7 @@ bool may_be_silent(const std::string& call) {
          call == "k4a_image_get_device_timestamp_usec";
 }
 
-// Opens, takes three frames and closes; the first problem that is told.
+// Opens the camera, takes three frames and closes it. Returns the first problem that is reported.
 std::string problem_of_a_run(const DepthLibrary& library, const std::string& address, SimulatedClock& clock) {
   try {
     const auto source = library.open(address, clock);

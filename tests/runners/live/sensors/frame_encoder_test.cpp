@@ -1,4 +1,4 @@
-// Frames of scenarios as one sensor sends them: the same points again, or a refusal that names the frame.
+// Frames of scenarios as one sensor sends them: decoding gives the same points, or a refusal names the frame.
 #include "runners/live/sensors/frame_encoder.h"
 
 #include <gtest/gtest.h>
@@ -156,7 +156,7 @@ TEST(FrameEncoder, SendsColoursIfTheFirstFrameHasSome) {
   }
 }
 
-// A rule by hue finds nothing in a frame without colours: that would leave a region out.
+// A rule by hue finds nothing in a frame without colours, which would leave a region out.
 TEST(FrameEncoder, RefusesAFrameThatTheRulesCannotUse) {
   PointCloud coloured = wall(0.4);
   coloured.colour.assign(coloured.size(), 0x123456);
@@ -188,7 +188,7 @@ TEST(FrameEncoder, AFrameWithoutMeasuredPointsFitsEveryView) {
   }
 }
 
-// A lens that bends the rays by up to 3 px: as an image, its points would be elsewhere.
+// A lens bends the rays by up to 3 px. The points of a pinhole image would be at other positions.
 TEST(FrameEncoder, SendsAnImageThatIsNoPinholesAsPoints) {
   PointCloud bent = wall(0.4);
   for (std::size_t i = 0; i < bent.size(); ++i) bent.x[i] += 0.4 / 20 * 3 * static_cast<double>(i) / 192;

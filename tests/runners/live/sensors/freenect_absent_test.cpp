@@ -1,4 +1,4 @@
-// The adapter on the real libfreenect where no Kinect is plugged in.
+// The adapter on the real libfreenect without a Kinect plugged in.
 #include <gtest/gtest.h>
 
 #include "runners/live/devices/steady_clock.h"

@@ -1,4 +1,4 @@
-// The adapter on fakenect, the library that libfreenect ships to play recordings in its own place.
+// The adapter on fakenect, the library that libfreenect ships to play recordings instead of a Kinect.
 #include "runners/live/sensors/freenect_camera.h"
 
 #include <gtest/gtest.h>
@@ -18,15 +18,15 @@ namespace {
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
 constexpr double kStampPeriod_s = 4294967296.0 / 60e6;  // period after which the stamps begin anew
 
-// Value that the sensor measures: 11 bits, 2047 if it measures nothing. The first pixel encodes the frame's
-// number.
+// The value that the sensor measures: 11 bits, 2047 if it measures nothing. The first pixel encodes the
+// frame's number.
 int shift_at(int number, int u, int v) {
   if (u == 0 && v == 0) return 600 + 20 * number;
   return (7 * u + 13 * v + 31 * number) % 2048;
 }
 
-// The metres of http://openkinect.org/wiki/Imaging_Information are a fit; this is the triangulation that it
-// fits.
+// The metres of http://openkinect.org/wiki/Imaging_Information are a fit. The reference is the triangulation
+// that they fit.
 constexpr double kStep_mm = 1.042 / 4, kBase_mm = 75, kReference_mm = 1200;
 double triangulated_mm(int shift) {
   return kReference_mm * kBase_mm / (kBase_mm - (shift - 800 - 4 * 0.375) * kStep_mm);
@@ -50,8 +50,8 @@ int number_in(const SensorFrame& frame) {
   return -1;
 }
 
-// Time of a frame. fakenect-record writes it into the name of the file, together with the sensor's stamp. The
-// stamps overflow before frame 3, and a second passes before the last frame.
+// Time of a frame. The program fakenect-record writes it into the name of the file, together with the
+// sensor's stamp. The stamps overflow before frame 3, and a second passes before the last frame.
 double taken_s(int number) {
   return 100 + number / 30.0 + (number == kFrames - 1 ? 1 : 0);
 }
@@ -70,7 +70,7 @@ void write_recording(const TestFolder& folder) {
   folder.write("INDEX.txt", index);
 }
 
-// Clock that reports the times at which frames arrive. The adapter reads it once per frame, and fakenect
+// A clock that reports the times at which frames arrive. The adapter reads it once per frame, and fakenect
 // skips none, so all frames are as punctual as in the recording.
 class ArrivalClock final : public Clock {
  public:
@@ -90,18 +90,19 @@ class FreenectCamera : public testing::Test {
   }
 };
 
-TEST_F(FreenectCamera, Depths) {
+TEST_F(FreenectCamera, ComputesTheDepths) {
   EXPECT_EQ(depth_of(2047), 0);
   EXPECT_EQ(depth_of(1100), 0);
-  // Depths from 0.7 to 1.8 m agree within one step of the shift, to which the readings of a fit are rounded.
+  // The depths from 0.7 to 1.8 m agree within one step of the shift, to which the readings of a fit are
+  // rounded.
   for (int shift = 600; shift <= 900; shift += 50) {
     const double z_mm = triangulated_mm(shift), step_mm = z_mm * z_mm * kStep_mm / (kReference_mm * kBase_mm);
     EXPECT_NEAR(z_mm, 123.6 * std::tan(shift / 2842.5 + 1.1863), step_mm) << shift;
   }
 }
 
-// One test: fakenect keeps its file open until the program ends, and a second camera goes on where the first
-// one was closed.
+// This is one test because fakenect keeps its file open until the program ends, and a second camera continues
+// where the first one was closed.
 TEST_F(FreenectCamera, PlaysARecording) {
   const TestFolder folder("freenect_camera_test");
   write_recording(folder);
@@ -139,8 +140,8 @@ TEST_F(FreenectCamera, PlaysARecording) {
     last = number, last_s = frame.captured_s;
   }
   EXPECT_EQ(last, kFrames - 1);
-  EXPECT_GE(seen, 2);    // a reader that is late gets the newest
-  EXPECT_GE(waited, 1);  // a hundred times for the last
+  EXPECT_GE(seen, 2);    // a late reader receives the newest
+  EXPECT_GE(waited, 1);  // waits for the last frame about a hundred times
   EXPECT_EQ(state, SensorState::failed);
   EXPECT_HAS(source->failure(), "freenect:0: no more frames (error -1 of the library): ");
   EXPECT_HAS(source->failure(), "a recording of fakenect has ended");

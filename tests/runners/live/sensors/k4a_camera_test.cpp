@@ -1,4 +1,5 @@
-// The adapter of the k4a interface beside what all adapters of depth libraries promise, with a test double.
+// The adapter of the k4a interface, with a test double: what it does beyond the contract of all adapters of
+// depth libraries.
 #include "runners/live/sensors/k4a_camera.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ struct ModeInWords {
   double rate_hz;
 };
 
-TEST_F(K4aCamera, Modes) {
+TEST_F(K4aCamera, HasItsModes) {
   for (const ModeInWords& mode :
        {ModeInWords{"", 640, 576, 30}, ModeInWords{"?nfov", 640, 576, 30},
         ModeInWords{"1?nfov-binned", 320, 288, 30}, ModeInWords{"0?wfov-binned", 512, 512, 30},
@@ -38,7 +39,7 @@ TEST_F(K4aCamera, Modes) {
     const auto source = open_k4a(mode.address, clock_);
     EXPECT_EQ(source->view().camera.width, mode.width);
     EXPECT_EQ(source->view().camera.height, mode.height);
-    // The library counts in floats.
+    // The library computes in floats.
     EXPECT_NEAR(source->view().camera.fx, 0.8 * mode.width, 1e-3);
     EXPECT_NEAR(source->view().camera.cy, 0.5 * mode.height, 1e-3);
     EXPECT_EQ(source->view().frame_rate_hz, mode.rate_hz);
@@ -71,21 +72,21 @@ TEST_F(K4aCamera, CamerasAreNumbered) {
   EXPECT_NO_THROW(open_k4a("CL2F?nfov-binned", clock_));
 }
 
-// More than a machine has ports.
-TEST_F(K4aCamera, CountsThatAreNone) {
+// More cameras than a machine has ports.
+TEST_F(K4aCamera, RefusesInvalidCounts) {
   camera_->state.serials.assign(100000, "x");
   EXPECT_HAS(refusal([&] { open_k4a("0", clock_); }), "k4a:0: no camera is plugged in");
   EXPECT_FALSE(k4a_availability().found);
 }
 
-TEST_F(K4aCamera, SerialNumbersThatDoNotFit) {
+TEST_F(K4aCamera, RefusesSerialNumbersThatDoNotFit) {
   camera_->state.serials = {std::string(1000, '7'), "CL2F"};
   EXPECT_NO_THROW(open_k4a("CL2F?nfov-binned", clock_));
   EXPECT_HAS(refusal([&] { open_k4a("123", clock_); }), "expected one without serial number, CL2F");
 }
 
-// The reason is the library's first line; those that follow tell who asked for it.
-TEST_F(K4aCamera, TheLibrarysLogSaysWhy) {
+// The reason is the library's first line. The lines after it state which call asked for it.
+TEST_F(K4aCamera, TheReasonIsThatOfTheLibrarysLog) {
   camera_->state.fail_name = "k4a_device_start_cameras";
   EXPECT_HAS(
       refusal([&] { open_k4a("", clock_); }),
@@ -104,14 +105,14 @@ TEST_F(K4aCamera, TheLibrarysLogSaysWhy) {
       "k4a:?nfov-binned: was disconnected, or its depth engine has stopped (the library says: usb device gone)");
 }
 
-TEST_F(K4aCamera, CalibrationsThatCannotBeUsed) {
+TEST_F(K4aCamera, RefusesUnusableCalibrations) {
   camera_->state.fail_name = "k4a_calibration_2d_to_3d";
   EXPECT_HAS(refusal([&] { open_k4a("", clock_); }), "k4a: has no calibration that can be used");
   camera_->state.fail_name = "k4a_calibration_3d_to_2d";
   EXPECT_HAS(refusal([&] { open_k4a("", clock_); }), "k4a: has a calibration that contradicts itself");
 }
 
-TEST_F(K4aCamera, FramesThatAreNotDepth) {
+TEST_F(K4aCamera, RefusesFramesWithoutDepth) {
   for (const int missing : {1, 100, 320 * 288 * 2}) {
     camera_->state.missing_bytes = missing;
     const auto source = open_k4a("?nfov-binned", clock_);
@@ -129,7 +130,7 @@ TEST_F(K4aCamera, FramesThatAreNotDepth) {
   EXPECT_HAS(source->failure(), " bytes of format 5: expected");
 }
 
-// The camera does not count its frames; its stamps tell how many are missing.
+// The camera does not count its frames, but its stamps show how many are missing.
 TEST_F(K4aCamera, NumbersFollowTheStamps) {
   camera_->state.stamp_s = [](int number) { return 100 + (number >= 3 ? number + 4 : number) / 30.0; };
   const auto source = open_k4a("?nfov-binned", clock_);
@@ -142,8 +143,8 @@ TEST_F(K4aCamera, NumbersFollowTheStamps) {
   EXPECT_EQ(numbers, (std::vector<int>{1, 2, 7, 8}));
 }
 
-// The wide mode: corners that the lens does not see, and a field that the pinhole image keeps.
-TEST_F(K4aCamera, WideLens) {
+// The wide mode: the lens does not see the corners, and the pinhole image keeps the field of view.
+TEST_F(K4aCamera, UndistortsAWideLens) {
   camera_->state.lens = {.fx = 252,
                          .fy = 252.3,
                          .cx = 258.6,

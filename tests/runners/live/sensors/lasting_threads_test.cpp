@@ -30,8 +30,8 @@ TEST(LastingThread, ThrowsWhatTheWorkThrowsAndContinues) {
   EXPECT_EQ(done, 1);
 }
 
-// The threads of those who gave theirs back are used again; none ends.
-TEST(LastingThread, ThereAreAsManyAsAreInUseAtTheSameTime) {
+// Threads that were given back are used again, and none ends.
+TEST(LastingThread, FreeThreadsAreUsedAgain) {
   std::set<std::thread::id> used;
   for (int round = 0; round < 10; ++round) {
     const std::vector three = {lasting_thread(), lasting_thread(), lasting_thread()};

@@ -43,8 +43,8 @@ int number_in(const SensorFrame& frame) {
   return frame.depth.empty() ? -1 : frame.depth[0];
 }
 
-// Compared as a whole: the message of a mismatch would be long. A frame may lack its colour, where the reader
-// came between colour and depth of a later one.
+// Images are compared as a whole, because the message of a mismatch would be long. A frame may lack its
+// colour if the reader came between colour and depth of a later one.
 void expect_pattern(const SensorFrame& frame) {
   EXPECT_TRUE(frame.depth == depth_image(number_in(frame))) << "depth of frame " << number_in(frame);
   if (frame.colour.empty()) return;
@@ -53,7 +53,8 @@ void expect_pattern(const SensorFrame& frame) {
   EXPECT_TRUE(frame.colour == colour_image(colour_number)) << "colour of frame " << colour_number;
 }
 
-// Takes frames until there are no more or there are so many; each is later than the one before.
+// Takes frames until there are no more or the wanted number is reached. Each must be later than the one
+// before.
 SensorState take(DepthSource& source, int max, std::vector<SensorFrame>& frames) {
   while (static_cast<int>(frames.size()) < max) {
     SensorFrame frame;
@@ -96,8 +97,8 @@ TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
       // The camera sends frame n no earlier, and take() has compared with the arrival.
       EXPECT_GT(frame.captured_s, opened_s + frame.number / 30.0 - 1e-3);
     }
-    EXPECT_LT(without_colour, 20);  // CameraThatSendsNothingMore has one that must have its colour
-    // Stamps are as even as the sensor's, apart from frames before the first punctual one, which seem too
+    EXPECT_LT(without_colour, 20);  // CameraThatSendsNothingMore has a frame that must have its colour
+    // The stamps are as even as the sensor's, apart from frames before the first punctual one, which seem too
     // late.
     const SensorFrame &a = frames[18], &b = frames[19];
     EXPECT_LT(b.captured_s - a.captured_s, (b.number - a.number) / 30.0 + 1e-3);
@@ -112,7 +113,7 @@ TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
   for (const SensorFrame& frame : frames) expect_pattern(frame);
 }
 
-TEST_F(Openni2Camera, NoColourWhereDepthIsNotRegisteredToIt) {
+TEST_F(Openni2Camera, HasNoColourIfDepthIsNotRegistered) {
   report_line("unregistered");
   const auto source = open_openni2("any", steady_clock());
   EXPECT_FALSE(source->view().has_colour);
@@ -136,7 +137,7 @@ TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
   expect_pattern(frames[3]);
 }
 
-TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
+TEST_F(Openni2Camera, ACameraThatStopsSendingTimesOut) {
   report_line("stop_after=20");
   const auto source = open_openni2("any", steady_clock());
   ASSERT_TRUE(wait_until([] { return sent_frames() == 20; }));
@@ -152,18 +153,18 @@ TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
   EXPECT_EQ(source->failure(), "");
 }
 
-TEST_F(Openni2Camera, CameraThatIsUnplugged) {
+TEST_F(Openni2Camera, AnUnpluggedCameraIsReported) {
   const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
   unplug();
-  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);  // told, not timed out
+  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);  // reported, not timed out
   EXPECT_EQ(source->failure(), "openni2: was disconnected");
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
 }
 
-TEST_F(Openni2Camera, FrameOfAnotherSize) {
+TEST_F(Openni2Camera, AFrameOfAnotherSizeIsRefused) {
   report_line("small_after=20");
   const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
@@ -172,7 +173,7 @@ TEST_F(Openni2Camera, FrameOfAnotherSize) {
   EXPECT_HAS(source->failure(), " is 640 x 240 pixels in 307200 bytes: expected those of the camera's mode");
 }
 
-TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
+TEST_F(Openni2Camera, CanBeClosedAndOpenedAgain) {
   for (int i = 0; i < 5; ++i) {
     const auto source = open_openni2("any", steady_clock());
     std::vector<SensorFrame> frames;
@@ -181,7 +182,7 @@ TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
   }
 }
 
-TEST_F(Openni2Camera, AbsentCameras) {
+TEST_F(Openni2Camera, AbsentCamerasAreRefused) {
   const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5", steady_clock()); });
   EXPECT_HAS(unknown, "1d27/0601@1/5: neither a file nor a camera that a driver in ");
   EXPECT_HAS(unknown, "/OpenNI2/Drivers knows: expected any, virtual-camera");
@@ -210,7 +211,7 @@ class Openni2Recording : public Openni2Camera {
   std::string file_;
 };
 
-// The camera shows a mirrored image until it is told not to, and the recorder does not tell it.
+// The camera shows a mirrored image until the mirroring is turned off, and the recorder does not turn it off.
 TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
   const double start_s = steady_clock().now_s();
   const auto source = open_openni2(file_, steady_clock());
@@ -240,7 +241,7 @@ TEST_F(Openni2Recording, IsNoCamera) {
              "missing: neither a file nor a camera");
 }
 
-TEST_F(Openni2Recording, ClosedInTheMiddle) {
+TEST_F(Openni2Recording, CanBeClosedInTheMiddle) {
   for (int i = 0; i < 10; ++i) {
     const auto source = open_openni2(file_, steady_clock());
     std::vector<SensorFrame> frames;
@@ -252,7 +253,7 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
   const std::string whole = bytes_of(file_);
   std::string garbage(100000, ' ');
   for (std::size_t i = 0; i < garbage.size(); ++i) garbage[i] = static_cast<char>(i * i / 7);
-  // The recorder leaves zeros behind its last record, so more than half has to go.
+  // The recorder leaves zeros behind its last record, so more than half must be removed.
   for (const std::string& bytes :
        {std::string(), std::string("NI10"), garbage, whole.substr(0, 4) + garbage, whole.substr(0, 100),
         whole.substr(0, 1000), whole.substr(0, whole.size() / 3)}) {
@@ -276,18 +277,18 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
   ::_exit(0);
 }
 
-// The library frees a stream that is closed while the thread of its player may still look for it in the list
-// of streams. Here that thread looks all the time, and about one close in a hundred on a busy machine crashes
-// in libOniFile.
+// The library frees a stream that is closed while the thread of its player may still search for it in the
+// list of streams. That thread searches all the time here, and about one close in a hundred on a busy machine
+// crashes in libOniFile.
 bool has_ended_or_crashed_at_the_close(int status) {
   return testing::ExitedWithCode(0)(status) || testing::KilledBySignal(SIGSEGV)(status);
 }
 
-// The player itself would look for the next frame for ever, or begin anew.
-TEST_F(Openni2Recording, FramesThatAreZeroed) {
+// The player itself would search for the next frame for ever, or begin anew.
+TEST_F(Openni2Recording, ZeroedFramesEndThePlayback) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   std::string bytes = bytes_of(file_);
-  const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // which frame begins where
+  const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // the table of where each frame begins
   ASSERT_NE(table, std::string::npos);
   std::fill(bytes.begin() + 5000, bytes.begin() + static_cast<std::ptrdiff_t>(table), '\0');
   const std::string file = folder_.write("zeroed.oni", bytes).string();
@@ -299,8 +300,8 @@ TEST_F(Openni2Recording, FramesThatAreZeroed) {
 }  // namespace remote_touch::openni2_camera_test
 
 #ifdef __SANITIZE_ADDRESS__
-// The library and its player leak. Drivers are unloaded before leaks are looked for: kept, they can be told
-// by their names.
+// The library and its player leak. Drivers are unloaded before the leak check, so they are kept loaded to be
+// recognised by their names.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOpenNI2.so\nleak:libOniFile.so\n";
 }

@@ -10,10 +10,10 @@ using Depth = std::vector<std::uint16_t>;
 using Colour = std::vector<std::uint32_t>;
 
 const CameraIntrinsics kCamera{3, 2, 1, 1, 1, 0.5};
-// Two rows of three pixels, and one that belongs to nobody behind each.
+// Two rows of three pixels, each followed by a pixel that does not belong to the image.
 const Depth kDriver{1, 2, 3, 99, 4, 5, 6, 99};
 
-TEST(PixelRows, DepthWithGapsAndMirrored) {
+TEST(PixelRows, ReadDepthWithGapsAndMirrored) {
   Depth depth{7};
   ASSERT_TRUE(copy_depth({kDriver.data(), 16, 3, 2, 8}, kCamera, depth));
   EXPECT_EQ(depth, (Depth{1, 2, 3, 4, 5, 6}));
@@ -31,7 +31,7 @@ TEST(PixelRows, ColourIsPacked) {
 }
 
 // The last row needs no gap behind it.
-TEST(PixelRows, JustEnoughBytes) {
+TEST(PixelRows, AcceptTheLeastNumberOfBytes) {
   Depth depth;
   EXPECT_TRUE(copy_depth({kDriver.data(), 14, 3, 2, 8}, kCamera, depth));
   EXPECT_FALSE(copy_depth({kDriver.data(), 13, 3, 2, 8}, kCamera, depth));

@@ -1,4 +1,5 @@
-// The adapter of librealsense beside what all adapters of depth libraries promise, with a test double.
+// The adapter of librealsense, with a test double: what it does beyond the contract of all adapters of depth
+// libraries.
 #include "runners/live/sensors/realsense_camera.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class RealSenseCamera : public testing::Test {
 };
 
 // A library refuses to work for another major version or a newer minor one.
-TEST_F(RealSenseCamera, VersionsOfTheLibrary) {
+TEST_F(RealSenseCamera, AcceptsTheVersionsOfTheLibrary) {
   for (const int version : {20000, 20203, 25000, 25605, 29999}) {
     camera_->state.version = version;
     EXPECT_NO_THROW(open_realsense("", clock_)) << version;
@@ -45,7 +46,7 @@ TEST_F(RealSenseCamera, VersionsOfTheLibrary) {
   }
 }
 
-TEST_F(RealSenseCamera, PinholeCameraAsItIs) {
+TEST_F(RealSenseCamera, KeepsAPinholeCamera) {
   const auto source = open_realsense("", clock_);
   EXPECT_EQ(source->view().camera.width, 640);
   EXPECT_EQ(source->view().camera.height, 480);
@@ -56,7 +57,7 @@ TEST_F(RealSenseCamera, PinholeCameraAsItIs) {
 }
 
 // The L515 has a unit of a quarter of a millimetre, the D405 one of a tenth.
-TEST_F(RealSenseCamera, UnitsOfTheCamera) {
+TEST_F(RealSenseCamera, UsesTheUnitOfTheCamera) {
   camera_->state.distance_m = 0.8;
   for (const double unit_m : {0.001, 0.00025, 0.0001}) {
     camera_->state.metres_per_unit = unit_m;
@@ -69,14 +70,14 @@ TEST_F(RealSenseCamera, UnitsOfTheCamera) {
   }
 }
 
-TEST_F(RealSenseCamera, UnitsThatAreNone) {
+TEST_F(RealSenseCamera, RefusesInvalidUnits) {
   for (const double unit_m : {0.0, -0.001, 2.0, static_cast<double>(NAN), HUGE_VAL}) {
     camera_->state.metres_per_unit = unit_m;
     EXPECT_HAS(refused(), "realsense: reports depth in units of ");
   }
 }
 
-TEST_F(RealSenseCamera, LensesThatDistort) {
+TEST_F(RealSenseCamera, UndistortsLenses) {
   for (const int model : {2, 4}) {
     camera_->reset();
     distort(model);
@@ -99,7 +100,7 @@ TEST_F(RealSenseCamera, LensesThatDistort) {
   }
 }
 
-TEST_F(RealSenseCamera, LensesThatAreNotKnown) {
+TEST_F(RealSenseCamera, RefusesUnknownLensModels) {
   for (const int model : {1, 3, 5, 77, -1}) {
     distort(model);
     EXPECT_HAS(refused(), "realsense: has a lens of model " + std::to_string(model) + ": expected ");
@@ -109,13 +110,13 @@ TEST_F(RealSenseCamera, LensesThatAreNotKnown) {
 }
 
 // Some versions of the library interpreted a lens model differently for points and for pixels.
-TEST_F(RealSenseCamera, LensThatContradictsItself) {
+TEST_F(RealSenseCamera, RefusesALensThatContradictsItself) {
   distort(2);
   camera_->state.fail_name = "rs2_deproject_pixel_to_point";
   EXPECT_HAS(refused(), "realsense: has a calibration that contradicts itself");
 }
 
-TEST_F(RealSenseCamera, OldLibraryDoesNotKnowLenses) {
+TEST_F(RealSenseCamera, AnOldLibraryWithoutLensesIsRefusedIfTheLensDistorts) {
   SimulatedClock clock;
   CameraInstalled old(kOldRealSense, &clock);
   old->state.version = 22700;
@@ -125,7 +126,7 @@ TEST_F(RealSenseCamera, OldLibraryDoesNotKnowLenses) {
   EXPECT_EQ(old->held(), 0u);
 }
 
-TEST_F(RealSenseCamera, ImagesThatAreNone) {
+TEST_F(RealSenseCamera, RefusesInvalidImages) {
   for (const auto& [fx, cx] :
        {std::pair(0.0, 320.0), std::pair(-500.0, 320.0), std::pair(static_cast<double>(NAN), 320.0),
         std::pair(HUGE_VAL, 320.0), std::pair(500.0, HUGE_VAL)}) {
@@ -134,14 +135,14 @@ TEST_F(RealSenseCamera, ImagesThatAreNone) {
   }
 }
 
-TEST_F(RealSenseCamera, CamerasWithoutDepth) {
+TEST_F(RealSenseCamera, RefusesCamerasWithoutDepth) {
   camera_->state.sends_depth = false;
   EXPECT_HAS(refused(), "realsense: sends no depth in 16 bits");
   camera_->state.sends_depth = true, camera_->state.has_depth_sensor = false;
   EXPECT_HAS(refused(), "realsense: has no depth sensor");
 }
 
-TEST_F(RealSenseCamera, DepthThatComesAlone) {
+TEST_F(RealSenseCamera, AcceptsDepthThatComesAlone) {
   camera_->state.is_alone = true;
   const auto source = open_realsense("", clock_);
   SensorFrame frame;
@@ -149,7 +150,7 @@ TEST_F(RealSenseCamera, DepthThatComesAlone) {
   EXPECT_EQ(frame.depth[0], 500);
 }
 
-TEST_F(RealSenseCamera, FramesThatAreTooShort) {
+TEST_F(RealSenseCamera, RefusesFramesThatAreTooShort) {
   camera_->state.missing_bytes = 1;
   const auto source = open_realsense("", clock_);
   SensorFrame frame;
@@ -158,7 +159,7 @@ TEST_F(RealSenseCamera, FramesThatAreTooShort) {
             "realsense: a frame is 640 x 480 pixels in 614399 bytes: expected those of the camera's mode");
 }
 
-TEST_F(RealSenseCamera, StampsThatAreNone) {
+TEST_F(RealSenseCamera, RefusesInvalidStamps) {
   for (const double stamp_s : {static_cast<double>(NAN), HUGE_VAL}) {
     camera_->state.stamp_s = [stamp_s](int) { return stamp_s; };
     const auto source = open_realsense("", clock_);
@@ -168,7 +169,7 @@ TEST_F(RealSenseCamera, StampsThatAreNone) {
   }
 }
 
-// The camera's own count, also where it jumps by more than an int holds.
+// Frames are numbered by the camera's own count, even if it jumps by more than an int holds.
 TEST_F(RealSenseCamera, NumbersFollowTheCount) {
   camera_->state.reported_number = [](int number) {
     return number == 1 ? 7 : number == 2 ? 8 : number == 3 ? 12 : 2000000000 + number;
@@ -183,15 +184,16 @@ TEST_F(RealSenseCamera, NumbersFollowTheCount) {
   EXPECT_EQ(numbers, (std::vector<int>{1, 2, 6, 7, 8}));
 }
 
-// A camera in recovery tells no serial number.
-TEST_F(RealSenseCamera, CameraWithoutSerialNumber) {
+// A camera in recovery mode reports no serial number.
+TEST_F(RealSenseCamera, AcceptsACameraWithoutSerialNumber) {
   camera_->state.serials = {"", "CL2F"};
   EXPECT_HAS(realsense_availability().detail, ": unknown, CL2F");
   EXPECT_NO_THROW(open_realsense("CL2F", clock_));
 }
 
-// While frames come it is not asked whether the camera is there; without them ten times a second.
-TEST_F(RealSenseCamera, LooksForItsCameraWhenNoFrameComes) {
+// The adapter does not check whether the camera is there while frames come. It checks ten times a second
+// otherwise.
+TEST_F(RealSenseCamera, ChecksForItsCameraWhenNoFrameComes) {
   camera_->state.silent_after = 5;
   const auto source = open_realsense("", clock_);
   SensorFrame frame;

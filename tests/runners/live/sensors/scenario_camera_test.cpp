@@ -14,7 +14,7 @@
 namespace remote_touch::scenario_camera_test {
 namespace {
 
-// Recorded by a host that was slow to start and got fewer frames than the sensor's rate.
+// A recording of a host that was slow to start and got fewer frames than the sensor's rate.
 class SlowRecording : public Scenario {
  public:
   static constexpr double kFirst_s = 0.12, kPeriod_s = 0.05;
@@ -59,7 +59,7 @@ class PosedRecording final : public SlowRecording {
   }
 };
 
-// The faults of a sensor do not hide where it is.
+// A sensor with faults still reports its pose.
 TEST(ReplaceableScenario, ReportsThePoseOfASensorWithFaults) {
   const auto sensor = std::make_shared<const FaultySensor>(std::make_unique<PosedRecording>(), SensorFaults{},
                                                            NoiseKey{1}, scenes::kernels());
@@ -68,12 +68,12 @@ TEST(ReplaceableScenario, ReportsThePoseOfASensorWithFaults) {
   EXPECT_EQ(scenario.sensor_pose()->translation(), Vec3(0, 0, 2));
 }
 
-// Depths are rounded to 0.1 mm, and lie on the ray of their pixel; the points of clouds are rounded to
+// Depths are rounded to 0.1 mm, and lie on the ray of their pixel. The points of clouds are rounded to
 // floats.
 TEST(ScenarioCamera, ShowsEveryScenarioOfTheCatalog) {
   for (const ScenarioEntry& entry : scenarios()) {
     const auto factory = entry.make();
-    if (!factory->inputs().empty()) continue;  // reads files: tested with those
+    if (!factory->inputs().empty()) continue;  // it reads files and is tested with those
     const auto scenario = factory->build(NoiseKey{7}, scenes::kernels());
     const PointCloud truth = scenario->cloud(0);
     SimulatedClock clock;

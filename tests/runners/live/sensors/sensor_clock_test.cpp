@@ -12,7 +12,7 @@ constexpr double kPeriod_s = 1.0 / 30;
 constexpr double kOffset_s = 1234.5;  // offset of the host's clock from the sensor's
 constexpr double kMinDelay_s = 0.02;
 
-// 20 ms and up to 10 ms of jitter, which is nothing in every seventh frame.
+// The delay is 20 ms and up to 10 ms of jitter, which is zero in every seventh frame.
 double delay_s(int frame) {
   return kMinDelay_s + 0.01 * ((frame * 3) % 7) / 6;
 }
@@ -44,7 +44,7 @@ TEST(SensorClock, FollowsAClockThatDrifts) {
   }
 }
 
-// The first frame waited for 0.1 s: the second would be older than it.
+// The first frame was delayed by 0.1 s, so the second would seem older.
 TEST(SensorClock, NeverTurnsFramesRound) {
   SensorClock clock;
   const double first_s = clock.captured_s(0, 10.1);
@@ -62,7 +62,7 @@ TEST(SensorClock, BeginsAnewWhenStampsGoBackOrStandStill) {
 }
 
 // The sensor sends no frame for ten minutes. The offset is then trusted no more than the drift allows.
-TEST(SensorClock, PauseOfTheSensor) {
+TEST(SensorClock, SurvivesAPauseOfTheSensor) {
   SensorClock clock;
   clock.captured_s(0, kOffset_s);
   EXPECT_NEAR(clock.captured_s(600, kOffset_s + 600.03), kOffset_s + 600.03, 1e-9);

@@ -42,7 +42,7 @@ class SensorTable : public testing::Test {
   SimulatedClock clock_;
 };
 
-// A pause of 5 s between the third frame and the fourth, there and back.
+// The pause of 5 s between the third frame and the fourth is kept, there and back.
 TEST_F(SensorTable, ARecordingIsPlayedAtTheTimesOfItsStamps) {
   folder_.write("depth.txt",
                 "100.000 depth/0.png\n100.033 depth/1.png\n100.067 depth/2.png\n105.100 depth/3.png\n");
@@ -59,8 +59,8 @@ TEST_F(SensorTable, ARecordingIsPlayedAtTheTimesOfItsStamps) {
   }
 }
 
-// Each live frame is the offline one, within half a unit along the longest ray: |(15.5 / 30, 11.5 / 30, 1)|
-// < 1.2.
+// Each live frame is the offline one, within half a unit along the longest ray: |(15.5 / 30, 11.5 / 30, 1)| <
+// 1.2.
 TEST_F(SensorTable, TheScenarioHasTheFramesOfASimulatedRun) {
   for (int i = 0; i < 3; ++i)
     write_image("depth/" + std::to_string(i) + ".png", static_cast<std::uint16_t>(7000 + i));

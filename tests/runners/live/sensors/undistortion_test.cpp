@@ -1,4 +1,4 @@
-// Depth images freed of the distortion of their lens, against closed forms.
+// Depth images without the distortion of their lens, against closed forms.
 #include "runners/live/sensors/undistortion.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Lens described(const CameraLens& lens) {
           [lens](const Vector2d& pixel) { return lens.ray_of(pixel); }};
 }
 
-// A lens that distorts as strongly as the Azure Kinect's in its wide mode; its corners see nothing.
+// A lens that distorts as strongly as the Azure Kinect's in its wide mode. Its corners see nothing.
 CameraLens wide_lens() {
   return {.width = 256,
           .height = 256,
@@ -34,7 +34,7 @@ CameraLens wide_lens() {
           .p2 = -2e-4,
           .max_radius = 1.7};
 }
-// A barrel, with the tangential part that a lens out of line has.
+// Barrel distortion, with the tangential part of a lens that is out of line.
 CameraLens narrow_lens() {
   return {.width = 320,
           .height = 240,
@@ -87,8 +87,8 @@ TEST(Undistortion, ChangesNothingForAPinholeCamera) {
   EXPECT_TRUE(depth == seen);
 }
 
-// The depth that a pixel of the result has to have on a surface: that of its own ray where the four pixels
-// around its place were seen. Elsewhere it is that of the pixel nearest to it.
+// The depth that a pixel of the result must have on a surface: that of its own ray if the four pixels around
+// its position were seen, otherwise that of the nearest pixel's ray.
 double expected_depth(const CameraLens& lens, const Vector2d& ray,
                       const std::function<double(const Vector2d&)>& depth_at) {
   const Vector2d place = *lens.pixel_of(ray);
@@ -101,7 +101,7 @@ double expected_depth(const CameraLens& lens, const Vector2d& ray,
 }
 
 // A plane has depth distance / (normal . ray). The camera rounds it, by half a unit at most, and so does the
-// result; between pixels it is nearly linear.
+// result. The depth is nearly linear between pixels.
 TEST(Undistortion, KeepsAPlane) {
   for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
     const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
@@ -135,7 +135,7 @@ TEST(Undistortion, KeepsTheFieldOfView) {
   }
 }
 
-// Two planes, one behind the other: all depths are those of one of them.
+// Two planes, one behind the other. All depths are those of one of them.
 TEST(Undistortion, PutsNoDepthBetweenTwoSurfaces) {
   const CameraLens lens = narrow_lens();
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
@@ -151,7 +151,7 @@ TEST(Undistortion, PutsNoDepthBetweenTwoSurfaces) {
 }
 
 // A missing pixel stays missing: the output pixels to which it is the nearest are missing, and no others.
-TEST(Undistortion, MissingPixels) {
+TEST(Undistortion, KeepsMissingPixels) {
   const CameraLens lens = narrow_lens();
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
   Image seen(static_cast<std::size_t>(lens.width * lens.height), 700), depth;
@@ -178,7 +178,7 @@ TEST(Undistortion, MissingPixels) {
   EXPECT_TRUE(depth == nothing);
 }
 
-TEST(Undistortion, LargestDepths) {
+TEST(Undistortion, KeepsTheLargestDepths) {
   const CameraLens lens = narrow_lens();
   const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
   Image depth;
@@ -186,7 +186,7 @@ TEST(Undistortion, LargestDepths) {
   for (const std::uint16_t z : depth) EXPECT_TRUE(z == 0 || z == 65535) << z;
 }
 
-TEST(Undistortion, CalibrationsThatCannotBeUsed) {
+TEST(Undistortion, RefusesUnusableCalibrations) {
   const CameraLens lens = narrow_lens();
   const Lens good = described(lens);
   const auto refused = [](int width, int height, const Lens& bad) {

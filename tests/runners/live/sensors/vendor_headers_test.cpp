@@ -1,5 +1,6 @@
-// This project's declarations of the depth cameras' libraries, compared with the vendors' own headers where
-// these are installed. No package of Debian has them: elsewhere nothing is compared, and the tests report so.
+// This project's declarations of the depth cameras' libraries, compared with the vendors' own headers if
+// these are installed. Debian has no package of them. If they are missing, nothing is compared, and the tests
+// report so.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -22,7 +23,7 @@
 namespace remote_touch::vendor_headers_test {
 namespace {
 
-// Passed in the same way: pointers, floating point and whole numbers of the same size.
+// True if both are passed in the same way: pointers, or floating point or whole numbers of the same size.
 template <class A, class B>
 constexpr bool is_passed_alike() {
   if constexpr (std::is_void_v<A> || std::is_void_v<B>)

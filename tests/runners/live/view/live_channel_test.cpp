@@ -36,7 +36,7 @@ std::string acknowledgement(std::uint32_t number) {
 
 class LiveChannelTest : public testing::Test {
  protected:
-  // The next message but the page's role, which live_pages_test.cpp is about.
+  // Returns the next message except the page's role, which live_pages_test.cpp tests.
   bool take_next(LiveChannel::Message& message) {
     while (channel_.next(message))
       if (message.bytes != role_message(PageRole::hand)) return true;
@@ -87,7 +87,7 @@ TEST_F(LiveChannelTest, SendsTheColumnsAndThenTheTicks) {
   EXPECT_EQ(number_at<double>(ticks.bytes, 16 + 8 * (2 * hip + 5)), 8);
 }
 
-// The renderer commands 19 N, the safety gate lets 5 N pass.
+// The renderer commands 19 N, and the safety gate lets 5 N pass.
 TEST_F(LiveChannelTest, SendsTheForceThatTheDeviceGets) {
   LiveTick limited = tick(1);
   limited.out.force_N = Vec3(0, 19, 0);
@@ -168,7 +168,7 @@ TEST_F(LiveChannelTest, APageThatAcknowledgesNothingGetsTwoMessages) {
 }
 
 // The page sleeps. The run keeps a bounded number of ticks and one frame for it.
-TEST_F(LiveChannelTest, ASlowPageLosesPictures) {
+TEST_F(LiveChannelTest, ASlowPageLosesFrames) {
   channel_.open();
   channel_.take(tick(0));
   next(), next();
@@ -231,7 +231,7 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
   EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
 }
 
-// Numbers and reasons come back as JSON, also to the page that is opened next.
+// The values and the reason of a refusal come back as JSON, also to the page that is opened next.
 TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
   const auto change = [&](double value) {
     std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
@@ -262,7 +262,7 @@ TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
   EXPECT_EQ(answer()["values"][3], 450);
 }
 
-// A page that is closed while its button is down.
+// The page is closed while its button is down.
 TEST_F(LiveChannelTest, ReleasesTheButtonWhenThePageCloses) {
   channel_.open();
   const std::uint32_t buttons = 1;

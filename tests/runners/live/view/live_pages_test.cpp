@@ -1,4 +1,4 @@
-// The pages of a live run: one has the hand, and all get the state of the run.
+// The pages of a live run: one has the hand, and all receive the state of the run.
 #include "runners/live/view/live_pages.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::string change_to(double value) {
 
 class LivePagesTest : public testing::Test {
  protected:
-  // The texts that wait for a page, without the columns, which come first.
+  // Returns the texts that wait for a page, except the columns, which come first.
   static std::vector<nlohmann::json> texts(LiveChannel& channel) {
     std::vector<nlohmann::json> list;
     for (LiveChannel::Message message; channel.next(message);)
@@ -103,7 +103,7 @@ TEST_F(LivePagesTest, MorePagesThanItsMaximumAreNotOpened) {
   EXPECT_EQ(texts(open("f")), std::vector{kWatches});
 }
 
-// A network that is lost for a moment closes no connection.
+// A network that fails for a moment closes no connection.
 TEST_F(LivePagesTest, AllPagesConnectAgainBeforeTheirOlderConnectionsAreClosed) {
   const std::vector<std::string> names = {"a", "b", "c", "d"};
   ASSERT_EQ(names.size(), LivePages::kMax);
@@ -132,7 +132,7 @@ TEST_F(LivePagesTest, EveryPageGetsChangedParameters) {
   EXPECT_TRUE(texts(second).empty()) << "nothing has changed";
 }
 
-TEST_F(LivePagesTest, EveryPageGetsWhatDoesNotWorkNow) {
+TEST_F(LivePagesTest, EveryPageReceivesThePresentFaults) {
   LiveChannel& first = open("a");
   texts(first);
   pages_.tell({"no frame for 0.2 s: the last cloud is still rendered", ""});
@@ -144,7 +144,8 @@ TEST_F(LivePagesTest, EveryPageGetsWhatDoesNotWorkNow) {
   EXPECT_EQ(texts(first).size(), 1u);
 }
 
-// Also before the first tick, and to a page that comes, or comes again, before the program ends.
+// The reason is sent even before the first tick, and to a page that connects, or connects again, before the
+// program ends.
 TEST_F(LivePagesTest, EveryPageGetsWhyTheRunHasEnded) {
   LiveChannel& first = *pages_.open("a");
   EXPECT_EQ(pages_.ended(), "");

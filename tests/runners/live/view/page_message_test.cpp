@@ -44,7 +44,7 @@ TEST(PageMessage, AnAcknowledgementIsRead) {
   EXPECT_EQ(std::get<PageAcknowledgement>(*message).number, 4000000000u);
 }
 
-TEST(PageMessage, PosesThatNoHandHasAreNone) {
+TEST(PageMessage, InvalidPosesAreRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
                    kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Vector4d straight(1, 0, 0, 0);
@@ -94,7 +94,7 @@ TEST(PageMessage, ChangesThatAreNotThereAreNone) {
   EXPECT_FALSE(page_message(changes(1, 1, 1)));
 }
 
-TEST(PageMessage, OtherLengthsKindsAndPaddingAreNone) {
+TEST(PageMessage, OtherLengthsKindsAndPaddingAreRefused) {
   const std::string whole = hand(Vec3::Zero(), {1, 0, 0, 0});
   ASSERT_TRUE(page_message(whole));
   for (std::size_t length = 0; length < whole.size(); ++length)
@@ -108,7 +108,7 @@ TEST(PageMessage, OtherLengthsKindsAndPaddingAreNone) {
   }
 }
 
-// Whatever comes, what is taken is a pose of a hand.
+// Every message that is accepted as a hand holds a valid pose.
 TEST(PageMessage, RandomBytesDoNoHarm) {
   std::mt19937 random(1);
   for (int i = 0; i < 200000; ++i) {

@@ -45,7 +45,7 @@ TEST(CsvFiles, WritesNamesHashesAndTexts) {
             "-1,2,\"two\nlines\"\n");
 }
 
-TEST(CsvFiles, OnlySomeRows) {
+TEST(CsvFiles, WritesOnlyTheGivenRows) {
   const Table table{"t", "", {numbers("a", {1, 2, 3, 4})}};
   EXPECT_EQ(csv_rows(table, 1, 3), "2\n3\n");
   EXPECT_EQ(csv_rows(table, 4, 4), "");

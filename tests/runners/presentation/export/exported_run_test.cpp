@@ -43,7 +43,7 @@ class ExportedRunTest : public testing::Test {
   Trace trace_;
 };
 
-// The points of the configuration, at the first tick after the frame came: 10.5 ms.
+// The points are those of the configuration, from the first tick after the frame arrives at 10.5 ms.
 TEST_F(ExportedRunTest, FramesAreThoseOfTheRun) {
   const Hdf5Reader result(store("remote-touch run a.json", {}));
   NewFiles files;
@@ -108,7 +108,7 @@ TEST_F(ExportedRunTest, AMissingColumnIsRefused) {
   EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
 }
 
-TEST_F(ExportedRunTest, InterruptedLeavesNothing) {
+TEST_F(ExportedRunTest, AnInterruptedExportLeavesNothing) {
   const auto file = store("remote-touch run a.json", {});
   const std::atomic<bool> stop = true;
   for (const char* name : {"x.csv", "x.npz", "x.vtp", "x.mcap"})

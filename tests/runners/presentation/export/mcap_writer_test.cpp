@@ -7,7 +7,7 @@
 namespace remote_touch::mcap_writer_test {
 namespace {
 
-// CRC-32 bit by bit, as its definition has it.
+// CRC-32 bit by bit, by its definition.
 std::uint32_t crc(const std::string& bytes) {
   std::uint32_t sum = ~0u;
   for (const char c : bytes) {
@@ -33,7 +33,7 @@ std::string record(int kind, const std::string& content) {
   return std::string(1, static_cast<char>(kind)) + u64(content.size()) + content;
 }
 
-// https://mcap.dev/spec, record by record.
+// Follows https://mcap.dev/spec, record by record.
 TEST(McapWriter, HasTheRecordsOfTheSpecification) {
   std::string file;
   McapWriter mcap("profile", "library", [&](const std::string& bytes) { file += bytes; });

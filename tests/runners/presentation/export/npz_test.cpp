@@ -9,7 +9,7 @@
 namespace remote_touch::npz_test {
 namespace {
 
-// 10 bytes, the text filled up to 128 with its line feed, and the values.
+// The header has 10 bytes, the text padded to 128 bytes with its line feed, and the values.
 std::string npy(const std::string& text, const std::string& values) {
   std::string file("\x93NUMPY\x01\x00\x76\x00", 10);
   file += text;

@@ -44,7 +44,7 @@ SweepResult two_by_two() {
   return sweep;
 }
 
-// A row for each run; the last axis runs fastest, then the replicates.
+// There is a row for each run. The replicates change fastest, then the last axis.
 TEST(ResultTables, ASweepHasARowForEachRun) {
   const TestFolder folder("result_tables");
   write_sweep(folder / "a.h5", two_by_two(), kProvenance);

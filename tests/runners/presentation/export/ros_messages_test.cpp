@@ -8,13 +8,13 @@ namespace remote_touch::ros_messages_test {
 namespace {
 
 // Header of a message at 3.5 s: encoding; seconds, nanoseconds, length of the text with its zero, the text,
-// and two bytes up to a multiple of four or eight: 4 + 4 + 4 + 6 = 18, and 20 or 24.
+// and two bytes up to a multiple of four or eight. The sizes are 4 + 4 + 4 + 6 = 18, and 20 or 24.
 std::string header(int padding) {
   return std::string("\0\1\0\0", 4) + raw(3) + raw(500'000'000) + raw(6) + std::string("world\0", 6) +
          std::string(static_cast<std::size_t>(padding), '\0');
 }
 
-TEST(RosMessages, Pose) {
+TEST(RosMessages, EncodeAPose) {
   EXPECT_EQ(pose_message(3'500'000'000, {1, 2, 3}, Eigen::Quaterniond(0.5, 0.1, 0.2, 0.3)),
             header(6) + raw(1.0) + raw(2.0) + raw(3.0) + raw(0.1) + raw(0.2) + raw(0.3) + raw(0.5));
 }

@@ -24,7 +24,7 @@ bool is_shown(const ShownPoints& shown, std::size_t i) {
   return std::binary_search(shown.indices.begin(), shown.indices.end(), i);
 }
 
-TEST(ShownPoints, EverythingInTheBoxWhereThatIsFewEnough) {
+TEST(ShownPoints, AreAllPointsInTheBoxIfTheyAreFewEnough) {
   const PointCloud cloud = cloud_with_holes();
   const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, cloud.size()});
   std::size_t measured = 0, in_box = 0;
@@ -38,7 +38,7 @@ TEST(ShownPoints, EverythingInTheBoxWhereThatIsFewEnough) {
   EXPECT_EQ(shown.indices.size(), in_box);
 }
 
-TEST(ShownPoints, AllNearTheProxyAndAboutAsManyOthersAsAllowed) {
+TEST(ShownPoints, AreAllNearTheProxyAndAboutAsManyOthersAsAllowed) {
   const PointCloud cloud = cloud_with_holes();
   const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, 500});
   std::size_t near = 0, others = 0, others_shown = 0;
@@ -84,7 +84,7 @@ TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
 }
 
 // A point that is left out of one frame is left out of the next, so that an animation does not flicker.
-TEST(ShownPoints, TheSamePlacesOfAnImageInEveryFrame) {
+TEST(ShownPoints, AreTheSamePixelsInEveryFrame) {
   PointCloud cloud = cloud_with_holes();
   const ShownPointsRule rule{kBox, 0, 300};
   const std::vector<std::uint32_t> before = shown_points(cloud, {}, {}, rule).indices;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Axes of these lengths, all runs done with these values.
+// A sweep with axes of these lengths, whose runs are all done with these values.
 SweepResult sweep_of(std::vector<std::size_t> lengths, int replicates, std::vector<double> values) {
   SweepResult result;
   for (const std::size_t length : lengths)
@@ -30,7 +30,7 @@ std::vector<std::size_t> chosen(const SweepResult& result, std::size_t max = 6) 
 //   0 0 1 1
 //   0 1 1 1
 //   0 0 0 1
-TEST(DefaultRuns, FailedCellsBesideOnesThatHold) {
+TEST(DefaultRuns, AreFailedCellsBesideCellsThatHold) {
   EXPECT_EQ(chosen(sweep_of({3, 4}, 1, {0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1})),
             (std::vector<std::size_t>{2, 5, 6, 11}));
 }
@@ -43,9 +43,9 @@ TEST(DefaultRuns, AreSpreadEvenlyWhereThereAreMany) {
   EXPECT_EQ(chosen(sweep_of({20, 2}, 1, values), 1), (std::vector<std::size_t>{1}));
 }
 
-TEST(DefaultRuns, TheFirstFailedReplicateOfACellThatMostlyFails) {
+TEST(DefaultRuns, UseTheFirstFailedReplicateOfACellThatMostlyFails) {
   EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 1, 1, 1, 1})), (std::vector<std::size_t>{4}));
-  // One of three is not most: the limit is after that cell.
+  // One of three is not most, so the limit comes after that cell.
   EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 0, 1, 1, 1})), (std::vector<std::size_t>{6}));
 }
 

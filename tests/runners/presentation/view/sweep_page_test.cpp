@@ -65,7 +65,7 @@ TEST_F(SweepPageTest, ShowsFailuresWhereNoneAreNamed) {
   for (const std::size_t run : read.json["sweep"]["runs"]) EXPECT_EQ(failed[run], 1) << run;
 }
 
-// So that a mean can say how many of them have no value.
+// A mean can then state how many of the runs have no value.
 TEST_F(SweepPageTest, HasTheNumberOfFinishedRunsOfEachCell) {
   SweepResult failed = stored_;
   failed.state[2] = RunState::failed, failed.error[2] = "no memory";
@@ -74,7 +74,7 @@ TEST_F(SweepPageTest, HasTheNumberOfFinishedRunsOfEachCell) {
   EXPECT_EQ(page({"0,0"}).json["sweep"]["done"], (std::vector<int>{1, 1, 0, 1, 1, 1}));
 }
 
-TEST_F(SweepPageTest, SaysWhereARunIsNotTheOneThatIsStored) {
+TEST_F(SweepPageTest, ReportsARunThatDiffersFromTheStoredOne) {
   SweepResult other = stored_;
   std::get<std::vector<double>>(other.measures[1].values)[5] += 1e-9;
   write(other);

@@ -89,7 +89,7 @@ TEST_F(TracePageTest, PointsAreLeftOutUntilThePageIsSmallEnough) {
   EXPECT_HAS(refusal([&] { trace_page({folder_ / "a.h5"}, small); }), "expected --max-mb ");
 }
 
-TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyPart) {
+TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyDiffer) {
   const Trace a = store("a.h5", "fig4.12"), b = store("b.h5", "fig4.12", {"renderer.r3_m=0.0076"});
   std::size_t first = 0;
   while (a.normal[first] == b.normal[first] && a.proxy_position_m[first] == b.proxy_position_m[first] &&
@@ -105,7 +105,7 @@ TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyPart) {
   EXPECT_GT(divergence["tick"].get<std::size_t>(), 100u);
 }
 
-// Whoever made the result may have put a script into any of its texts.
+// The author of a result may have put a script into any of its texts.
 TEST_F(TracePageTest, HostileWordsStayWords) {
   const std::string words = "\"'></script><script>alert(1)</script></title><img src=x onerror=alert(1)><!--";
   store("plain.h5", "fig4.12", {"duration_s=0.05"});
@@ -123,7 +123,7 @@ TEST_F(TracePageTest, HostileWordsStayWords) {
   EXPECT_EQ(run["configuration"]["title"], words);
 }
 
-// A program that makes other frames than the one that ran it shows what nobody touched.
+// A program that makes other frames than those of the run would show points that were not touched.
 TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
   const Experiment one = Experiment::load("fig4.12");
   SimulationOptions with_hashes;

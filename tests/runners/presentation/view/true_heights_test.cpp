@@ -12,7 +12,7 @@ namespace {
 
 constexpr int n = TrueHeights::kColumns;
 
-// A plane that is inclined, known where x >= 0 only, and rises.
+// An inclined plane that rises and is known for x >= 0 only.
 class RisingPlane final : public Scenario {
  public:
   explicit RisingPlane(double velocity_m_per_s) : velocity_(velocity_m_per_s) {}
@@ -65,7 +65,7 @@ TEST(TrueHeights, OneTimeIsEnoughForASceneAtRest) {
   EXPECT_EQ(all.height_m.size(), std::size_t{n * n});
 }
 
-TEST(TrueHeights, NoneWhereNothingIsKnown) {
+TEST(TrueHeights, AreMissingIfTheSurfaceIsUnknown) {
   const BoundingBox left(Vec3(-0.3, -1, -0.2), Vec3(-0.1, 1, 0.2));
   EXPECT_TRUE(true_heights(RisingPlane(0.1), left, ticks(0, 3)).empty());
 }
@@ -81,8 +81,8 @@ double drawn_m(const TrueHeights& all, double time_s) {
   return std::lerp(height(i), height(i + 1), (time_s - all.time_s[i]) / (all.time_s[i + 1] - all.time_s[i]));
 }
 
-// The column signed_distance is 0 on the sheet that is drawn, or both do not know it: in every tick where it
-// stays between captures, at the stored times where it moves evenly between these.
+// The column signed_distance is 0 on the sheet that is drawn, or both are unknown. This holds in every tick
+// if the sheet stays between captures, and at the stored times if it moves evenly between them.
 void expect_the_truth_of_the_column(const std::string& name, const std::vector<std::string>& settings,
                                     bool stays) {
   SCOPED_TRACE(name + (settings.empty() ? "" : " " + settings.back()));

@@ -96,7 +96,7 @@ TEST_F(Bags, SqliteIsReadAlsoAsFolders) {
   EXPECT_FALSE(is_bag(folder_.path()));
 }
 
-TEST_F(Bags, ListOnlyWhatIsWanted) {
+TEST_F(Bags, ListOnlyTheMessagesOfWantedTopics) {
   const WantedTopic only_b = [](const BagTopic& topic) { return topic.name == "/b"; };
   folder_.write("x.mcap", mcap_file(messages())), folder_.write("x.bag", ros1_file(messages()));
   folder_.write("y.mcap", mcap_file(messages(), {true, false}));
@@ -111,7 +111,7 @@ TEST_F(Bags, ListOnlyWhatIsWanted) {
 
 // A bag that is cut at any byte is read as far as it goes, or refused in one line. A longer piece never has
 // fewer messages.
-TEST_F(Bags, CutShortAreReadUpToThere) {
+TEST_F(Bags, ABagThatIsCutShortIsReadAsFarAsItGoes) {
   const std::string whole = mcap_file(messages(), {true, true, true, "lz4"});
   std::size_t most = 0;
   for (std::size_t size = 0; size < whole.size(); size += 5) {
@@ -136,7 +136,7 @@ TEST_F(Bags, CutShortAreReadUpToThere) {
   }
 }
 
-TEST_F(Bags, DamagedAreFoundByTheirCrc) {
+TEST_F(Bags, ADamagedBagIsDetectedByItsCrc) {
   std::string bytes = mcap_file(messages(), {true, true, true, ""});
   const std::size_t at = bytes.find("a2xxx");
   bytes[at + 10] = 'y';
@@ -152,7 +152,7 @@ TEST_F(Bags, DamagedAreFoundByTheirCrc) {
 
 // A change of any one byte leads to a one-line error or an answer, in bounded memory; the sanitizers check
 // this.
-TEST_F(Bags, AChangedByteIsNoDanger) {
+TEST_F(Bags, AChangedByteGivesAnErrorOrAnAnswer) {
   write_db3((folder_ / "y.db3").string(), messages());
   const std::string kinds[] = {mcap_file(messages(), {true, true, false, ""}), ros1_file(messages(), "lz4"),
                                bytes_of(folder_ / "y.db3")};

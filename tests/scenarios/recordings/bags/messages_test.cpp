@@ -239,7 +239,7 @@ TEST(Messages, PutPointsOnTheRaysOfALens) {
   EXPECT_EQ(points, kWidth * kHeight) << "a lens that shrinks shows more than the pinhole";
 }
 
-TEST(Messages, TakeTheCameraThatFitsTheImage) {
+TEST(Messages, UseTheCameraThatFitsTheImage) {
   const DepthImage depth{3, 1, {2, 2, 2}};
   const PointCloud measured = ImageRays(info(3, 1, {}), false, "m").cloud(depth);
   EXPECT_TRUE(measured.point(2).isApprox(Vec3(0.2, 0, 2)));
@@ -344,7 +344,7 @@ TEST(Messages, RefuseCamerasWhoseImageIsNotClear) {
 }
 
 // A lens that folds the image over gives no points beyond the fold.
-TEST(Messages, LeaveOutWhatALensCannotShow) {
+TEST(Messages, HaveNoPointsBeyondTheFoldOfALens) {
   const ImageRays rays(info(40, 40, {-1.5, 0, 0, 0, 0}), false, "m");
   const PointCloud cloud = rays.cloud({40, 40, std::vector<double>(1600, 1.0)});
   EXPECT_FALSE(cloud.is_measured(0));

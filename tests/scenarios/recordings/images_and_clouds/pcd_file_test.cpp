@@ -102,7 +102,7 @@ TEST_F(PcdFile, ReadsTheColourOfAFloatField) {
 }
 
 // A float whose bits hold no colour, or that has lost digits, gives kNoColour.
-TEST_F(PcdFile, GivesNoColourWhereItIsNoColour) {
+TEST_F(PcdFile, HasNoColourIfTheWordHoldsNone) {
   const auto colour = [&](const char* type, const char* word) {
     const std::string types = std::string("F F F ") + type;
     return read(pcd_header("x y z rgb", "4 4 4 4", types, "1 1 1 1", "1", "1", "1", "ascii") + "1 2 3 " +
@@ -273,7 +273,7 @@ TEST_F(PcdFile, RefusesACompressedSizeThatLies) {
   EXPECT_HAS(error(claiming(0)), "damaged LZF block of 0 bytes: expected 12 bytes from it");
 }
 
-TEST_F(PcdFile, NeverDoesMoreThanRefuseDamagedFiles) {
+TEST_F(PcdFile, ReadsOrRefusesDamagedFiles) {
   // Damages every byte of a good file in turn, in two ways: the file can still be read, or it is an
   // InputError.
   const CameraIntrinsics camera{4, 3, 20, 25, 1.5, 1};

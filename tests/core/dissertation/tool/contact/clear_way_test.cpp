@@ -69,7 +69,7 @@ TEST_F(OfABox, EndsWhereATurnTouches) {
   Vector6 a_g = Vector6::Zero();
   a_g[4] = -turn_rad;  // about y: +x goes up
   const double found = fraction({lever_m, 0, 0.005 + distance_m}, a_g);
-  // The face z = 5 mm, turned by s: at the point's x it is as high as the point.
+  // s: fraction of the turn after which the face z = 5 mm reaches the point's height at the point's x.
   const double s = std::asin(distance_m / lever_m) / turn_rad;
   EXPECT_NEAR(found, s, 0.06 * s);
   EXPECT_LE(found, s);
@@ -106,7 +106,8 @@ TEST_F(OfABox, NoOtherPointIsInsideAfterASafeMotion) {
   EXPECT_GT(tried, 500);
 }
 
-// Against dense samples of the true motion, through moved(): never too late, and mostly hardly too early.
+// Compared with dense samples of the true motion through moved(): the way never ends too late, and hardly too
+// early.
 TEST(ClearWay, IsNoLaterThanDenseSamples) {
   const VoxelTool tools[] = {
       made(find_generated_tool("bar")->make()), made(meshes::any_body("ball")),
@@ -134,14 +135,14 @@ TEST(ClearWay, IsNoLaterThanDenseSamples) {
         const ToolPose there = moved(pose, part * a_g);
         return field(tool, there.q_WT.conjugate() * (p_W - there.p_W));
       };
-      double first = 1;  // sample at which the field is below
+      double first = 1;  // first sample at which the field is below kTouch_m
       for (int i = 1; i <= 400 && first == 1; ++i)
         if (at(i / 400.0) < ClearWay::kTouch_m - 1e-12) first = i / 400.0;
       ASSERT_LE(found, first) << "of " << start_m;
       ++tried;
       if (found == 1) continue;
       ++stopped;
-      // The distance of the point at the stop is hardly more than the bend of its way.
+      // The remaining distance at the stop is hardly more than the bend of the point's path.
       early_m = std::max(early_m, at(found));
     }
   }

@@ -19,7 +19,7 @@ namespace {
 const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
 constexpr double kCellsPer_m = 250;
-// Error of interpolation: between its nodes a convex tool's field is convex but for a fraction of a voxel.
+// Interpolation error: a convex tool's field is convex between its nodes, except for a fraction of a voxel.
 constexpr double kInterpolated_m = 5e-5;
 constexpr double kTouched_m = 3e-4;  // distance below which points are searched
 
@@ -39,7 +39,7 @@ struct Found {
   ToolContact contact;
 };
 
-// Every disk within the look-ahead as a contact, one after the other.
+// Computes the contact of every disk within the look-ahead, one after the other.
 std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p, double side = 0) {
   TouchFinder finder(kTool, scenes::kernels());
   finder.on_frame(formatted<TiledCloud>(cloud));
@@ -63,9 +63,9 @@ bool same(const ToolContact& a, const ToolContact& b) {
   return a.r_T == b.r_T && a.n_T == b.n_T && a.depth_m == b.depth_m && a.side == b.side;
 }
 
-// The vectorised search gives, on every instruction set, bit for bit the contacts of one disk after the
-// other, on both sides and with disks that reach out of the grid.
-TEST(ContactList, TheSameBitsOnEveryInstructionSet) {
+// The vectorised search returns the same contacts, bit for bit, as a loop over the disks. This holds on every
+// instruction set, on both sides and for disks that reach out of the grid.
+TEST(ContactList, HasTheSameBitsOnEveryInstructionSet) {
   for (const double ratio : {0.75, 2.0})
     for (const double side : {0.0, 1.0, -1.0}) {
       ToolParameters p;
@@ -101,8 +101,8 @@ TEST(ContactList, FewContactsAreAllThere) {
   EXPECT_EQ(near.deepest_m, deepest_m);
 }
 
-// The answer does not depend on earlier queries. The contacts of searched points are always there.
-TEST(ContactList, HasAllWithinTheAskedDistanceAndNoneFartherAway) {
+// The result does not depend on earlier queries. Contacts within kTouched_m are always included.
+TEST(ContactList, HasAllWithinTheGivenDistanceAndNoneFartherAway) {
   const PointCloud cloud = cloud_of(800);
   ContactList list(kTool, {}, scenes::kernels());
   list.on_frame(formatted<TiledCloud>(cloud));
@@ -123,8 +123,8 @@ TEST(ContactList, HasAllWithinTheAskedDistanceAndNoneFartherAway) {
   }
 }
 
-// Most disks are never searched, and still it is the deepest contact of a cell that is kept: the lower bound
-// of a disk holds for a convex tool.
+// Most disks are never searched. The deepest contact of each cell is kept all the same, because the lower
+// bound of a disk holds for a convex tool.
 TEST(ContactList, HasTheDeepestOfEveryCellOfMany) {
   for (const std::size_t count : {20000u, 100000u}) {
     const PointCloud cloud = cloud_of(count);
@@ -150,8 +150,8 @@ TEST(ContactList, HasTheDeepestOfEveryCellOfMany) {
   }
 }
 
-// A box over a dense flat surface, with one edge lower: the deepest contact is as far as that edge is,
-// whether few points stand for many or each for itself, wherever the edge is.
+// A tilted box over a dense flat surface. The deepest contact has the distance of the lower edge, with or
+// without merged points, wherever the edge is.
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
   constexpr double kGap_m = 1e-4;
   const PointCloud cloud = scenes::dense_plane();
@@ -186,7 +186,7 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
   }
 }
 
-// Every point that may stop a motion of the continuous rule is tested, even where few points stand for many.
+// Every point that may stop a motion of the continuous rule is tested, even where points are merged.
 TEST(ContactList, PointsWithinReachAreNeverMerged) {
   const PointCloud cloud = scenes::dense_plane();
   ToolParameters p;
@@ -204,7 +204,7 @@ TEST(ContactList, PointsWithinReachAreNeverMerged) {
   EXPECT_EQ(list.points_within(pose, kReach_m).size(), expected);
 }
 
-TEST(ContactList, BeforeAFrameNothingIsNear) {
+TEST(ContactList, HasNoContactBeforeAFrame) {
   ContactList list(kTool, {}, scenes::kernels());
   EXPECT_TRUE(list.near(kPose, 0).contacts.empty());
   EXPECT_EQ(list.touched(kPose).points, 0);

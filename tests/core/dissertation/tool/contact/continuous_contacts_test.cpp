@@ -31,8 +31,8 @@ std::shared_ptr<const VoxelTool> two_pins() {
   return tool;
 }
 
-// One disk stands for many points of a dense flat surface, and finds only the pin that its field falls
-// towards. Points in the other pin are found all the same.
+// One merged disk replaces many points of a dense flat surface. Its search finds only the pin towards which
+// the field falls. Points in the other pin are found all the same.
 TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   constexpr double kDepth_m = 2e-4;
   const auto pin = two_pins();
@@ -55,8 +55,8 @@ TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   EXPECT_GT(not_told, 0);
 }
 
-// A surface that lies ahead stops a motion away from another one where it is met; at once if it is in the
-// tool, but not by a hair, as where the tool slides along it.
+// A motion away from one surface stops where the tool meets another surface ahead. A surface inside the tool
+// stops it at once. A surface that the tool only slides along does not stop it.
 TEST(ContinuousContacts, ASurfaceAheadStopsAMotionUnlessItOnlyTouches) {
   const Vec3 half_m(0.005, 0.003, 0.004);
   const auto tool = scenes::box_tool(half_m, 2.5e-4);

@@ -26,7 +26,7 @@ TEST(DiskContact, ADiskBelowAFaceIsMetInItsPlane) {
   EXPECT_NEAR(contact.depth_m, -1e-4, 1e-9);
 }
 
-// The same disk with its back to the tool: it is behind the surface.
+// The same disk faces away from the tool, so the tool is behind the surface.
 TEST(DiskContact, TurnsThePlaneIfTheDiskFacesAway) {
   const SurfaceDisk disk = disk_at({0.001, -0.00485, 0.002}, -Vec3::UnitY());
   const ToolContact contact = near_contact(*kPlate, disk, nearest_place(*kPlate, disk), 0);
@@ -34,7 +34,7 @@ TEST(DiskContact, TurnsThePlaneIfTheDiskFacesAway) {
   EXPECT_EQ(contact.side, -1);
 }
 
-// A point that a frame leaves halfway between two faces came from the sensor's side. The field has no clear
+// A point that a frame puts halfway between two faces came from the sensor's side. The field has no clear
 // direction there, so the normal decides.
 TEST(DiskContact, TheNormalDecidesAtTheRidgeOfTheField) {
   for (const double up : {1.0, -1.0}) {
@@ -55,7 +55,7 @@ TEST(DiskContact, AKnownSideCountsInside) {
 }
 
 // The disk lies beside the plate, edge-on and within reach of its rim: it touches the tool at the rim.
-TEST(DiskContact, ADiskEdgeOnIsMetAtItsRim) {
+TEST(DiskContact, ADiskSeenEdgeOnIsMetAtItsRim) {
   const SurfaceDisk disk = disk_at({0.0112, 0.001, 0.002}, Vec3::UnitZ());
   const DiskPlace nearest = nearest_place(*kPlate, disk);
   EXPECT_TRUE(nearest.at_rim);
@@ -66,8 +66,8 @@ TEST(DiskContact, ADiskEdgeOnIsMetAtItsRim) {
   EXPECT_EQ(contact.side, 0);
 }
 
-// A corner of the plate above a disk: among all places of the disk, one after the other, none is nearer by
-// more than two lines across it can miss.
+// A corner of the plate lies above a disk. A dense scan of the disk finds no position that is nearer by more
+// than a search along two lines can miss.
 TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
   const Vec3 n = Vec3(1, -1, 1).normalized(), corner(0.01, -0.00475, 0.01);
   const Vec3 u = Vec3(1, 1, 0).normalized(), v = n.cross(u);
@@ -86,8 +86,8 @@ TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
   }
 }
 
-// The field over a disk of one point is flat below a slope; over a disk of many it must not rise by much,
-// too.
+// The field over the disk of one point is flat if its slope is small. A merged disk also needs a small rise
+// of the field across it.
 TEST(DiskContact, FlatFieldDependsOnSlopeDepthAndExtent) {
   const double slope = 0.9 * disk_search::kFlatSlope, steep = 1.1 * disk_search::kFlatSlope;
   const double small_m = 0.9 * disk_search::kFlatDepth_m / slope,

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kCube_m = 2e-3, kSpacing_m = 3e-4;
 
-// 60 mm square, its points at (x, height(x, z), z); none where height is NaN. noise_m: up and down in turn.
+// A 60 mm square of points at (x, height(x, z), z). There is no point where the height is NaN. noise_m is
+// added and subtracted in turn.
 std::vector<CloudPoint> surface(const std::function<double(double, double)>& height_m, double noise_m = 0) {
   std::vector<CloudPoint> points;
   for (int j = 0; j < 200; ++j)
@@ -29,7 +30,7 @@ std::vector<CloudPoint> surface(const std::function<double(double, double)>& hei
   return points;
 }
 
-// Turned in its plane and moved, so that the cubes cut it anyhow.
+// Turns the surface in its plane and moves it, so that it is not aligned with the cubes.
 std::vector<CloudPoint> turned(std::vector<CloudPoint> points, double angle_rad) {
   const Eigen::Quaterniond q = rotation({0, angle_rad, 0});
   for (CloudPoint& point : points) point.p_W = q * point.p_W + Vec3(3e-4, 1e-4, 7e-4);
@@ -42,7 +43,7 @@ double distance_to_nearest_m(const std::vector<CloudPoint>& points, const Vec3& 
   return std::sqrt(squared);
 }
 
-// No place of a disk is far from the cloud: a square of 1.5 spacings has a diagonal of 2.1.
+// No position on a disk is far from the cloud: a square of 1.5 spacings has a diagonal of 2.1 spacings.
 void expect_no_more_than_the_cloud(const std::vector<CloudPoint>& points) {
   const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
   int disks = 0;
@@ -61,8 +62,8 @@ void expect_no_more_than_the_cloud(const std::vector<CloudPoint>& points) {
   EXPECT_GT(disks, 5);
 }
 
-TEST(MergedPoints, EveryPointIsInADiskOrStandsForItself) {
-  // Gently curved, with a step that none may stand across.
+TEST(MergedPoints, EveryPointIsInADiskOrIsKept) {
+  // A gently curved surface with a step. No disk may reach across the step.
   const std::vector<CloudPoint> points =
       surface([](double x, double z) { return 0.5 * x * x + (z > 0.01 ? 2e-4 : 0); });
   const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
@@ -82,7 +83,7 @@ TEST(MergedPoints, EveryPointIsInADiskOrStandsForItself) {
   }
 }
 
-TEST(MergedPoints, AFullPlaneBecomesATwentieth) {
+TEST(MergedPoints, AFullPlaneKeepsATwentiethOfItsPoints) {
   const std::vector<CloudPoint> points = surface([](double, double) { return 0; });
   std::size_t inside = 0, merged_inside = 0;  // away from the rim
   const auto is_inside = [](const Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() < 0.024; };
@@ -145,8 +146,8 @@ std::vector<MergedPoint> disks_of_circle(int half) {
   return merged;
 }
 
-// The largest possible number of squares along a side, with a point on each end of the disk's axes: the last
-// square ends there.
+// A disk with the largest possible number of squares along a side, and with a point at each end of its axes.
+// The last square ends there.
 TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
   constexpr int kHalf = 24;  // 32 squares of 1.5 steps
   const std::vector<MergedPoint> disks = disks_of_circle(kHalf);

@@ -46,7 +46,7 @@ bool same(const Vec3& a, const Vec3& b) {
   return a == b || (!a.allFinite() && !b.allFinite());
 }
 
-// The disks of a cloud that are wanted, one after the other.
+// Computes the disks within reach_m whose lower bound is at most max_lower_m, one after the other.
 std::vector<SurfaceDisk> plain_disks(const TiledCloud& cloud, const ToolPose& pose, double reach_m,
                                      double max_lower_m) {
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
@@ -84,7 +84,7 @@ bool bound_is_distance(const SurfaceDisk& disk) {
   return ::testing::AssertionSuccess();
 }
 
-TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
+TEST(NearDisks, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
   const PointCloud cloud = cloud_with_normals();
   for (const Kernels* kernels : supported_kernels()) {
     Look query(cloud, *kernels);
@@ -123,7 +123,7 @@ std::size_t within(const NearDisks& disks, double distance_m) {
 }
 
 // A result for one pose is not reused in the next frame, at another pose or for another reach.
-TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
+TEST(NearDisks, AResultIsKeptForItsOwnQueryOnly) {
   const PointCloud cloud = cloud_with_normals();
   const Kernels& kernels = scenes::kernels();
   Look query(cloud, kernels);
@@ -147,8 +147,8 @@ TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   EXPECT_GT(within(query.disks, kReach_m), 0u);
 }
 
-// A walk of steps that are mostly so short that the points are kept, and groups of them passed over: at every
-// pose the disks are those of a loop over all points, in frame after frame.
+// A walk of mostly very short steps, for which points are kept from earlier poses and groups of points are
+// skipped. The disks are those of a loop over all points, at every pose and in every frame.
 TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
   constexpr double kShort_m = 2e-5;
   for (const Kernels* kernels : supported_kernels()) {
@@ -176,7 +176,7 @@ TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
   }
 }
 
-// A list that has looked at the pose already, and one that has not.
+// Compares a list that has been queried at this pose with a fresh one.
 TEST(NearDisks, ADetectionDoesNotChangeWhatIsTouched) {
   const PointCloud cloud = cloud_with_normals();
   ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());

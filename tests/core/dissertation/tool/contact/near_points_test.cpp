@@ -26,7 +26,7 @@ struct Place {
   }
 };
 
-// Point after point.
+// Computes the positions point by point.
 std::vector<Place> plain_places(const TiledCloud& cloud, const ToolPose& pose, double reach_m) {
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   std::vector<Place> places;
@@ -68,7 +68,7 @@ struct Look {
   }
 };
 
-TEST(NearPoints, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
+TEST(NearPoints, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
   const PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
   std::size_t count = 0;
   for (const Kernels* kernels : supported_kernels()) {
@@ -82,8 +82,8 @@ TEST(NearPoints, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
   }
 }
 
-// Small motions, for which the groups are kept, and large ones; reaches that rise and fall.
-TEST(NearPoints, FoundAtEveryPoseOfAMotion) {
+// Small motions, for which the groups are kept, and large ones. The reach rises and falls.
+TEST(NearPoints, AreFoundAtEveryPoseOfAMotion) {
   const PointCloud cloud = scenes::random_cloud(20000, 0.03, 22);
   Look look(cloud, scenes::kernels());
   std::size_t count = 0, most = 0;

@@ -32,7 +32,8 @@ bool holds(const SphereColumns& spheres, std::size_t i, const Vec3& p) {
   return (p - Vec3(spheres.x[i], spheres.y[i], spheres.z[i])).norm() <= spheres.radius[i];
 }
 
-// Every measured point is there once, in a tile whose sphere holds it, in a block whose sphere holds that.
+// Checks that every measured point occurs once, in a tile whose sphere contains it, and that the sphere of
+// its block contains the sphere of the tile.
 void expect_tiled(const PointCloud& cloud) {
   TiledCloud tiled;
   tiled.assign(cloud);
@@ -108,9 +109,10 @@ TEST(TiledCloud, KnowsTheSpacing) {
   EXPECT_NEAR(tiled.spacing_m(27), 0.002 * std::sqrt(2), 3e-5);
 }
 
-// --- shown differently ---
+// --- points that a PointChange moves or hides ---
 
-// Points in a ball are lifted, but not shown left of it; elsewhere they stay as they are.
+// Lifts the points in a ball and hides those left of the ball's centre. Points outside the ball stay as they
+// are.
 class Lifted final : public PointChange {
  public:
   explicit Lifted(const BoundingSphere& ball) : ball_(ball) {}
@@ -135,7 +137,7 @@ std::vector<Vec3> points_of(const TiledCloud& cloud) {
   return points;
 }
 
-TEST(TiledCloud, PointsAreShownDifferentlyInTheSameOrder) {
+TEST(TiledCloud, PointsKeepTheirOrderInEveryForm) {
   const PointCloud flat = scenes::flat_grid(100);
   TiledCloud all, shown;
   all.assign(flat);

@@ -26,7 +26,7 @@ Places places(const TouchFinder& finder, std::span<const std::uint32_t> points) 
   return found;
 }
 
-template <class Wanted>  // (p_T) -> bool
+template <class Wanted>  // wanted(p_T) -> bool
 Places brute_force(const PointCloud& cloud, const ToolPose& pose, const Wanted& wanted) {
   Places found;
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -62,7 +62,7 @@ TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   }
 }
 
-// Against the eight nodes of every voxel, of a tool that is the same in no two directions.
+// Compared with the eight nodes of every voxel that is not free. The tool's field has no symmetry.
 TEST(TouchFinder, KnowsTheLargestFieldInAVoxel) {
   auto tool = std::make_shared<VoxelTool>(*scenes::box_tool(kHalf_m));
   const auto& cells = tool->grid.cells;
@@ -102,7 +102,7 @@ TEST(TouchFinder, MissesNothingWithinADistanceAndAddsLittle) {
     }
 }
 
-TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
+TEST(TouchFinder, FindsTheSameListOnEveryInstructionSet) {
   PointCloud cloud = scenes::random_cloud(20000, 0.04, 13);
   cloud.x[77] = std::nan(""), cloud.y[78] = 1e300;
   const auto tool = scenes::box_tool(kHalf_m);

@@ -33,7 +33,7 @@ PointCloud cloud_of(std::size_t count, unsigned seed) {
   return cloud;
 }
 
-// Point after point, each with its voxel and the nearest place of its disk.
+// Point by point: the voxel of each point and the nearest position on its disk.
 Touched plain_touched(const TouchFinder& finder, const ToolPose& pose, double reach_m, double voxels_m,
                       bool with_disks) {
   const TiledCloud& cloud = finder.cloud();
@@ -70,8 +70,8 @@ Touched plain_touched(const TouchFinder& finder, const ToolPose& pose, double re
          << " m, instead of " << b.points << " in " << b.clusters << ", " << b.nearest_distance_m << " m";
 }
 
-// A walk of short steps, so that groups are kept and passed over, with long ones, other reaches and new
-// frames between them.
+// A walk of short steps, for which groups are kept and skipped. Long steps, other reaches and new frames come
+// between them.
 TEST(TouchedPoints, AreThoseOfALoopOverAllPointsOnAWalk) {
   const double voxels_m = 2 * kTool->grid.size_m;
   for (const Kernels* kernels : supported_kernels())
@@ -101,9 +101,9 @@ TEST(TouchedPoints, AreThoseOfALoopOverAllPointsOnAWalk) {
     }
 }
 
-// Deep in a cloud, at its rim where few points are near, and beyond: the reach that ContactList chooses
-// leaves out nothing that counts.
-TEST(TouchedPoints, AContactListCountsAllThatCount) {
+// The tool is deep in a cloud, then at its rim with few points near, and then outside. The reach that
+// ContactList chooses omits no point that counts.
+TEST(TouchedPoints, AContactListCountsEveryTouchedPoint) {
   ToolParameters p;
   const double voxels_m = 2 * kTool->grid.size_m;
   for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::voxels})

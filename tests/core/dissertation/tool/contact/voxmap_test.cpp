@@ -1,4 +1,4 @@
-// The voxmap against a set of all voxels that hold a point.
+// The voxmap compared with a set of all voxels that hold a point.
 #include "core/dissertation/tool/contact/voxmap.h"
 
 #include <gtest/gtest.h>

@@ -29,7 +29,7 @@ TEST(MotionProgram, GrantsTheDesiredMotionIfThereAreNoContacts) {
   EXPECT_EQ(motion.active_count, 0);
 }
 
-// A point under the centre stops the fall and leaves the rest.
+// A contact below the centre stops the downward motion and leaves the rest of the motion.
 TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
   MotionProgram program({}, *kTool);
   const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
@@ -40,8 +40,8 @@ TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
   EXPECT_GT(motion.side, 0);
 }
 
-// The tool tips over an off-centre point: Gauss' principle by hand. With row (n, r x n), M = diag(1, I):
-// a = wish + M^-1 row^T lambda, lambda = -row.wish / (row M^-1 row^T).
+// The tool tips over an off-centre point: Gauss' principle by hand. The row is (n, r x n), M = diag(1, I),
+// and a = wish + M^-1 row^T lambda, lambda = -row.wish / (row M^-1 row^T).
 TEST(MotionProgram, AnOffCentreContactTipsTheTool) {
   MotionProgram program({}, *kTool);
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 0, 1}};
@@ -63,8 +63,8 @@ TEST(MotionProgram, PenetrationIsResolvedByItsDepth) {
   EXPECT_FALSE(motion.elastic);
 }
 
-// Walls that close in on both sides by 0.4 mm: no motion resolves them, each is loosened by as much, and the
-// tool still follows the device along the wedge.
+// Two walls close in by 0.4 mm each. No motion resolves both, so each is loosened by as much, and the tool
+// still follows the device along the wedge.
 TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
   MotionProgram program({}, *kTool);
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
@@ -99,8 +99,8 @@ TEST(MotionProgram, NanContactsAreLeftOut) {
   EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);  // the multiplier belongs to the last of the three
 }
 
-// The coupling turns the blocked rest of the desired motion into a wrench. It is one that a single contact
-// can exert: a force f n and the torque f r x n. With the inertia of the tool as the metric it is not.
+// The coupling turns the blocked part of the desired motion into a wrench. A single contact can exert this
+// wrench: a force f n and the torque f r x n. It cannot if the metric is the inertia of the tool.
 TEST(MotionProgram, CouplingWrenchOnACornerIsThatOfTheContact) {
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0.004}, Vec3(0.1, 1, 0.2).normalized(), 0, 1}};
   const Vector6 wish = desired({1e-4, -2e-3, 0}, {0.01, 0, -0.02});

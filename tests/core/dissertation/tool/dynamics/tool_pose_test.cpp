@@ -19,8 +19,8 @@ TEST(ToolPose, TheExponentialIsTheRotationOfTheVector) {
   EXPECT_LT((rotated - Vec3::UnitY()).norm(), 1e-15);
 }
 
-// The displacement of a unit step leads from one pose to the other, by the shorter way.
-TEST(ToolPose, MovingByTheDisplacementArrives) {
+// displacement() leads from one pose to the other, with the shorter rotation.
+TEST(ToolPose, MovingByTheDisplacementReachesTheTarget) {
   std::mt19937 random(2);
   for (int i = 0; i < 2000; ++i) {
     const ToolPose from{draw(random, 1), rotation(draw(random, 3))},
@@ -33,7 +33,7 @@ TEST(ToolPose, MovingByTheDisplacementArrives) {
   }
 }
 
-// Rotation into the tool's axes and back keeps lengths, so a bound of the way holds in either.
+// Rotation into the tool's axes and back keeps lengths, so a bound of the displacement holds in either frame.
 TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
   std::mt19937 random(4);
   for (int i = 0; i < 2000; ++i) {
@@ -48,7 +48,7 @@ TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
   }
 }
 
-// No point of the tool goes farther than way_m says.
+// No point of the tool moves farther than max_point_displacement_m() returns.
 TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
   std::mt19937 random(3);
   for (int i = 0; i < 2000; ++i) {

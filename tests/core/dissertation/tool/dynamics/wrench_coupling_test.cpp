@@ -19,7 +19,7 @@ ToolParameters without_limits() {
   return p;
 }
 
-// K with another stiffness along and about each axis.
+// K with a different stiffness along and about each axis.
 ToolParameters with_uneven_K() {
   ToolParameters p = without_limits();
   p.stiffness_ratio = {0.5, 1, 2}, p.rotational_stiffness_ratio = {0.3, 1, 2.5};
@@ -35,7 +35,7 @@ double energy(const ToolParameters& p, const ToolPose& tool, const ToolPose& dev
           std::pow(p.gyration_radius_m, 2) * phi.dot(p.rotational_stiffness_ratio.cwiseProduct(phi)));
 }
 
-// A loop of the device, s from 0 to 1, that returns to where it began.
+// Device pose on a closed loop, s from 0 to 1.
 ToolPose on_loop(double s) {
   const double w = 2 * M_PI * s;
   return {{0.01 * std::cos(w), 0.02 * std::sin(2 * w), 0.01 * std::sin(w)},
@@ -134,8 +134,8 @@ TEST(WrenchCoupling, DoesNoWorkAroundAClosedLoop) {
   EXPECT_LT(std::abs(relative_loop_work(with_uneven_K(), tool, 4000)), 1e-9);
 }
 
-// While K is the same about all axes, J^-T phi = phi and its Jacobian has no effect. For a diagonal K it is
-// what makes the torque that of an energy.
+// If K is the same about all axes, J^-T phi = phi and the Jacobian has no effect. The torque of a diagonal K
+// derives from an energy only with the Jacobian.
 TEST(WrenchCoupling, ADiagonalKDoesWorkIfTheJacobianIsLeftOut) {
   const ToolPose tool{{0.002, 0, -0.01}, rotation({0.2, -0.4, 0.3})};
   const auto without_jacobian = [](const ToolParameters& p) {
@@ -152,7 +152,8 @@ TEST(WrenchCoupling, ADiagonalKDoesWorkIfTheJacobianIsLeftOut) {
   EXPECT_GT(std::abs(relative_loop_work(uneven, tool, 400, without_jacobian(uneven))), 0.01);
 }
 
-// The printed torque of an uneven inertia has no energy: the loop gains or loses a good part of the peak.
+// The printed torque of an uneven inertia derives from no energy: the loop does work of more than 1 % of the
+// peak energy.
 TEST(WrenchCoupling, ThePrintedTorqueDoesWork) {
   ToolParameters p = without_limits();
   p.torque_rule = TorqueRule::printed;

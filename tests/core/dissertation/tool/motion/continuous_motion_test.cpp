@@ -1,4 +1,4 @@
-// Only the continuous rule keeps the side of a surface that a frame has taken past the tool.
+// A frame may take a surface past the tool. Only the continuous rule then keeps the tool on its side.
 #include "core/dissertation/tool/motion/continuous_motion.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct Ride {
     p.contact_rule = TouchRule::continuous;
     return p;
   }
-  // Ten ticks of one frame with the device at a height; returns the height of the tool.
+  // Runs ten ticks of one frame with the device at a height. Returns the height of the tool.
   double frame(const PointCloud& cloud, double device_m) {
     renderer.on_frame(scenes::frame(cloud, index++));
     for (int tick = 0; tick < 10; ++tick) {
@@ -51,7 +51,7 @@ struct Ride {
   int index = 0, most_detections = 0;
 };
 
-// A surface that rises by so much in every frame carries the plate, if that is no more than frame_reach_m.
+// A surface that rises in every frame carries the plate along if the rise is no more than frame_reach_m.
 TEST(ContinuousMotion, IsCarriedAsFarAsItsReach) {
   for (const double reach_m : {0.004, 0.01, 0.02}) {
     ToolParameters p;
@@ -61,7 +61,7 @@ TEST(ContinuousMotion, IsCarriedAsFarAsItsReach) {
       double height_m = 0;
       EXPECT_NEAR(ride.frame(sheet(0), 0.0), kHalf_m.y(), 1e-4);
       for (int n = 0; n < 6; ++n) ride.frame(sheet(height_m += fraction * reach_m), 0);
-      // Less than its thickness any rule keeps.
+      // Any rule keeps the side if the rise is less than the plate's thickness.
       const bool kept = fraction < 1 || fraction * reach_m < 2 * kHalf_m.y();
       EXPECT_NEAR(ride.out.proxy_W.y(), kept ? height_m + kHalf_m.y() : 0.0, 1e-4) << reach_m << fraction;
       EXPECT_EQ(ride.out.force_N.norm() > 1, kept);
@@ -69,7 +69,7 @@ TEST(ContinuousMotion, IsCarriedAsFarAsItsReach) {
   }
 }
 
-// Any direction: lengths of steps are rounded differently.
+// The lengths of the steps are rounded differently in each direction.
 TEST(ContinuousMotion, IsCarriedInAnyDirection) {
   for (const double angle : {0.0, 0.17, 0.5, 1.1, 2.0, 2.9}) {
     const Eigen::Quaterniond turn = rotation(angle * Vec3(0.3, 0.2, 0.9).normalized());
@@ -99,7 +99,7 @@ TEST(ContinuousMotion, HoldsAndCarriesTheToolOnTheBackOfASurface) {
   EXPECT_NEAR(ride.out.proxy_W.y(), height_m + kHalf_m.y(), 1e-4);
 }
 
-// A surface that goes away is followed, and what was not held is not searched for.
+// The tool follows a surface that sinks. A surface that did not hold the tool is not searched for.
 TEST(ContinuousMotion, ASurfaceThatSinksIsFollowed) {
   Ride ride({});
   ride.frame(sheet(0), 0);
@@ -110,7 +110,7 @@ TEST(ContinuousMotion, ASurfaceThatSinksIsFollowed) {
   EXPECT_EQ(ride.frame(sheet(0.0), -0.01), -0.01) << "it was free: nobody knows where the surface came from";
 }
 
-// Also with a budget in which the way there and back has no room.
+// This includes budgets that are too small for the way there and back.
 TEST(ContinuousMotion, UsesNoMoreThanItsBudget) {
   for (const int budget : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 20, 60}) {
     ToolParameters p;
@@ -135,7 +135,8 @@ PointCloud together(const PointCloud& a, const PointCloud& b) {
   return all;
 }
 
-// Held on the lower of two sheets that face up: whatever its frames do, it is not found on the upper one.
+// The tool is held on the lower of two sheets that face up. It is never found on the upper one, whatever the
+// frames do.
 TEST(ContinuousMotion, KeepsTheToolOnItsOwnSheet) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 2e-4);
@@ -150,7 +151,7 @@ TEST(ContinuousMotion, KeepsTheToolOnItsOwnSheet) {
   }
 }
 
-// A sheet that goes away by more than is near, with another above: the tool follows, for that one was nearer.
+// Two sheets sink by 4 mm in one frame. The tool follows the lower one, which was nearer.
 TEST(ContinuousMotion, FollowsASheetThatSinksUnderAnother) {
   Ride ride({});
   EXPECT_NEAR(ride.frame(together(sheet(0), sheet(0.015)), 0), kHalf_m.y(), 1e-4);

@@ -1,4 +1,4 @@
-// The god-object against the pose of least energy, and against every point of the cloud.
+// The god-object method compared with the pose of least energy, and with every point of the cloud.
 #include "core/dissertation/tool/motion/god_object_motion.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,8 @@ TEST(GodObjectMotion, ToolIsTheDeviceInFreeSpace) {
 }
 
 // A box over the plane y = 0, turned by theta about z, has its centre at a sin|theta| + b cos(theta) or
-// higher. At rest it is where the two springs of the coupling have the least energy: by trying all angles.
+// higher. It rests where the two springs of the coupling have the least energy. The test finds that pose by
+// trying all angles.
 TEST(GodObjectMotion, RestsWhereTheSpringsHaveTheLeastEnergy) {
   constexpr double k = 600, r_g = 0.03;
   const auto height_m = [](double theta) {
@@ -86,7 +87,7 @@ TEST(GodObjectMotion, RestsWhereTheSpringsHaveTheLeastEnergy) {
     }
 }
 
-// Over any path of the hand, in any tick: the exact distance of every point to the box.
+// The exact distance of every point to the box is checked in every tick of a random path of the hand.
 TEST(GodObjectMotion, NoPointGetsIntoTheTool) {
   const PointCloud cloud = sheet(0, 0.004, 31);
   std::mt19937 random(5);
@@ -125,9 +126,9 @@ TEST(GodObjectMotion, StopsAtTheFirstContactOfALongMotion) {
   EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y() + kGap_m, 1e-5);
 }
 
-// The coupling of the source gives no force for the part of the motion that the contacts allow. After one
-// step in the tick, the tool is still 20 mm behind along the plane.
-TEST(GodObjectMotion, OnlyWhatContactsTakeAwayIsFelt) {
+// The coupling of the source gives no force for the part of the motion that the contacts allow. After the one
+// step of a tick, the tool is still 19 mm behind along the plane, and no force acts along it.
+TEST(GodObjectMotion, OnlyTheMotionThatContactsPreventIsFelt) {
   ToolGodObjectParameters p;
   ToolRenderer whole = renderer(p);
   p.steps_per_tick = 1;
@@ -143,7 +144,8 @@ TEST(GodObjectMotion, OnlyWhatContactsTakeAwayIsFelt) {
   }
 }
 
-// A surface that moves into a tool which waits at the device is not felt; going deeper is.
+// A surface that moves into a tool which waits at the device is not felt. A deeper motion of the device is
+// felt.
 TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet(0, 0.0019), 0));
@@ -159,7 +161,7 @@ TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
   EXPECT_EQ(out.proxy_W.y(), 0.02);
 }
 
-// Walls with less room than the gap: J a >= 0 still has an answer.
+// The walls leave less room than the gap. J a >= 0 still has a solution.
 TEST(GodObjectMotion, WaitsBetweenWallsThatAreTooNear) {
   PointCloud walls = sheet(-0.00502);
   for (int j = -20; j <= 20; ++j)

@@ -1,4 +1,4 @@
-// A look asks for the nearest contacts first, and finds the motion that all of them allow.
+// LookAheadProgram queries the nearest contacts first and finds the motion that all contacts allow.
 #include "core/dissertation/tool/motion/look_ahead_program.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
 constexpr double kSame_m = 1e-10;
 
-// Planes around a tool, given by the test; it remembers what it was asked for.
+// Contact planes around a tool, given by the test. Records the distances for which it is queried.
 class Planes final : public NearContactSource {
  public:
   explicit Planes(std::vector<ToolContact> all) : all_(std::move(all)) {}
@@ -50,8 +50,8 @@ class Planes final : public NearContactSource {
   std::vector<ToolContact> all_, listed_;
 };
 
-// Contact planes from one side or, with from_all_sides, from all around: up to a look-ahead away, and pressed
-// in by depth_m.
+// Contact planes up to a look-ahead away, pressed in by depth_m. They lie on one side of the tool or, with
+// from_all_sides, all around it.
 std::vector<ToolContact> planes_around(std::mt19937& random, int count, double depth_m, bool from_all_sides) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<ToolContact> all;
@@ -70,7 +70,7 @@ Vector6 random_motion(std::mt19937& random, double size_m) {
   return a_gu;
 }
 
-// The definition: one program of all contacts.
+// The reference by definition: one program with all contacts.
 ConstrainedMotion allowed_by_all(const VoxelTool& tool, NearContactSource& source, const Vector6& a_gu) {
   MotionProgram program({}, tool);
   const NearContacts near = source.near(kPose, 0);
@@ -108,7 +108,7 @@ TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
   EXPECT_GT(held, 300);
 }
 
-TEST(LookAheadProgram, AsksOnlyForWhatIsNearAsLongAsTheToolMovesLittle) {
+TEST(LookAheadProgram, QueriesOnlyNearPointsWhileTheToolMovesLittle) {
   const Vec3 up = Vec3::UnitY();
   Planes planes({{-0.003 * up, up, 0, 1}, {Vec3(0.005, -0.003, 0), up, -1e-3, 1}});
   LookAheadProgram program({}, *kTool, kTool->reach_m);
@@ -119,7 +119,7 @@ TEST(LookAheadProgram, AsksOnlyForWhatIsNearAsLongAsTheToolMovesLittle) {
   EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
 }
 
-TEST(LookAheadProgram, AsksForAllBeforeItSaysThatNothingIsNear) {
+TEST(LookAheadProgram, QueriesAllPointsBeforeItReportsThatNoneIsNear) {
   Planes planes({{Vec3(0, -0.003, 0), Vec3::UnitY(), -1.9e-3, 1}});
   LookAheadProgram program({}, *kTool, kTool->reach_m);
   Vector6 a_gu = Vector6::Zero();
@@ -162,8 +162,8 @@ PointCloud around(const VoxelTool& tool, std::size_t count, double radius_m) {
   return cloud;
 }
 
-// Fewer points than a program takes, so that none is left out. In a fork, which is not convex, a disk can be
-// nearer than its lower bound.
+// There are fewer points than a program accepts, so that none is omitted. A fork is not convex, so a disk in
+// it can be nearer than its lower bound.
 TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
   ToolReport report;
   const auto fork =

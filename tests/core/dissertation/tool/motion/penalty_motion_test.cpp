@@ -1,4 +1,4 @@
-// The penalty rule against the balance of its springs, in closed form.
+// The penalty rule compared with the balance of its springs in closed form.
 #include "core/dissertation/tool/motion/penalty_motion.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ ToolRenderer renderer(const ToolPenaltyParameters& p = {}) {
   return {tool_parameters(p), tool, scenes::kernels(), make_penalty_motion(p, *tool)};
 }
 
-// columns x rows points at y = 0, 2 mm apart; the edges of the tool are 1 mm from any.
+// columns x rows points at y = 0, 2 mm apart. No point is nearer than 1 mm to an edge of the tool.
 PointCloud sheet(int columns, int rows, double x_m = 0) {
   PointCloud cloud;
   for (int j = 0; j < rows; ++j)
@@ -55,7 +55,7 @@ TEST(PenaltyMotion, ToolIsTheDeviceInFreeSpace) {
   }
 }
 
-// k (D - s) = min(N, 10) k_p s
+// Balance of the springs at the depth s: k (D - s) = min(N, 10) k_p s for N points and the device's depth D.
 TEST(PenaltyMotion, SinksUntilTheSpringsBalance) {
   constexpr double k = 600, k_p = 2400, pressed_m = 0.004;
   for (const auto& [columns, rows, pushing] : {std::tuple{20, 10, 10}, {5, 2, 10}, {3, 2, 6}}) {
@@ -68,7 +68,7 @@ TEST(PenaltyMotion, SinksUntilTheSpringsBalance) {
   }
 }
 
-// Then the surface of the tool says where its way out is.
+// The tool's surface then gives the direction out.
 TEST(PenaltyMotion, PointsWithoutANormalPushTheSame) {
   PointCloud bare = sheet(20, 10);
   for (std::size_t i = 0; i < bare.size(); ++i) bare.nx[i] = bare.ny[i] = bare.nz[i] = std::nan("");
@@ -87,7 +87,7 @@ TEST(PenaltyMotion, APointBesideTheMiddleTurnsTheTool) {
 }
 
 // The tool is not constrained: points beyond its middle push it through.
-TEST(PenaltyMotion, PressedHardItPassesTheSurface) {
+TEST(PenaltyMotion, PassesTheSurfaceIfItIsPressedHard) {
   EXPECT_LT(pressed(sheet(20, 10), -0.3).proxy_W.y(), -0.1);
 }
 
@@ -109,8 +109,8 @@ TEST(PenaltyMotion, RestsOnTheMiddlesOfTheVoxelsOfAVoxmap) {
   }
 }
 
-// Behind the layer of voxels nothing is known, and nothing pushes.
-TEST(PenaltyMotion, ThroughALayerOfVoxelsItIsFree) {
+// The map is empty behind the layer of voxels, so no force acts there.
+TEST(PenaltyMotion, IsFreeBehindALayerOfVoxels) {
   ToolPenaltyParameters p;
   p.force_law = PenaltyLaw::voxmap;
   const RenderOutput out = pressed(sheet(40, 40), -0.3, p);
@@ -118,7 +118,7 @@ TEST(PenaltyMotion, ThroughALayerOfVoxelsItIsFree) {
   EXPECT_EQ(out.force_N, Vec3::Zero());
 }
 
-// A map that was made in advance, and one that was not.
+// Compares a map that was made in advance with one that was not.
 TEST(PenaltyMotion, APreparedVoxmapChangesNothing) {
   ToolPenaltyParameters p;
   p.force_law = PenaltyLaw::voxmap;
@@ -139,7 +139,7 @@ TEST(PenaltyMotion, APreparedVoxmapChangesNothing) {
 }
 
 // Half a voxel a step, so a tick moves the tool no farther than its steps do.
-TEST(PenaltyMotion, SaysWhenItsStepsDoNotSuffice) {
+TEST(PenaltyMotion, ReportsWhenItsStepsDoNotSuffice) {
   ToolPenaltyParameters p;
   p.steps_per_tick = 4;
   ToolRenderer r = renderer(p);

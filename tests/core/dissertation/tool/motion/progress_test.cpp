@@ -13,10 +13,10 @@ TEST(MotionProgress, HasNotEndedWhileTheToolComesNearer) {
   }
 }
 
-TEST(MotionProgress, EndsAfterSoManyLooksWithout) {
+TEST(MotionProgress, EndsAfterTheGivenNumberOfStepsWithoutProgress) {
   MotionProgress progress(0.125, 2);
   progress.update(10);
-  progress.update(10 - 0.125);  // just the minimum, which counts as no progress
+  progress.update(10 - 0.125);  // equal to the minimum, which counts as no progress
   EXPECT_FALSE(progress.has_ended());
   progress.update(11);
   EXPECT_TRUE(progress.has_ended());
@@ -29,7 +29,7 @@ TEST(MotionProgress, CountsAgainFromTheNearestWay) {
   progress.update(9);
   EXPECT_FALSE(progress.has_ended());
   progress.update(11);
-  progress.update(9.5);  // nearer than just before, but not than the nearest
+  progress.update(9.5);  // nearer than one step before, but not than the nearest
   EXPECT_TRUE(progress.has_ended());
 }
 

@@ -68,7 +68,7 @@ TEST_P(EveryRule, ToolIsTheDeviceInFreeSpace) {
   }
 }
 
-TEST_P(EveryRule, CloudsWithoutUsePointsHoldNothing) {
+TEST_P(EveryRule, CloudsWithoutUsablePointsHoldNothing) {
   PointCloud none, unmeasured, one;
   for (int i = 0; i < 50; ++i) unmeasured.append(Vec3::Constant(kNaN), Vec3::Constant(kNaN));
   one.append({0, 0, 0}, Vec3::UnitY());
@@ -89,7 +89,8 @@ TEST_P(EveryRule, CloudsWithoutUsePointsHoldNothing) {
   }
 }
 
-// The printed rule has no direction without normals: such points have no effect, and are counted.
+// Points without a normal are counted. They have no effect under the printed rule, which has no direction for
+// them.
 TEST_P(EveryRule, PointsWithoutANormalAreCounted) {
   PointCloud cloud = sheet();
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.nx[i] = cloud.ny[i] = cloud.nz[i] = kNaN;
@@ -131,7 +132,7 @@ TEST_P(EveryRule, AToolLargerThanTheCloudRestsOnIt) {
   EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
 }
 
-TEST_P(EveryRule, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
+TEST_P(EveryRule, ANonFiniteDeviceGivesNoForceAndAFiniteProxy) {
   ToolRenderer r = renderer(GetParam());
   r.on_frame(scenes::frame(sheet()));
   RenderOutput held;
@@ -150,7 +151,7 @@ TEST_P(EveryRule, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
   EXPECT_EQ(r.step(device({0, 0.002, 0}), 0.07).force_N, held.force_N);
 }
 
-TEST_P(EveryRule, StaleFramesAreDroppedAndSaid) {
+TEST_P(EveryRule, StaleFramesAreDroppedAndReported) {
   ToolRenderer r = renderer(GetParam());
   EXPECT_EQ(r.step(device({0, 0.05, 0}), 0).status, RenderStatus::no_frame);
   r.on_frame(scenes::frame(sheet(), 3));
@@ -161,8 +162,6 @@ TEST_P(EveryRule, StaleFramesAreDroppedAndSaid) {
   EXPECT_EQ(out.frame_index, 3);
 }
 
-// Turned and moved as one, scene and device give the same run, turned and moved, up to the length of a step
-// that ends a tick. Walls that are none, between the points of a flat surface, were found here.
 // 5.2 for a tool: a hard constraint on the slave robot, or a soft one.
 TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
   ToolParameters p;
@@ -177,7 +176,7 @@ TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
     const Vec3 expected = command == ToolCommand::tool ? out.proxy_W : device_W;
     EXPECT_EQ(out.slave_W, expected);
     out = r.step(device(Vec3::Constant(kNaN)), 0.3);
-    EXPECT_EQ(out.slave_W, expected);  // repeated
+    EXPECT_EQ(out.slave_W, expected);  // the last command is repeated
   }
 }
 
@@ -193,6 +192,8 @@ TEST(ToolRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
   }
 }
 
+// Scene and device, turned and moved as one, give the same run, turned and moved, up to the length of a step
+// that ends a tick. This test once found walls between the points of a flat surface, where there are none.
 TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {
   const RigidTransform X = Eigen::Translation3d(0.3, -0.2, 0.5) * rotation({0.4, -0.7, 0.2});
   PointCloud rotated;
@@ -210,8 +211,8 @@ TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {
   }
 }
 
-// A corner that slides over a sheet without normals would catch in its points; with disks it glides: the tool
-// keeps its height within a hundredth of a millimetre while the device moves on.
+// A corner that slides over bare points would catch between them. Their disks let it glide: the tool keeps
+// its height within 0.2 mm while the device moves on.
 TEST(ToolRenderer, SlidesWithoutRipple) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet(60, 0.003)));

@@ -25,7 +25,8 @@ struct Field {
   std::vector<float> values;
 };
 
-// Near the surface the float's rounding, elsewhere a voxel, and never too small.
+// The error is at most the rounding of a float near the surface and a voxel elsewhere. The distance is never
+// too small.
 void expect_distances(const TriangleMesh& mesh, std::size_t step, double voxel_m = 5e-4) {
   const Field field(mesh, voxel_m);
   ASSERT_EQ(field.values.size(), field.grid.node_count());
@@ -50,8 +51,8 @@ void expect_distances(const TriangleMesh& mesh, std::size_t step, double voxel_m
   EXPECT_GT(inside, 5);
 }
 
-// Steps without a common factor with the rows: places all over the grid.
-TEST(DistanceField, BallAgainstAllTriangles) {
+// The steps have no common factor with the rows, so the nodes are spread all over the grid.
+TEST(DistanceField, AgreesWithAllTrianglesOfABall) {
   expect_distances(meshes::any_body("ball"), 809);
 }
 TEST(DistanceField, HuskyAgainstAllTriangles) {
@@ -67,7 +68,7 @@ TEST(DistanceField, CoarseVoxelsAgainstAllTriangles) {
   expect_distances(meshes::any_body("fork"), 307, 2e-3);
 }
 
-// Whatever face the search begins with; near, on the other side, and far away.
+// The search may begin with any face. The positions are near, on the other side and far away.
 TEST(TriangleTree, FindsTheNearestFaceAndAllWithinADistance) {
   const TriangleMesh body = meshes::any_body("key");
   const TriangleTree tree(body);
@@ -107,7 +108,7 @@ TEST(TriangleTree, ATriangleWithoutAreaIsAsFarAsItsEdges) {
   }
 }
 
-TEST(TriangleTree, WindsAsTheSolidAnglesTell) {
+TEST(TriangleTree, WindingNumberEqualsTheSumOfSolidAngles) {
   const TriangleMesh body = meshes::any_body("ball");
   const TriangleTree tree(body);
   for (int n = 0; n < 200; ++n) {
@@ -117,8 +118,8 @@ TEST(TriangleTree, WindsAsTheSolidAnglesTell) {
   }
 }
 
-// Inside and outside a box the distance is known, to the edges and corners too.
-TEST(DistanceField, BoxInClosedForm) {
+// The distance to a box has a closed form inside and outside, also for edges and corners.
+TEST(DistanceField, AgreesWithTheClosedFormOfABox) {
   const Vec3 half(0.02, 0.01, 0.005);
   const Field field(box_mesh(2 * half));
   for (std::size_t n = 0; n < field.values.size(); ++n) {
@@ -133,7 +134,7 @@ TEST(DistanceField, BoxInClosedForm) {
 TEST(DistanceField, NeedlesAndTrianglesWithoutAreaDoNoHarm) {
   TriangleMesh body = box_mesh({0.02, 0.02, 0.02});
   const Field before(body);
-  // One edge becomes a corner more and two triangles without area, closed as it was.
+  // Adds a corner on one edge and two triangles without area. The mesh stays closed.
   body.vertices.push_back(0.3 * body.vertices[0] + 0.7 * body.vertices[1]);
   body.triangles.push_back({0, 1, 8}), body.triangles.push_back({0, 8, 1});
   const Field after(body);

@@ -31,7 +31,7 @@ TEST(GeneratedTools, AreClosedBodiesOfOnePart) {
   EXPECT_EQ(find_generated_tool("wolf"), nullptr);
 }
 
-TEST(GeneratedTools, HaveTheSizesThatTheirSummariesTell) {
+TEST(GeneratedTools, HaveTheSizesThatTheirSummariesState) {
   const std::map<std::string, Vec3> mm = {
       {"ball", {20, 20, 20}},    {"bar", {80, 20, 10}},     {"block", {95, 20, 68}},
       {"fork", {126, 22, 77}},   {"husky", {95, 20, 68}},   {"key", {151, 28, 90}},
@@ -64,7 +64,8 @@ TEST(GeneratedTools, TheBallIsRound) {
   }
 }
 
-// Free to move in x and z, it is stopped where its extent first is that of the box of Fig 6.3, 110 x 90 mm.
+// Returns the angle at which the tool, free to move in x and z, is stopped by the box of Fig 6.3, 110 x 90
+// mm: its extent first reaches that of the box.
 double stops_at_deg(const TriangleMesh& mesh, double sense) {
   for (double deg = 0; deg < 90; deg += 0.01) {
     const double angle = sense * deg * 3.14159265358979323846 / 180;
@@ -101,7 +102,7 @@ TEST(MarchingTetrahedra, RefusesABodyThatIsCutOff) {
   EXPECT_THROW(marching_tetrahedra(ball, Vec3(-1.2, -0.5, -1.2), Vec3::Constant(1.2), 0.3), InputError);
 }
 
-// Zeros exactly at nodes, and two bodies that touch in one.
+// The function vanishes exactly at nodes. The second case is two bodies that touch in one node.
 TEST(MarchingTetrahedra, MeshIsClosedIfTheFunctionVanishesAtNodes) {
   const auto diamond = [](const Vec3& p) { return p.cwiseAbs().sum() - 2; };
   const auto two = [](const Vec3& p) {

@@ -12,7 +12,7 @@ Eigen::Matrix3d diagonal(double x, double y, double z) {
   return Vec3(x, y, z).asDiagonal();
 }
 
-TEST(MassProperties, Box) {
+TEST(MassProperties, AreRightForABox) {
   const MassProperties mass = mass_properties(box_mesh({0.3, 0.2, 0.1}, {5, -4, 3}));
   EXPECT_NEAR(mass.volume_m3, 0.006, 1e-15);
   EXPECT_LT((mass.centre - Vec3(5, -4, 3)).norm(), 1e-13);
@@ -20,7 +20,7 @@ TEST(MassProperties, Box) {
 }
 
 // Corners at 0 and the unit vectors: volume 1/6, centre 1/4; inertia 3/40 on and 1/80 off the diagonal.
-TEST(MassProperties, Tetrahedron) {
+TEST(MassProperties, AreRightForATetrahedron) {
   const MassProperties mass =
       mass_properties(meshes::tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}));
   EXPECT_NEAR(mass.volume_m3, 1.0 / 6, 1e-15);
@@ -30,7 +30,7 @@ TEST(MassProperties, Tetrahedron) {
   EXPECT_LT((mass.inertia_m2 - expected).norm(), 1e-15) << mass.inertia_m2;
 }
 
-TEST(MassProperties, BallAsFarAsItsTrianglesAllow) {
+TEST(MassProperties, AreRightForABallWithinItsTriangles) {
   const MassProperties mass = mass_properties(find_generated_tool("ball")->make());
   EXPECT_NEAR(mass.volume_m3, 4.18879e-6, 0.01 * 4.2e-6);
   EXPECT_LT(mass.centre.norm(), 1e-5);

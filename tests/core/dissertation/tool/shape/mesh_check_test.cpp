@@ -50,7 +50,7 @@ TEST(MeshCheck, AFinMakesAnEdgeOfThree) {
   EXPECT_EQ(check.boundary_edges, 2);
 }
 
-TEST(MeshCheck, PartsAndInsideOut) {
+TEST(MeshCheck, CountsPartsAndFindsThoseInsideOut) {
   const TriangleMesh two = meshes::together(kBox, box_mesh({1, 1, 1}, {10, 0, 0}));
   EXPECT_EQ(check_mesh(two).parts, 2);
   const MeshCheck check = check_mesh(meshes::inside_out(two));
@@ -91,7 +91,8 @@ TEST(MeshCheck, ANeedleHasNoArea) {
   EXPECT_EQ(check_mesh(needle).degenerate_triangles, 1);
 }
 
-// Every triangle with corners of its own, one of them twice, every second one turned, two missing.
+// A box as loose triangles: each has corners of its own, one occurs twice, every second one is turned, two
+// are missing.
 TEST(MeshRepair, PutsABoxTogetherAgain) {
   TriangleMesh soup;
   for (std::size_t t = 0; t < 10; ++t) {

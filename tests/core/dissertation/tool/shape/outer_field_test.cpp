@@ -22,8 +22,8 @@ TriangleMesh knife() {
                        meshes::rotated(), Vec3::Zero());
 }
 
-// Places in a solid: on lines between places of its surface, which lie inside where it is convex, and
-// otherwise are asked.
+// Positions in a solid, on lines between positions of its surface. These lie inside if the solid is convex.
+// Otherwise the winding number decides.
 struct Places {
   std::vector<Vec3> inside, on_surface;
 };
@@ -45,7 +45,7 @@ Places places_of(const TriangleMesh& mesh, bool convex) {
   for (std::size_t n = 0; n + 1 < places.on_surface.size(); ++n) {
     const double s = n % 2 == 0 ? fraction(random) : 0.02 * fraction(random);  // also close to the surface
     const Vec3 p = places.on_surface[n] + s * (places.on_surface[n + 1] - places.on_surface[n]);
-    // Angles of all triangles take long.
+    // Winding numbers need long, so only a tenth of the positions is tested.
     if (convex || (n % 20 < 2 && meshes::winding(mesh, p) > 0.5)) places.inside.push_back(p);
   }
   return places;
@@ -84,7 +84,7 @@ TEST_P(OuterField, IsNowhereAboveZeroInTheSolid) {
   EXPECT_LE(highest(outer, places.on_surface), 0);
 }
 
-// No more than the field can be wrong by, and nowhere but around the surface.
+// The field is lowered by no more than its error, and only around the surface.
 TEST_P(OuterField, IsLoweredByPartOfAVoxel) {
   const double voxel_m = GetParam().voxel_m;
   const VoxelTool plain = made(GetParam().mesh, false, voxel_m), outer = made(GetParam().mesh, true, voxel_m);
@@ -102,7 +102,7 @@ TEST_P(OuterField, IsLoweredByPartOfAVoxel) {
   EXPECT_EQ(plain.voxels, outer.voxels);
 }
 
-// But for two cells beside an edge.
+// Positions within two cells of an edge are left out.
 TEST(OuterField, IsTheFieldOnFlatFaces) {
   const TriangleMesh mesh = meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), Vec3::Zero());
   const VoxelTool plain = made(mesh, false), outer = made(mesh, true);
@@ -177,10 +177,10 @@ TEST(SlopeBlocks, BoundTheChangeAlongEveryWay) {
     ASSERT_LE(bound, least + 1e-9);
     closest = std::min(closest, least - bound);
   }
-  EXPECT_LT(closest, 1e-7);  // reached on the flat sides of the blade
+  EXPECT_LT(closest, 1e-7);  // the bound is reached on the flat sides of the blade
 }
 
-TEST(SlopeBlocks, KnowNothingOfLongWaysAndPlacesOutside) {
+TEST(SlopeBlocks, GiveNoBoundForLongPathsAndPositionsOutside) {
   const VoxelTool tool = made(knife(), false);
   const SlopeBlocks slopes(tool.grid, tool.distance_m);
   const Vec3 middle(10, 10, 10);

@@ -1,4 +1,4 @@
-// The pointshell of a box, which is known.
+// The pointshell of a box, for which the result is known.
 #include "core/dissertation/tool/shape/pointshell.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 namespace remote_touch::pointshell_test {
 namespace {
 
-// Number of cubes that have voxels of the shell of a box around the origin: all cubes with voxels of the box,
-// without those that have no outermost voxel, which are all but the first and the last along each axis.
+// Number of cubes that hold voxels of the shell of a box around the origin: all cubes with voxels of the box,
+// less those without an outermost voxel. The latter are all but the first and the last along each axis.
 std::size_t shell_cubes(const Vec3& half_m, double voxel_m, double spacing_m) {
   double all = 1, inner = 1;
   for (const double half : half_m) {
@@ -37,7 +37,7 @@ TEST(Pointshell, LiesOnTheFacesOfABoxWithNormalsIntoIt) {
   }
 }
 
-// No place of the surface is far from a point.
+// No position of the lower face is far from a point.
 TEST(Pointshell, HasNoHoles) {
   const Vec3 half_m(0.02, 0.005, 0.01);
   constexpr double spacing_m = 0.003;

@@ -23,7 +23,7 @@ Vec3 area_of(const Polygon& p) {
   return sum;
 }
 
-// All triangles turn as the polygon does, and have its area in sum.
+// All triangles have the orientation of the polygon, and their areas add up to its area.
 void expect_covered(const Polygon& polygon) {
   const auto triangles = polygon_triangles(polygon);
   ASSERT_TRUE(triangles);
@@ -79,7 +79,7 @@ TEST(PolygonTriangles, CoverAStarAndAComb) {
   expect_covered_from_everywhere(comb);
 }
 
-TEST(PolygonTriangles, HaveNoneWithoutAreaWhereCornersLieOnStraightEdges) {
+TEST(PolygonTriangles, HaveAnAreaAlsoIfCornersLieOnStraightEdges) {
   expect_covered_from_everywhere(
       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
 }
@@ -93,8 +93,8 @@ TEST(PolygonTriangles, FollowTheShadowOfABentFaceOfFour) {
 }
 
 TEST(PolygonTriangles, DoNotExistWhereEdgesCrossOrTouch) {
-  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 2, 0}}));  // unequal loops of an 8
-  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}));  // equal ones: no area
+  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 2, 0}}));  // figure 8, unequal loops
+  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}));  // equal loops: no area
   EXPECT_FALSE(polygon_triangles(around(5, 2)));
   Polygon twice = around(4, 1);
   twice.insert(twice.end(), twice.begin(), twice.begin() + 4);

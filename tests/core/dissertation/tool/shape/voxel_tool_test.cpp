@@ -69,7 +69,8 @@ TEST(VoxelTool, FieldWithinTheGridIsTheDistance) {
     }
 }
 
-// The gradient is that of the interpolated field: held against its differences, in cells and out of the grid.
+// The gradient is that of the interpolated field. It is compared with finite differences, in cells and
+// outside the grid.
 TEST(VoxelTool, TheGradientIsThatOfTheField) {
   const VoxelTool tool = make(box_mesh({0.012, 0.01, 0.008}), {.voxel_m = 1e-3});
   for (int n = 0; n < 200; ++n) {
@@ -101,13 +102,13 @@ TEST(VoxelTool, FieldOutsideTheGridGrowsWithTheDistance) {
       const double expected = q.cwiseMax(0.0).norm();
       const FieldSample sample = sample_field(tool, p);
       EXPECT_GE(sample.distance_m, expected - 5e-4);
-      EXPECT_LE(sample.distance_m, expected + 0.012);  // the distance is summed at the grid's box
+      EXPECT_LE(sample.distance_m, expected + 0.012);  // the distance to the grid's box is added
       EXPECT_GT(sample.gradient_T.dot(displacement), 0.8);
       EXPECT_NEAR(sample.gradient_T.norm(), 1, 1e-9);
     }
 }
 
-TEST(VoxelTool, RefusesWhatIsNotClosed) {
+TEST(VoxelTool, RefusesAMeshThatIsNotClosed) {
   const TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
   ToolReport report;
   EXPECT_EQ(
@@ -120,7 +121,7 @@ TEST(VoxelTool, RefusesWhatIsNotClosed) {
              "a part of the mesh is inside out");
 }
 
-TEST(VoxelTool, RefusesWhatIsNoBody) {
+TEST(VoxelTool, RefusesAMeshThatIsNoBody) {
   TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
   EXPECT_HAS(refusal([] { make({}); }), "no triangles");
   EXPECT_HAS(refusal([&] { make(box, {.size_m = 500}); }),

@@ -38,7 +38,7 @@ TEST(Voxelisation, TheGridEnclosesTheMeshAndTheMargin) {
   }
 }
 
-// Slanted triangles of every size against cells, by cutting the triangle at the six sides of the cell.
+// Slanted triangles of every size. The reference cuts each triangle at the six sides of the cell.
 TEST(Voxelisation, CrossedCellsAreWhereTheTrianglesAre) {
   const double voxel = 4e-3;
   TriangleMesh soup = meshes::together(
@@ -63,8 +63,8 @@ std::vector<Voxel> voxels_in(const TriangleMesh& mesh, const VoxelGrid& grid) {
   return voxels_of(grid, distance_field(TriangleTree(mesh), grid, inside_nodes(mesh, grid).inside));
 }
 
-// A box is as thick as the nearest number of whole voxels: one layer of shell at either face, and an interior
-// of h - 2w.
+// A box is as thick as the nearest number of whole voxels: one layer of shell at each face and the interior
+// between them.
 TEST(Voxelisation, ABoxIsItsThicknessInVoxels) {
   for (const double side : {0.01, 0.0105, 0.01025, 0.0101}) {
     const TriangleMesh box = box_mesh({side, 2 * side, side});
@@ -80,7 +80,7 @@ TEST(Voxelisation, ABoxIsItsThicknessInVoxels) {
   }
 }
 
-// Against solid angles, at nodes that are not on the surface.
+// Compares the inside nodes with winding numbers from solid angles, except on the surface.
 void expect_inside(const TriangleMesh& mesh, double voxel, int step) {
   const VoxelGrid grid = grid_around(mesh, voxel);
   const std::vector<std::uint8_t> inside = inside_nodes(mesh, grid).inside;
@@ -98,14 +98,14 @@ void expect_inside(const TriangleMesh& mesh, double voxel, int step) {
   EXPECT_GT(out, 100);
 }
 
-TEST(Voxelisation, InsideIsWhatTheMeshWindsAround) {
+TEST(Voxelisation, InsideHasANonzeroWindingNumber) {
   expect_inside(meshes::any_body("ball"), 1e-3, 4);
   expect_inside(meshes::any_body("husky"), 2e-3, 5);
   expect_inside(find_generated_tool("key")->make(), 2e-3, 5);
 }
 
-// Lines through edges, corners and the diagonals of faces, all at once.
-TEST(Voxelisation, InsideAtNodesInLineWithEdges) {
+// The nodes are in line with edges, corners and the diagonals of faces, all at once.
+TEST(Voxelisation, FindsTheInsideAtNodesInLineWithEdges) {
   VoxelGrid grid{Vec3(-8, -8, -8), 1, {16, 16, 16}};
   for (const bool diamond : {false, true}) {
     TriangleMesh body = box_mesh({8, 8, 8});
@@ -145,8 +145,8 @@ TEST(Voxelisation, OverlapIsSolidAHollowIsFreeAndInsideOutIsSeen) {
   EXPECT_FALSE(at(wrong, {6.5, 0.5, 0.5}));
 }
 
-// Solid is what has its centre inside; the shell is the solid cells with a free one among their 26
-// neighbours.
+// A cell is solid if its centre is inside. The shell consists of the solid cells with a free cell among their
+// 26 neighbours.
 TEST(Voxelisation, ShellSeparatesInteriorFromFree) {
   const TriangleMesh ball = meshes::any_body("ball");
   const VoxelGrid grid = grid_around(ball, 1e-3);
@@ -171,7 +171,7 @@ TEST(Voxelisation, ShellSeparatesInteriorFromFree) {
   EXPECT_GT(shell, 500);
 }
 
-// A box without bottom and lid, 30 nodes wide: solid but for two hollows towards them.
+// A box without bottom and lid, 30 nodes wide, is solid except for a hollow at each opening.
 TEST(Voxelisation, WindingNumbersFillAnOpenMesh) {
   TriangleMesh tube = meshes::moved(box_mesh({0.03, 0.03, 0.03}), meshes::rotated(), {1e-4, 2e-4, 3e-4});
   const TriangleMesh whole = tube;
