@@ -11,7 +11,7 @@
 namespace remote_touch {
 
 bool ColumnSource::has(const std::string& name) const {
-  const std::vector<std::string> names = columns();
+  const std::vector<std::string> names = column_names();
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -19,7 +19,7 @@ StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
   hdf5_.require_kind("trace", "a trace of remote-touch run or replay");
   std::istringstream list(attribute(hdf5_.attributes(), "columns"));
   list.exceptions(std::ios::badbit);  // lack of memory throws; else it would look like the end
-  for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
+  for (std::string name; std::getline(list, name, ',');) column_names_.push_back(name);
 }
 
 Column StoredTrace::column(const std::string& name) const {
@@ -38,10 +38,10 @@ StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
   hdf5_.require_kind("figure", "a figure of remote-touch figure");
   const std::string tables = "/tables/";
   for (const std::string& path : hdf5_.datasets())
-    if (path.starts_with(tables)) columns_.push_back(path.substr(tables.size()));
+    if (path.starts_with(tables)) column_names_.push_back(path.substr(tables.size()));
 }
 
-std::vector<std::string> ColumnsInMemory::columns() const {
+std::vector<std::string> ColumnsInMemory::column_names() const {
   std::vector<std::string> names;
   for (const Column& column : all_) names.push_back(column.name);
   return names;

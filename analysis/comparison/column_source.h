@@ -12,7 +12,7 @@ namespace remote_touch {
 class ColumnSource {
  public:
   virtual ~ColumnSource() = default;
-  virtual std::vector<std::string> columns() const = 0;  // names, in the order they are stored and hashed
+  virtual std::vector<std::string> column_names() const = 0;  // in the order they are stored and hashed
   virtual Column column(const std::string& name) const = 0;
   // Rows first .. first + count - 1; pre: they exist.
   virtual Column rows(const std::string& name, std::size_t first, std::size_t count) const = 0;
@@ -26,7 +26,7 @@ class StoredTrace final : public ColumnSource {
  public:
   explicit StoredTrace(Hdf5Reader hdf5);
   explicit StoredTrace(const std::filesystem::path& file) : StoredTrace(Hdf5Reader(file)) {}
-  std::vector<std::string> columns() const override { return columns_; }
+  std::vector<std::string> column_names() const override { return column_names_; }
   Column column(const std::string& name) const override;
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
   std::vector<std::uint64_t> running_hash() const;  // kRunningHash
@@ -34,14 +34,14 @@ class StoredTrace final : public ColumnSource {
 
  private:
   Hdf5Reader hdf5_;
-  std::vector<std::string> columns_;
+  std::vector<std::string> column_names_;
 };
 
 // The tables of a figure; columns are named table/column.
 class StoredFigure final : public ColumnSource {
  public:
   explicit StoredFigure(Hdf5Reader hdf5);
-  std::vector<std::string> columns() const override { return columns_; }
+  std::vector<std::string> column_names() const override { return column_names_; }
   Column column(const std::string& name) const override { return hdf5_.column("/tables/" + name); }
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override {
     return hdf5_.rows("/tables/" + name, first, count);
@@ -50,13 +50,13 @@ class StoredFigure final : public ColumnSource {
 
  private:
   Hdf5Reader hdf5_;
-  std::vector<std::string> columns_;
+  std::vector<std::string> column_names_;
 };
 
 class ColumnsInMemory final : public ColumnSource {
  public:
   explicit ColumnsInMemory(std::vector<Column> columns) : all_(std::move(columns)) {}
-  std::vector<std::string> columns() const override;
+  std::vector<std::string> column_names() const override;
   Column column(const std::string& name) const override { return find(name); }
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
 

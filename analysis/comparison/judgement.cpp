@@ -13,7 +13,7 @@ const char* name_of(Judgement judgement) {
   return kNames[static_cast<int>(judgement)];
 }
 
-Judgement judged(double baseline, double candidate, Better better, const Tolerance& tolerance) {
+Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance) {
   if (within(tolerance, baseline, candidate)) return Judgement::equal;
   const double before = badness(baseline, better), now = badness(candidate, better);
   if (better == Better::neither || std::isnan(before) || std::isnan(now) || before == now)

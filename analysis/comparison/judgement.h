@@ -21,7 +21,7 @@ bool is_change(Judgement judgement);  // better, worse or changed
 const char* name_of(Judgement judgement);
 
 // Judges one number: equal, better, worse or changed. A number that was or became NaN is changed.
-Judgement judged(double baseline, double candidate, Better better, const Tolerance& tolerance);
+Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance);
 
 // A measure of one run, in the baseline and in the candidate.
 struct ValueComparison {

@@ -34,9 +34,10 @@ bool Pairs::finite(std::size_t run) const {
   return std::isfinite(baseline[run]) && std::isfinite(value) && (!event || value == 0 || value == 1);
 }
 
-Judgement Pairs::judged(std::size_t run) const {
+Judgement Pairs::judge_run(std::size_t run) const {
   const bool is_judged = same_outcome.empty() || same_outcome[run];
-  return remote_touch::judged(baseline[run], candidate[run], is_judged ? better : Better::neither, tolerance);
+  return remote_touch::judge_value(baseline[run], candidate[run], is_judged ? better : Better::neither,
+                                   tolerance);
 }
 
 MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
@@ -47,7 +48,7 @@ MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
   for (const std::size_t run : runs) {
     const double deviation = std::abs(pairs.candidate[run] - pairs.baseline[run]);
     if (std::isfinite(deviation)) deviations.push_back(deviation);
-    const Judgement judgement = pairs.judged(run);
+    const Judgement judgement = pairs.judge_run(run);
     if (judgement == Judgement::equal) continue;
     if (result.outside++ == 0) result.first_outside = run;
     result.got_better += judgement == Judgement::better, result.got_worse += judgement == Judgement::worse;
@@ -62,7 +63,7 @@ MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
   return result;
 }
 
-RegionComparison tested(const Pairs& pairs, const Runs& runs) {
+RegionComparison paired_tests(const Pairs& pairs, const Runs& runs) {
   RegionComparison result;
   result.runs = static_cast<std::int64_t>(runs.size());
   std::vector<double> all, outside, before, worse_by;
@@ -71,7 +72,7 @@ RegionComparison tested(const Pairs& pairs, const Runs& runs) {
     result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
     if (!finite) continue;
     const double b = pairs.baseline[run], c = pairs.candidate[run];
-    const Judgement judgement = pairs.judged(run);
+    const Judgement judgement = pairs.judge_run(run);
     ++result.pairs;
     result.up += !equal && c > b ? 1 : 0, result.down += !equal && c < b ? 1 : 0;
     result.got_better += judgement == Judgement::better, result.got_worse += judgement == Judgement::worse;

@@ -19,7 +19,7 @@ struct Pairs {
   bool finite(std::size_t run) const;
   bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }
   // equal, better, worse or changed
-  Judgement judged(std::size_t run) const;
+  Judgement judge_run(std::size_t run) const;
 };
 
 // Sets all of MeasureComparison except the name and the units. If runs went both ways, run_by_run is
@@ -27,7 +27,7 @@ struct Pairs {
 MeasureComparison compare_values(const Pairs& pairs, const Runs& runs);
 
 // Computes the tests of a region. Their p values are not yet adjusted, and there is no judgement yet.
-RegionComparison tested(const Pairs& pairs, const Runs& runs);
+RegionComparison paired_tests(const Pairs& pairs, const Runs& runs);
 
 // pre: adjusted_p is set.
 Judgement judgement_by_pairs(const RegionComparison& region, const MeasureComparison& measure,

@@ -120,7 +120,7 @@ std::optional<FirstDifference> first_difference(const SweepResult& a, const Swee
   const auto consider = [&](std::size_t run, const std::string& measure) {
     if (first && first->run <= run) return;
     const std::size_t cell = a.cell_of(run);
-    first = FirstDifference{run, cell, a.place(cell), a.replicate_of(run), measure};
+    first = FirstDifference{run, cell, a.axis_indices(cell), a.replicate_of(run), measure};
     if (!measure.empty())
       first->baseline = a.measure(measure)[run], first->candidate = b.measure(measure)[run];
   };
@@ -134,9 +134,9 @@ std::optional<FirstDifference> first_difference(const SweepResult& a, const Swee
 std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const std::vector<Region>& regions) {
   std::vector<Runs> split(regions.size());
   for (const std::size_t run : runs) {
-    const std::vector<std::size_t> place = result.place(result.cell_of(run));
+    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
     for (std::size_t i = 0; i < regions.size(); ++i)
-      if (regions[i].contains(place)) split[i].push_back(run);
+      if (regions[i].contains(indices)) split[i].push_back(run);
   }
   return split;
 }
@@ -213,7 +213,7 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
   }
   for (std::size_t region = 0; region < runs.size(); ++region)
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      result.by_region.push_back(tested(pairs[i], runs[region]));
+      result.by_region.push_back(paired_tests(pairs[i], runs[region]));
       result.by_region.back().region = region, result.by_region.back().measure = i;
     }
   result.first = first_difference(baseline, candidate, result);

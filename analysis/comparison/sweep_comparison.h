@@ -44,7 +44,7 @@ struct MeasureComparison {
 // tolerance.
 struct FirstDifference {
   std::size_t run = 0, cell = 0;
-  std::vector<std::size_t> place;  // index of the cell on each axis
+  std::vector<std::size_t> axis_indices;  // index of the cell on each axis
   int replicate = 0;
   std::string measure;  // the first measure outside; empty: the run is done in one sweep only
   double baseline = 0, candidate = 0;

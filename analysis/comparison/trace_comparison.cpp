@@ -189,7 +189,7 @@ bool TraceComparison::is_same() const {
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const Tolerances& tolerances) {
   TraceComparison result;
-  for (const std::string& name : baseline.columns()) {
+  for (const std::string& name : baseline.column_names()) {
     if (name == kRunningHash) continue;
     const Column ours = baseline.column(name);
     if (candidate.has(name)) {
@@ -200,7 +200,7 @@ TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource
       result.columns.back().problem = "missing in the candidate";
     }
   }
-  for (const std::string& name : candidate.columns())
+  for (const std::string& name : candidate.column_names())
     if (name != kRunningHash && !baseline.has(name)) result.added.push_back(name);
   return result;
 }

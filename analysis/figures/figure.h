@@ -38,8 +38,8 @@ struct Panel {
   bool equal_aspect = false;
   std::vector<Curve> curves = {};
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};
-  std::optional<std::pair<double, double>> place = {};  // row, column; absent: below the last
-  std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
+  std::optional<std::pair<double, double>> grid_position = {};  // row, column; absent: below the last
+  std::optional<Scene> scene = {};                              // drawn instead of curves, without axes
 };
 
 // open: measured, but only on a part of the claim's range. differs: the paper prints another value than the

@@ -88,7 +88,7 @@ void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) 
   hdf5.attribute(path, "target", vector(scene.target));
   hdf5.attribute(path, "up", vector(scene.up));
   hdf5.attribute(path, "width", std::vector{scene.width_m});
-  hdf5.attribute(path, "proportion", std::vector{scene.proportion});
+  hdf5.attribute(path, "proportion", std::vector{scene.height_per_width});
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const ScenePart& part = scene.parts[i];
     const std::string place = path + "/part" + std::to_string(i);
@@ -114,7 +114,8 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
   hdf5.attribute(path, "equal_aspect", panel.equal_aspect ? 1 : 0);
   hdf5.attribute(path, "x_range", std::vector{x.first, x.second});
   hdf5.attribute(path, "y_range", std::vector{y.first, y.second});
-  if (panel.place) hdf5.attribute(path, "place", std::vector{panel.place->first, panel.place->second});
+  if (panel.grid_position)
+    hdf5.attribute(path, "place", std::vector{panel.grid_position->first, panel.grid_position->second});
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];
     const std::string place = path + "/curve" + std::to_string(i);

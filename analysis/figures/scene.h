@@ -28,8 +28,8 @@ struct ScenePart {
 
 struct Scene {
   Vec3 eye = Vec3::Zero(), target = Vec3::UnitZ(), up = Vec3::UnitY();
-  double width_m = 1;        // visible width at the distance of the target
-  double proportion = 0.75;  // height / width
+  double width_m = 1;  // visible width at the distance of the target
+  double height_per_width = 0.75;
   std::vector<ScenePart> parts = {};
 };
 

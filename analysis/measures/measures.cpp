@@ -35,7 +35,7 @@ struct Row {
   const char *name, *unit, *meaning;
   MeasuredRuns runs;
   Better better;
-  double (*of)(const Trace&);
+  double (*compute)(const Trace&);
 };
 
 // A force, its work, a count of contacts or a time is neither good nor bad by itself: a proxy that holds a
@@ -165,7 +165,7 @@ const std::vector<Measure>& built_in_measures() {
   static const std::vector<Measure> all = [] {
     std::vector<Measure> made;
     for (const Row& row : kMeasures)
-      made.push_back({row.name, row.unit, row.meaning, row.runs, row.of, row.better});
+      made.push_back({row.name, row.unit, row.meaning, row.runs, row.compute, row.better});
     return made;
   }();
   return all;
@@ -210,7 +210,7 @@ bool needs_true_contact(const Measure& measure) {
 }
 
 double value_of(const Measure& measure, const Trace& trace) {
-  return applies(measure, trace) ? measure.of(trace) : kNoValue;
+  return applies(measure, trace) ? measure.compute(trace) : kNoValue;
 }
 
 double popped_through(const Trace& trace) {

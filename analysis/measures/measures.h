@@ -54,7 +54,7 @@ struct Measure {
   std::string unit;     // "m", "N/s"; "1" for a ratio or a count
   std::string meaning;  // one line that continues "the measure is the ..."
   MeasuredRuns runs = MeasuredRuns::all;
-  std::function<double(const Trace&)> of;  // NaN if it has no value; called from many threads
+  std::function<double(const Trace&)> compute;  // NaN if it has no value; called from many threads
   // The direction in which it gets better. It is the last member, so that a program may omit it.
   Better better = Better::neither;
 };

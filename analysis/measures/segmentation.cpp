@@ -25,7 +25,7 @@ double SegmentationScore::recall() const {
   return fraction(found, found + missed);
 }
 double SegmentationScore::precision() const {
-  return fraction(found, picked());
+  return fraction(found, selected());
 }
 double SegmentationScore::depth_fraction() const {
   return fraction(found + missed, found + missed + of_class_without_depth);
@@ -34,20 +34,20 @@ std::pair<double, double> SegmentationScore::recall_interval() const {
   return wilson_interval(found, found + missed);
 }
 std::pair<double, double> SegmentationScore::precision_interval() const {
-  return wilson_interval(found, picked());
+  return wilson_interval(found, selected());
 }
 
-SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
+SegmentationScore score_segmentation(const std::vector<char>& selected, const std::vector<char>& of_class,
                                      const std::vector<char>& has_depth) {
-  if (picked.size() != of_class.size() || picked.size() != has_depth.size())
+  if (selected.size() != of_class.size() || selected.size() != has_depth.size())
     throw std::invalid_argument("score_segmentation: columns differ in length");
   SegmentationScore score;
-  for (std::size_t i = 0; i < picked.size(); ++i) {
+  for (std::size_t i = 0; i < selected.size(); ++i) {
     if (!has_depth[i])
       score.of_class_without_depth += of_class[i] ? 1 : 0;
     else if (of_class[i])
-      ++(picked[i] ? score.found : score.missed);
-    else if (picked[i])
+      ++(selected[i] ? score.found : score.missed);
+    else if (selected[i])
       ++score.wrong;
   }
   return score;

@@ -17,7 +17,7 @@ struct SegmentationScore {
 
   SegmentationScore& operator+=(const SegmentationScore& other);
 
-  int picked() const { return found + wrong; }
+  int selected() const { return found + wrong; }
   // Fractions; NaN if the denominator is 0: no pixel of the class, or none selected.
   double recall() const;          // selected fraction of the pixels of the class with depth
   double precision() const;       // fraction of the selected pixels that are of the class
@@ -31,7 +31,7 @@ struct SegmentationScore {
 
 // Counts the pixels. All three arguments have one entry for each pixel. Throws std::invalid_argument if their
 // lengths differ.
-SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
+SegmentationScore score_segmentation(const std::vector<char>& selected, const std::vector<char>& of_class,
                                      const std::vector<char>& has_depth);
 
 }  // namespace remote_touch

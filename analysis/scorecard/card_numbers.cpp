@@ -23,52 +23,52 @@ Column column_of(const char* name, const char* units, const char* meaning, Value
 
 // The columns scene, method and noise_sigma.
 template <class Row>
-std::vector<Column> places(const std::vector<Row>& rows) {
+std::vector<Column> cell_columns(const std::vector<Row>& rows) {
   Texts scene, method;
   Numbers noise;
   for (const Row& row : rows) {
-    scene.push_back(row.place.scene), method.push_back(row.place.method);
-    noise.push_back(row.place.noise_m);
+    scene.push_back(row.cell.scene), method.push_back(row.cell.method);
+    noise.push_back(row.cell.noise_m);
   }
   return {column_of("scene", "1", "scene", scene), column_of("method", "1", "method", method),
           column_of("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise)};
 }
 
-CardPlace place_in(const Table& table, std::size_t row) {
+CardCell cell_in(const Table& table, std::size_t row) {
   return {values_of<Texts>(table, "scene")[row], values_of<Texts>(table, "method")[row],
           values_of<Numbers>(table, "noise_sigma")[row]};
 }
 
 // Key for sorting. A NaN noise is the scene's own, and comes before all others.
-std::tuple<std::string, std::string, double> key_of(const CardPlace& place) {
-  return {place.scene, place.method, std::isnan(place.noise_m) ? -1 : place.noise_m};
+std::tuple<std::string, std::string, double> key_of(const CardCell& cell) {
+  return {cell.scene, cell.method, std::isnan(cell.noise_m) ? -1 : cell.noise_m};
 }
 
-std::string words(const CardPlace& place) {
-  if (std::isnan(place.noise_m)) return place.scene + ", " + place.method + ", own noise";
+std::string words(const CardCell& cell) {
+  if (std::isnan(cell.noise_m)) return cell.scene + ", " + cell.method + ", own noise";
   char noise[40];
-  std::snprintf(noise, sizeof noise, ", noise %g mm", 1e3 * place.noise_m);
-  return place.scene + ", " + place.method + noise;
+  std::snprintf(noise, sizeof noise, ", noise %g mm", 1e3 * cell.noise_m);
+  return cell.scene + ", " + cell.method + noise;
 }
 
-std::string sentence(const CardPlace& place, const char* format, auto... numbers) {
+std::string sentence(const CardCell& cell, const char* format, auto... numbers) {
   char text[200];
   std::snprintf(text, sizeof text, format, numbers...);
-  return words(place) + ": " + text;
+  return words(cell) + ": " + text;
 }
 
 void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std::vector<std::string>& list) {
   const Proportion &a = then.successes, &b = now.successes;
   if (b.runs > 0 && b.fraction >= a.low && b.fraction <= a.high) return;
-  list.push_back(sentence(now.place, "%d of %d runs succeed, stored %d of %d (%.3g to %.3g)", b.events,
-                          b.runs, a.events, a.runs, a.low, a.high));
+  list.push_back(sentence(now.cell, "%d of %d runs succeed, stored %d of %d (%.3g to %.3g)", b.events, b.runs,
+                          a.events, a.runs, a.low, a.high));
 }
 
 void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::vector<std::string>& list) {
   const MeanDifference &a = then.value, &b = now.value;
   if (std::isnan(a.mean)) return;  // no stored mean to compare with; the counts show it
   if (then.units != now.units) {
-    list.push_back(words(now.place) + ": " + now.measure + " is in " + now.units + ", stored in " +
+    list.push_back(words(now.cell) + ": " + now.measure + " is in " + now.units + ", stored in " +
                    then.units);
     return;
   }
@@ -78,9 +78,9 @@ void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::v
   const double high = (std::isnan(a.high) ? a.mean : a.high) + slack;
   if (b.mean >= low && b.mean <= high) return;
   if (std::isnan(b.mean))
-    list.push_back(sentence(now.place, "%s is NaN, stored %.6g", what.c_str(), a.mean));
+    list.push_back(sentence(now.cell, "%s is NaN, stored %.6g", what.c_str(), a.mean));
   else
-    list.push_back(sentence(now.place, "%s is %.6g, stored %.6g (%.6g to %.6g)", what.c_str(), b.mean, a.mean,
+    list.push_back(sentence(now.cell, "%s is %.6g, stored %.6g (%.6g to %.6g)", what.c_str(), b.mean, a.mean,
                             low, high));
 }
 
@@ -91,11 +91,11 @@ CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
   for (const SceneScore& scene : card.scenes)
     for (std::size_t c = 0; c < card.methods.size(); ++c)
       for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
-        const CardPlace place{scene.name, card.methods[c], scene.noise_m[i]};
-        numbers.counts.push_back({place, scene.success[c].at_level[i]});
+        const CardCell cell{scene.name, card.methods[c], scene.noise_m[i]};
+        numbers.counts.push_back({cell, scene.success[c].at_level[i]});
         for (const JudgedMeasure& measure : scene.measures)
           if (kept == KeptMeasures::all || measure.better != Better::neither)
-            numbers.means.push_back({place, measure.name, measure.units, measure.at_level[c][i]});
+            numbers.means.push_back({cell, measure.name, measure.units, measure.at_level[c][i]});
       }
   return numbers;
 }
@@ -108,7 +108,8 @@ Table counts_table(const CardNumbers& numbers) {
     fraction.push_back(row.successes.fraction);
     low.push_back(row.successes.low), high.push_back(row.successes.high);
   }
-  Table table{"success", "fractions of successful runs with Wilson's 95 % interval", places(numbers.counts)};
+  Table table{"success", "fractions of successful runs with Wilson's 95 % interval",
+              cell_columns(numbers.counts)};
   table.columns.push_back(column_of("successes", "1", "successful runs", events));
   table.columns.push_back(
       column_of("runs", "1", "number of runs; identical runs, as without noise, count once", runs));
@@ -131,7 +132,7 @@ Table means_table(const CardNumbers& numbers) {
       "measures",
       "means with Student's 95 % intervals; judged measures over the successful runs, reported measures over "
       "all runs",
-      places(numbers.means)};
+      cell_columns(numbers.means)};
   table.columns.push_back(column_of("measure", "1", "measure", measure));
   table.columns.push_back(column_of("units", "1", "unit of the measure", units));
   table.columns.push_back(column_of("runs", "1", "runs that have a number", runs));
@@ -148,11 +149,11 @@ CardNumbers numbers_in(const Table& counts, const Table& means) {
   };
   for (std::size_t i = 0; i < values_of<Texts>(counts, "scene").size(); ++i)
     numbers.counts.push_back(
-        {place_in(counts, i),
+        {cell_in(counts, i),
          {values_of<Counts>(counts, "successes")[i], values_of<Counts>(counts, "runs")[i],
           number(counts, "fraction", i), number(counts, "low", i), number(counts, "high", i)}});
   for (std::size_t i = 0; i < values_of<Texts>(means, "scene").size(); ++i)
-    numbers.means.push_back({place_in(means, i),
+    numbers.means.push_back({cell_in(means, i),
                              values_of<Texts>(means, "measure")[i],
                              values_of<Texts>(means, "units")[i],
                              {values_of<Counts>(means, "runs")[i], number(means, "mean", i),
@@ -163,20 +164,20 @@ CardNumbers numbers_in(const Table& counts, const Table& means) {
 std::vector<std::string> differences(const CardNumbers& stored, const CardNumbers& now) {
   std::map<decltype(key_of({})), const CardNumbers::Count*> counts;
   std::map<std::pair<decltype(key_of({})), std::string>, const CardNumbers::Mean*> means;
-  for (const auto& row : stored.counts) counts[key_of(row.place)] = &row;
-  for (const auto& row : stored.means) means[{key_of(row.place), row.measure}] = &row;
+  for (const auto& row : stored.counts) counts[key_of(row.cell)] = &row;
+  for (const auto& row : stored.means) means[{key_of(row.cell), row.measure}] = &row;
   std::vector<std::string> list;
   for (const auto& row : now.counts) {
-    const auto found = counts.find(key_of(row.place));
+    const auto found = counts.find(key_of(row.cell));
     if (found == counts.end())
-      list.push_back(words(row.place) + ": its successes are not in the stored card");
+      list.push_back(words(row.cell) + ": its successes are not in the stored card");
     else
       compare(*found->second, row, list);
   }
   for (const auto& row : now.means) {
-    const auto found = means.find({key_of(row.place), row.measure});
+    const auto found = means.find({key_of(row.cell), row.measure});
     if (found == means.end())
-      list.push_back(words(row.place) + ": " + row.measure + " is not in the stored card");
+      list.push_back(words(row.cell) + ": " + row.measure + " is not in the stored card");
     else
       compare(*found->second, row, list);
   }

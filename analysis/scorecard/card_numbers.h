@@ -12,18 +12,18 @@
 namespace remote_touch {
 
 // The scene, method and noise level that a number of a card belongs to. noise_m: NaN for a scene's own noise.
-struct CardPlace {
+struct CardCell {
   std::string scene, method;
   double noise_m = 0;
 };
 
 struct CardNumbers {
   struct Count {
-    CardPlace place;
+    CardCell cell;
     Proportion successes;
   };
   struct Mean {
-    CardPlace place;
+    CardCell cell;
     std::string measure, units;
     MeanDifference value;  // NaN if no run succeeded; the interval is NaN also for one run
   };

@@ -33,7 +33,7 @@ MethodComparison comparison(const std::vector<double>& worse_by, bool event) {
   std::int64_t plus = 0, minus = 0;
   for (const double d : worse_by) sum += d, plus += d > 0, minus += d < 0;
   result.p = event ? sign_test(plus, minus) : mean_test(worse_by);
-  result.is_better = sum < 0;
+  result.has_better_mean = sum < 0;
   return result;
 }
 

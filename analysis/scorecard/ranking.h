@@ -28,9 +28,9 @@ inline constexpr double kSignificance = 0.05;
 // Comparison of one method with another, over the pairs in which both have a number.
 struct MethodComparison {
   double p = std::numeric_limits<double>::quiet_NaN();  // two-sided; NaN: fewer than kMinPairs
-  bool is_better = false;                               // true: the first is better in the mean of the pairs
+  bool has_better_mean = false;                         // true: the first is better in the mean of the pairs
 
-  bool shows_better() const { return is_better && p < kSignificance; }
+  bool shows_better() const { return has_better_mean && p < kSignificance; }
 };
 
 struct Ranking {

@@ -224,7 +224,7 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
   panel.y_range = std::pair(-0.05, 1.05);
   constexpr std::size_t kAcross = 5;
   const std::size_t row = number / kAcross, column = number % kAcross;
-  panel.place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   for (std::size_t c = 0; c < card.methods.size(); ++c) {
     const std::string& name = card.methods[c];
     std::vector<double> fraction, low, high;

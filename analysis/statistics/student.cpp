@@ -38,15 +38,15 @@ double hall_t(const Moments& m) {
 }
 
 // Returns the numbers of each group without NaNs. The first list has the numbers that are alone in their
-// group, except those of certain groups.
+// group, except those of groups without scatter.
 std::vector<std::vector<double>> with_lone_numbers_together(const std::vector<std::vector<double>>& groups,
-                                                            const std::vector<bool>& certain) {
+                                                            const std::vector<bool>& without_scatter) {
   std::vector<std::vector<double>> known(1);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     std::vector<double> numbers;
     std::copy_if(groups[i].begin(), groups[i].end(), std::back_inserter(numbers),
                  [](double value) { return !std::isnan(value); });
-    if (numbers.size() == 1 && !(i < certain.size() && certain[i]))
+    if (numbers.size() == 1 && !(i < without_scatter.size() && without_scatter[i]))
       known.front().push_back(numbers.front());
     else
       known.push_back(numbers);
@@ -75,12 +75,12 @@ double student_quantile(double probability, int degrees) {
 }
 
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
-                            const std::vector<bool>& certain) {
+                            const std::vector<bool>& without_scatter) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   MeanDifference result{0, kNone, kNone, kNone};
   double all = 0, sum = 0, scatter = 0, squares = 0;
   bool has_scatter = false;
-  for (const auto& group : with_lone_numbers_together(groups, certain)) {
+  for (const auto& group : with_lone_numbers_together(groups, without_scatter)) {
     const Moments m = moments_of(group);
     all += m.count, sum += m.count * m.mean;
     if (m.count < 2) continue;

@@ -16,11 +16,11 @@ double student_quantile(double probability, int degrees);
 // Mean over all numbers and its 95 % interval, from the scatter within each group, such as a noise level: the
 // means of groups may differ. Degrees of freedom by F. Satterthwaite (Biometrics Bulletin 2 (1946), 110-114),
 // rounded down. A number that is alone in its group shows no scatter of its own. All such numbers together
-// form one group (one number alone adds no scatter), except those of a group i with certain[i], whose scatter
-// is known to be 0 (an empty list: false for all groups). NaNs are skipped. The mean is NaN without numbers;
-// the interval is NaN if no group then has two numbers.
+// form one group (one number alone adds no scatter), except those of a group i with without_scatter[i], whose
+// scatter is known to be 0 (an empty list: false for all groups). NaNs are skipped. The mean is NaN without
+// numbers; the interval is NaN if no group then has two numbers.
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
-                            const std::vector<bool>& certain = {});
+                            const std::vector<bool>& without_scatter = {});
 
 // Tests that the mean of n paired differences is 0. Returns the largest of three p values: the two-sided p of
 // Student's t, that of Student's t corrected for skewness (P. Hall, J. R. Stat. Soc. B 54 (1992), 221-228),

@@ -18,7 +18,7 @@ namespace {
 
 std::string block(const std::string& sum) {
   std::string text = std::string(kResultOpening) + sum + "\n";
-  text.resize(kDigestBlockSize, '\0');
+  text.resize(kSealBlockSize, '\0');
   return text;
 }
 
@@ -36,14 +36,14 @@ struct Superblock {
   }
   // Makes an address count from the start of the HDF5 part, as in an image without a user block.
   void move(std::size_t place) {
-    const std::uint64_t address = at(place) - kDigestBlockSize;
+    const std::uint64_t address = at(place) - kSealBlockSize;
     std::memcpy(bytes.data() + place, &address, sizeof address);
   }
 };
 
 }  // namespace
 
-std::vector<char> with_file_digest(const std::vector<char>& image) {
+std::vector<char> with_seal(const std::vector<char>& image) {
   Sha256 hash;
   hash.add(image.data(), image.size());
   const std::string text = block(hash.hex());
@@ -54,8 +54,8 @@ std::vector<char> with_file_digest(const std::vector<char>& image) {
   return sealed;
 }
 
-void write_file_digest(const std::filesystem::path& file) {
-  const std::string text = block(sha256_of_file(file, kDigestBlockSize));
+void write_seal(const std::filesystem::path& file) {
+  const std::string text = block(sha256_of_file(file, kSealBlockSize));
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
   int error = descriptor < 0 ? errno : 0;
   if (error == 0) {
@@ -86,24 +86,24 @@ bool has_result_header(const std::filesystem::path& file) {
   return opening_of(file, kResultOpening.size()) == kResultOpening;
 }
 
-FileDigest file_digest_of(const std::filesystem::path& file) {
-  const std::string found = opening_of(file, kDigestBlockSize);
-  if (!found.starts_with(kResultOpening)) return FileDigest::absent;
+SealState seal_state_of(const std::filesystem::path& file) {
+  const std::string found = opening_of(file, kSealBlockSize);
+  if (!found.starts_with(kResultOpening)) return SealState::absent;
   const bool is_as_written =
-      found == block(sha256_of_file(file, kDigestBlockSize)) || was_opened_for_writing(file);
-  return is_as_written ? FileDigest::valid : FileDigest::broken;
+      found == block(sha256_of_file(file, kSealBlockSize)) || was_opened_for_writing(file);
+  return is_as_written ? SealState::valid : SealState::broken;
 }
 
 bool was_opened_for_writing(const std::filesystem::path& file) {
-  const std::string opening = opening_of(file, kDigestBlockSize + Superblock::kSize);
-  Superblock first{opening.substr(kDigestBlockSize)};
+  const std::string opening = opening_of(file, kSealBlockSize + Superblock::kSize);
+  Superblock first{opening.substr(kSealBlockSize)};
   std::error_code unreachable;
-  if (!first.is_of_version_0() || first.at(Superblock::kBase) != kDigestBlockSize ||
+  if (!first.is_of_version_0() || first.at(Superblock::kBase) != kSealBlockSize ||
       first.at(Superblock::kEnd) != std::filesystem::file_size(file, unreachable))
     return false;
   first.move(Superblock::kBase), first.move(Superblock::kEnd);
-  const std::string sum = sha256_of_file(file, kDigestBlockSize + Superblock::kSize, first.bytes);
-  return opening.substr(0, kDigestBlockSize) == block(sum);
+  const std::string sum = sha256_of_file(file, kSealBlockSize + Superblock::kSize, first.bytes);
+  return opening.substr(0, kSealBlockSize) == block(sum);
 }
 
 }  // namespace remote_touch

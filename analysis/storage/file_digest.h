@@ -13,15 +13,15 @@ namespace remote_touch {
 
 inline constexpr std::string_view kResultOpening =
     "Remote Touch result. HDF5 begins at byte 512; SHA-256 from there on:\n";
-inline constexpr std::size_t kDigestBlockSize = 512;  // the smallest user block there is
+inline constexpr std::size_t kSealBlockSize = 512;  // the smallest user block there is
 
 // Returns the image of an HDF5 file with the seal in front of it, as h5jam adds a user block. The library
 // finds the start of the HDF5 part and counts offsets from there.
-std::vector<char> with_file_digest(const std::vector<char>& image);
+std::vector<char> with_seal(const std::vector<char>& image);
 
 // Seals a finished file in place. Throws std::exception with the reason if it cannot be read or written. pre:
-// the file has a user block of kDigestBlockSize bytes.
-void write_file_digest(const std::filesystem::path& file);
+// the file has a user block of kSealBlockSize bytes.
+void write_seal(const std::filesystem::path& file);
 
 // Returns the first `size` bytes of a file. The result is filled up with zeros if the file is shorter or
 // cannot be read.
@@ -31,9 +31,9 @@ std::string opening_of(const std::filesystem::path& file, std::size_t size);
 bool has_result_header(const std::filesystem::path& file);
 
 // valid: every byte is as it was written, except the bytes that was_opened_for_writing() allows to differ.
-enum class FileDigest { valid, absent, broken };
+enum class SealState { valid, absent, broken };
 // Throws InputError when the file cannot be read.
-FileDigest file_digest_of(const std::filesystem::path& file);
+SealState seal_state_of(const std::filesystem::path& file);
 
 // True if another program opened a finished result for writing and changed nothing. The HDF5 library then
 // rewrites two addresses in the first block of the file. The SHA-256 holds with the original addresses.

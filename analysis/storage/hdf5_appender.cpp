@@ -76,7 +76,7 @@ void Hdf5Appender::require_no_device() const {
 
 void Hdf5Appender::begin() {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  check(H5Pset_userblock(creation, kDigestBlockSize));
+  check(H5Pset_userblock(creation, kSealBlockSize));
   check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // needed for attributes above 64 KiB
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
   check(file_ < 0 ? -1 : 0);
@@ -167,7 +167,7 @@ void Hdf5Appender::finish() {
     check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
     if (!close()) throw_refusal();
   });
-  guarded([&] { write_file_digest(temporary_); });
+  guarded([&] { write_seal(temporary_); });
   move_into_place(temporary_, target_);
   finished_ = true;
 }

@@ -76,11 +76,11 @@ bool require_readable(const std::filesystem::path& file) {
   std::error_code unreachable;
   const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
   if (size == 0) refuse(file, "empty");
-  const FileDigest found = file_digest_of(file);
-  if (found == FileDigest::broken)
+  const SealState found = seal_state_of(file);
+  if (found == SealState::broken)
     refuse(file, "damaged or modified (its SHA-256 does not match)", "a result of this program");
   if (!has_hdf5_signature(file, size)) refuse(file, "not a readable HDF5 file", "a result of this program");
-  return found == FileDigest::valid;
+  return found == SealState::valid;
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ class Hdf5Reader::HeldFile {
 };
 
 bool Hdf5Reader::is_replaced() const {
-  return held_ && !held_->has_name(file_);
+  return held_file_ && !held_file_->has_name(file_);
 }
 
 // Any exception of the library, except for lack of memory, is reported as damage of the file.
@@ -180,9 +180,9 @@ bool Hdf5Reader::open(const RunInChild& run) {
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, const RunInChild& run) : file_(file.string()) {
   require_regular(file);
-  held_ = std::make_shared<HeldFile>(file_);
+  held_file_ = std::make_shared<HeldFile>(file_);
   try {
-    if (open(run)) held_.reset();
+    if (open(run)) held_file_.reset();
   } catch (const InputError&) {
     if (is_replaced()) throw ReplacedFile(file_);
     throw;

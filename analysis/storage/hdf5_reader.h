@@ -65,7 +65,7 @@ class Hdf5Reader {
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;
-  std::shared_ptr<const HeldFile> held_;  // set if queries open the file by its name
+  std::shared_ptr<const HeldFile> held_file_;  // set if queries open the file by its name
   std::shared_ptr<const Hdf5Source> content_;
   TextAttributes attributes_;
 };

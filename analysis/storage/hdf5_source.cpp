@@ -63,8 +63,8 @@ class LibrarySource final : public Hdf5Source {
     return read_dataset(opened(dataset), last_part(dataset), nullptr);
   }
   Column rows(const std::string& dataset, std::size_t first, std::size_t count) const override {
-    const RowRange some{first, count};
-    return read_dataset(opened(dataset), last_part(dataset), &some);
+    const RowRange range{first, count};
+    return read_dataset(opened(dataset), last_part(dataset), &range);
   }
   std::int64_t offset(const std::string& dataset) const override {
     const haddr_t offset = H5Dget_offset(opened(dataset));

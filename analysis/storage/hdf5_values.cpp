@@ -210,19 +210,19 @@ bool has_texts_by_character(hid_t data, hid_t type, const std::vector<hsize_t>& 
 
 }  // namespace
 
-Column read_dataset(hid_t data, const std::string& name, const RowRange* some) {
+Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
   const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
   std::vector<hsize_t> size = checked_extent(data, type, space, name);
   std::vector<hsize_t> start(size.size(), 0);
   Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
   const bool by_character = has_texts_by_character(data, type, size);
   column.width = static_cast<int>(size.size() == 2 && !by_character ? size[1] : 1);
-  if (some) start[0] = some->first, size[0] = some->count;
+  if (rows) start[0] = rows->first, size[0] = rows->count;
   Selection wanted;
   wanted.count = product(size, 1).value();
   if (by_character) wanted.text_length = size.back();
   if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type, name);
-  if (!some) {
+  if (!rows) {
     column.values = read_values(data, type, wanted);
     return column;
   }

@@ -19,8 +19,8 @@ struct RowRange {
   hsize_t first, count;
 };
 
-// Reads all rows of a dataset if `some` is null, else those rows. Throws std::exception with what is wrong
+// Reads all rows of a dataset if `rows` is null, else those rows. Throws std::exception with what is wrong
 // with it.
-Column read_dataset(hid_t data, const std::string& name, const RowRange* some);
+Column read_dataset(hid_t data, const std::string& name, const RowRange* rows);
 
 }  // namespace remote_touch

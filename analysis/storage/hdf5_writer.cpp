@@ -210,7 +210,7 @@ void Hdf5Writer::save(const std::filesystem::path& target) {
   std::vector<char> image(size());
   if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
     throw_refusal();
-  if (sealed_) image = with_file_digest(image);
+  if (sealed_) image = with_seal(image);
   write_file_atomically(target, image.data(), image.size());
 }
 

@@ -21,7 +21,7 @@ Belief belief(const SweepResult& result, const RefinementRule& rule, std::size_t
   return {t.runs > 0, low < 0.5 && high > 0.5, 2 * t.events > t.runs};
 }
 
-int asked_for(const SweepResult& result, std::size_t cell) {
+int requested_replicates(const SweepResult& result, std::size_t cell) {
   int count = 0;
   for (int replicate = 0; replicate < result.replicates; ++replicate)
     count += result.state[result.run(cell, replicate)] != RunState::not_sampled ? 1 : 0;
@@ -32,7 +32,7 @@ int asked_for(const SweepResult& result, std::size_t cell) {
 // at every spacing from the first round's down to 2.
 void add_between(const SweepResult& result, const std::vector<Belief>& beliefs,
                  const std::vector<std::size_t>& strides, std::size_t cell, std::set<std::size_t>& cells) {
-  const std::vector<std::size_t> here = result.place(cell);
+  const std::vector<std::size_t> here = result.axis_indices(cell);
   for (std::size_t axis = 0; axis < here.size(); ++axis)
     for (std::size_t stride = strides[axis]; stride >= 2; stride /= 2) {
       std::vector<std::size_t> there = here;
@@ -42,7 +42,7 @@ void add_between(const SweepResult& result, const std::vector<Belief>& beliefs,
       if (!a.known || !b.known || !(a.uncertain || b.uncertain || a.likely != b.likely)) continue;
       there[axis] -= stride / 2;
       const std::size_t middle = result.cell_at(there);
-      if (asked_for(result, middle) == 0) cells.insert(middle);
+      if (requested_replicates(result, middle) == 0) cells.insert(middle);
     }
 }
 
@@ -58,8 +58,9 @@ std::vector<std::size_t> next_round(const SweepResult& result, const RefinementR
     add_between(result, beliefs, rule.strides, cell, cells);
   }
   std::vector<std::size_t> order(cells.begin(), cells.end());
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return asked_for(result, a) < asked_for(result, b); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return requested_replicates(result, a) < requested_replicates(result, b);
+  });
 
   const auto spent =
       static_cast<std::uint64_t>(std::count_if(result.state.begin(), result.state.end(), [](RunState state) {
@@ -67,7 +68,8 @@ std::vector<std::size_t> next_round(const SweepResult& result, const RefinementR
       }));
   std::vector<std::size_t> runs;
   for (const std::size_t cell : order) {
-    const int from = asked_for(result, cell), to = std::min(from + rule.first_replicates, result.replicates);
+    const int from = requested_replicates(result, cell),
+              to = std::min(from + rule.first_replicates, result.replicates);
     for (int replicate = from; replicate < to && spent + runs.size() < rule.budget; ++replicate)
       runs.push_back(result.run(cell, replicate));
   }

@@ -222,11 +222,11 @@ class SweepReader {
   std::vector<std::string> datasets_;
 };
 
-void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result) {
+void reset_partial_runs(const std::vector<std::int32_t>& sums, SweepResult& result) {
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     if (sums[run] == checksum(result, run)) continue;
-    const bool asked_for = result.round.empty() || result.round[run] >= 0;
-    result.state[run] = asked_for ? RunState::pending : RunState::not_sampled;
+    const bool was_requested = result.round.empty() || result.round[run] >= 0;
+    result.state[run] = was_requested ? RunState::pending : RunState::not_sampled;
     for (Column& measure : result.measures)
       std::get<std::vector<double>>(measure.values)[run] = std::numeric_limits<double>::quiet_NaN();
     if (!result.notes.empty()) result.notes[run] = 0;
@@ -273,7 +273,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
     result.error.resize(runs);
     if (reader.text("plan_digest") != plan_digest(result, stored.attributes))
       reader.damaged("its plan has changed");
-    take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
+    reset_partial_runs(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
     if (reader.text("digest") != digest(result)) reader.damaged("its digest does not match");

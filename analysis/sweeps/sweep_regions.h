@@ -9,11 +9,11 @@
 
 namespace remote_touch {
 
-// A box of cells: `places` has the range of indices [first, second) on each axis.
+// A box of cells: `ranges` has the range of indices [first, second) on each axis.
 struct Region {
   std::string label;  // ranges on the split axes: "noise_sigma_m 0 to 0.005, velocity_estimate true"
-  std::vector<std::pair<std::size_t, std::size_t>> places = {};
-  bool contains(const std::vector<std::size_t>& place) const;
+  std::vector<std::pair<std::size_t, std::size_t>> ranges = {};
+  bool contains(const std::vector<std::size_t>& indices) const;
 };
 
 // Region 0 is the whole. Then follow the parts, the last axis running fastest: numeric axes of 6 values or

@@ -23,15 +23,15 @@ std::size_t SweepResult::cell_count() const {
   return count;
 }
 
-std::vector<std::size_t> SweepResult::place(std::size_t cell) const {
-  std::vector<std::size_t> place(axes.size());
-  for (std::size_t i = axes.size(); i-- > 0; cell /= axes[i].length()) place[i] = cell % axes[i].length();
-  return place;
+std::vector<std::size_t> SweepResult::axis_indices(std::size_t cell) const {
+  std::vector<std::size_t> indices(axes.size());
+  for (std::size_t i = axes.size(); i-- > 0; cell /= axes[i].length()) indices[i] = cell % axes[i].length();
+  return indices;
 }
 
-std::size_t SweepResult::cell_at(const std::vector<std::size_t>& place) const {
+std::size_t SweepResult::cell_at(const std::vector<std::size_t>& indices) const {
   std::size_t cell = 0;
-  for (std::size_t i = 0; i < axes.size(); ++i) cell = cell * axes[i].length() + place[i];
+  for (std::size_t i = 0; i < axes.size(); ++i) cell = cell * axes[i].length() + indices[i];
   return cell;
 }
 

@@ -46,8 +46,8 @@ struct SweepResult {
     return static_cast<int>(run % static_cast<std::size_t>(replicates));
   }
   // Returns the index of a cell on each axis; cell_at() is the inverse.
-  std::vector<std::size_t> place(std::size_t cell) const;
-  std::size_t cell_at(const std::vector<std::size_t>& place) const;
+  std::vector<std::size_t> axis_indices(std::size_t cell) const;
+  std::size_t cell_at(const std::vector<std::size_t>& indices) const;
 
   std::vector<std::size_t> runs_in(RunState requested) const;         // increasing
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range

@@ -46,7 +46,8 @@ double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, d
                           [](const NoisyPoint& a, const NoisyPoint& b) { return a.height_m < b.height_m; });
   const auto any_above = [&](double x) {
     double none = 1;
-    for (const NoisyPoint& p : points) none *= 1 - p.under_plate * above((x - p.height_m) / sigma_m);
+    for (const NoisyPoint& p : points)
+      none *= 1 - p.under_plate_probability * above((x - p.height_m) / sigma_m);
     return 1 - none;
   };
   const double bottom_m = median(highest->height_m - kReach * sigma_m, highest->height_m + kReach * sigma_m,
@@ -55,7 +56,7 @@ double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, d
     double none = 1;
     for (const NoisyPoint& p : points) {
       const double place = (bottom_m - p.height_m - jump_m) / sigma_m;
-      none *= 1 - p.under_plate * (above(place) - above(place + thickness_m / sigma_m));
+      none *= 1 - p.under_plate_probability * (above(place) - above(place + thickness_m / sigma_m));
     }
     return 1 - none;
   };

@@ -31,7 +31,7 @@ UnderPlate under_ball(double radius_m, double seen_m);
 // A point of a noisy surface: its height without noise, and the probability that it is under the plate, with
 // noise along the plate.
 struct NoisyPoint {
-  double height_m = 0, under_plate = 1;
+  double height_m = 0, under_plate_probability = 1;
 };
 
 // Returns the jump after which the plate is lost, with no point left in it, with probability 1/2. The points

@@ -23,7 +23,7 @@ using Doubles __attribute__((vector_size(8 * kDoubles))) = double;
 using Flags __attribute__((vector_size(8 * kDoubles))) = long;  // true: all bits of a lane set; false: none
 using Counts __attribute__((vector_size(4 * kDoubles))) = std::int32_t;
 
-inline Doubles all(double value) {
+inline Doubles broadcast(double value) {
   return Doubles{} + value;
 }
 inline Doubles load(const double* p) {
@@ -90,7 +90,7 @@ struct Divisor {
 #else
   explicit Divisor(Doubles by) : value(by) {}
 #endif
-  explicit Divisor(double by) : Divisor(all(by)) {}
+  explicit Divisor(double by) : Divisor(broadcast(by)) {}
 };
 
 #if defined(__FMA__)

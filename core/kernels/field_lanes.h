@@ -19,7 +19,7 @@ struct FieldLanes {
 
 inline Doubles clamped(Doubles u, double cells) {
   const Doubles above = u > 0 ? u : Doubles{};  // NaN becomes 0
-  return above < cells ? above : all(cells);
+  return above < cells ? above : broadcast(cells);
 }
 
 // The values at a node and at the next node along the first coordinate.
@@ -90,11 +90,11 @@ inline Doubles3 rotated(const double (&R)[3][3], const Doubles3& a) {
 }
 
 // Points in the tool frame, and the field at them.
-struct PlacesInField {
+struct PositionsInField {
   Doubles3 p_T;
   FieldLanes at;
 };
-inline PlacesInField places(const PointColumns& points, std::size_t i, const PosedField& f) {
+inline PositionsInField positions_at(const PointColumns& points, std::size_t i, const PosedField& f) {
   const Doubles3 way_W{load(points.x + i) - f.p_W[0], load(points.y + i) - f.p_W[1],
                        load(points.z + i) - f.p_W[2]};
   const Doubles3 p_T = rotated(f.R_TW, way_W);
@@ -114,7 +114,7 @@ inline DisksInField disks_at(const PointColumns& points, std::size_t i, double f
   const Doubles3& g = at.gradient_T;
   const Doubles slope = norm(g - dot(g, n) * n);
   const Flags has_normal = (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0);
-  return {n, radius, extent, has_normal ? slope : all(__builtin_nan("")),
+  return {n, radius, extent, has_normal ? slope : broadcast(__builtin_nan("")),
           has_normal ? at.distance - radius * slope : at.distance};
 }
 

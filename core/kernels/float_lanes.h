@@ -112,7 +112,6 @@ class PairWeights {
   const float* kept(int above, int across) const { return kept_[above] + across * across_; }
 
  private:
-  static constexpr int kMaxWidth = 16;
   std::ptrdiff_t across_;  // same as weight_stride(), whose linked copy could be of another level
   float* fresh_[8];
   const float* kept_[8];

@@ -54,7 +54,7 @@ std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, con
 }
 
 // Computes the cells first, then interpolates the heights at their corners.
-void heights_above(const PatchColumns& places, std::size_t total, const HeightGrid& grid, double* above) {
+void heights_above(const PatchColumns& positions, std::size_t total, const HeightGrid& grid, double* above) {
   constexpr std::size_t kChunk = 64;
   double along[kChunk], across[kChunk];
   int at[kChunk];
@@ -63,7 +63,7 @@ void heights_above(const PatchColumns& places, std::size_t total, const HeightGr
   const double *low = g.corner, *high = low + row;
   for (std::size_t done = 0; done < total; done += kChunk) {
     const std::size_t left = total - done, count = left < kChunk ? left : kChunk;
-    const double *u = places.u + done, *v = places.v + done, *h = places.h + done;
+    const double *u = positions.u + done, *v = positions.v + done, *h = positions.h + done;
 #pragma omp simd
     for (std::size_t k = 0; k < count; ++k) {
       const double to_u = (u[k] + g.half) * g.per_unit, to_v = (v[k] + g.half) * g.per_unit;
@@ -81,10 +81,10 @@ void heights_above(const PatchColumns& places, std::size_t total, const HeightGr
   }
 }
 
-PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const double* height,
+PlaneSums sums_near_plane(const PatchColumns& positions, std::size_t count, const double* height,
                           const NearPlane& near) {
   const NearPlane p = near;
-  const double *us = places.u, *vs = places.v, max_width = p.reach * p.reach;
+  const double *us = positions.u, *vs = positions.v, max_width = p.reach * p.reach;
   double n = 0, su = 0, sv = 0, sh = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0;
 #pragma omp simd reduction(+ : n, su, sv, sh, uu, uv, vv, uh, vh)
   for (std::size_t i = 0; i < count; ++i) {
@@ -97,9 +97,9 @@ PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const d
   return {n, su, sv, sh, uu, uv, vv, uh, vh};
 }
 
-void height_bins(const PatchColumns& places, std::size_t count, const double* height, double u, double v,
+void height_bins(const PatchColumns& positions, std::size_t count, const double* height, double u, double v,
                  double reach, const HeightBins& bins, std::int32_t* bin) {
-  const double *us = places.u, *vs = places.v, max_width = reach * reach;
+  const double *us = positions.u, *vs = positions.v, max_width = reach * reach;
   const double half_range = bins.half_range, width = bins.width, max = bins.number;
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i) {
@@ -110,9 +110,9 @@ void height_bins(const PatchColumns& places, std::size_t count, const double* he
 }
 
 // The products uu, uv and vv are rounded, so that products with them are exact.
-QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* member, std::size_t count,
+QuadraticSums sums_of_quadratic(const PatchColumns& positions, const std::uint8_t* member, std::size_t count,
                                 double radius) {
-  const double *us = places.u, *vs = places.v, *hs = places.h, max_width = radius * radius;
+  const double *us = positions.u, *vs = positions.v, *hs = positions.h, max_width = radius * radius;
   double n = 0, u1 = 0, v1 = 0, u2 = 0, uv = 0, v2 = 0, u3 = 0, u2v = 0, uv2 = 0, v3 = 0;
 #pragma omp simd reduction(+ : n, u1, v1, u2, uv, v2, u3, u2v, uv2, v3)
   for (std::size_t i = 0; i < count; ++i) {

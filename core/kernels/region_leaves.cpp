@@ -249,7 +249,7 @@ struct Left {
 // smallest remaining gap and the number of remaining regions.
 #if defined(__AVX512F__)
 
-Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {
+Left remove_redundant(const NearRegions& near, std::size_t end, const Kept& by, double max) {
   const __m512d kx = _mm512_set1_pd(by.nx), ky = _mm512_set1_pd(by.ny), kz = _mm512_set1_pd(by.nz),
                 g = _mm512_set1_pd(by.gap), twice = _mm512_set1_pd(by.twice_motion_squared),
                 alike = _mm512_set1_pd(by.alike), one = _mm512_set1_pd(1), limit = _mm512_set1_pd(max),
@@ -262,10 +262,10 @@ Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kep
                                          _mm512_add_pd(_mm512_mul_pd(_mm512_loadu_pd(near.ny + i), ky),
                                                        _mm512_mul_pd(_mm512_loadu_pd(near.nz + i), kz)));
     const __m512d rise = _mm512_sub_pd(gap, g);
-    __mmask8 stands = _mm512_cmp_pd_mask(_mm512_mul_pd(rise, rise),
-                                         _mm512_mul_pd(twice, _mm512_sub_pd(one, cosine)), _CMP_GE_OQ);
-    stands = _mm512_mask_cmp_pd_mask(stands, cosine, alike, _CMP_GE_OQ);
-    const __mmask8 stays = _mm512_mask_cmp_pd_mask(_mm512_knot(stands), gap, limit, _CMP_LE_OQ);
+    __mmask8 is_redundant = _mm512_cmp_pd_mask(_mm512_mul_pd(rise, rise),
+                                               _mm512_mul_pd(twice, _mm512_sub_pd(one, cosine)), _CMP_GE_OQ);
+    is_redundant = _mm512_mask_cmp_pd_mask(is_redundant, cosine, alike, _CMP_GE_OQ);
+    const __mmask8 stays = _mm512_mask_cmp_pd_mask(_mm512_knot(is_redundant), gap, limit, _CMP_LE_OQ);
     const __m512d left = _mm512_mask_blend_pd(stays, infinite, gap);
     _mm512_storeu_pd(near.gap + i, left);
     min = _mm512_min_pd(left, min);
@@ -276,7 +276,7 @@ Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kep
 
 #else
 
-Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {
+Left remove_redundant(const NearRegions& near, std::size_t end, const Kept& by, double max) {
   double* gap = near.gap;
   const double *nx = near.nx, *ny = near.ny, *nz = near.nz;
   double min = __builtin_inf();
@@ -285,11 +285,11 @@ Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kep
   for (std::size_t i = 0; i < end; ++i) {
     const double cosine = nx[i] * by.nx + (ny[i] * by.ny + nz[i] * by.nz);
     const double rise = gap[i] - by.gap;
-    const bool goes =
+    const bool is_removed =
         ((rise * rise >= by.twice_motion_squared * (1 - cosine)) & (cosine >= by.alike)) | !(gap[i] <= max);
-    gap[i] = goes ? __builtin_inf() : gap[i];
+    gap[i] = is_removed ? __builtin_inf() : gap[i];
     min = gap[i] < min ? gap[i] : min;
-    count += goes ? 0 : 1;
+    count += is_removed ? 0 : 1;
   }
   return {min, count};
 }
@@ -321,7 +321,7 @@ RemainingRegions next_deepest_region(const NearRegions& near, std::size_t count,
                                      double motion, double alike, double max) {
   const Kept by{near.nx[kept], near.ny[kept], near.nz[kept], near.gap[kept], 2 * (motion * motion), alike};
   near.gap[kept] = __builtin_inf();
-  const Left left = drop_what_it_stands_for(near, in_whole_groups(count), by, max);
+  const Left left = remove_redundant(near, in_whole_groups(count), by, max);
   if (kCloseUp * left.count <= (kCloseUp - 1) * count) {
     count = within_margin<false>(near, max, 0, count);
     for (std::size_t i = count; i < in_whole_groups(count); ++i) near.gap[i] = __builtin_inf();

@@ -22,7 +22,7 @@ struct DiskLanes {
   Flags has_normal;
 };
 
-struct PlaceLanes {
+struct PositionLanes {
   Doubles3 p_T;
   FieldAt at;
   Flags at_rim, is_known;
@@ -64,12 +64,12 @@ inline DiskLanes disks_of(const DiskColumns& disks, const Numbers& numbers) {
 
 inline Doubles facing_side(const Doubles3& n_T, const Doubles3& gradient_T, Doubles steep) {
   const Doubles facing = -dot(gradient_T, n_T);
-  const Doubles side = facing < 0 ? all(-1) : all(1);
-  return magnitude(facing) <= kGrazing * steep ? Doubles{} : side;
+  const Doubles side = facing < 0 ? broadcast(-1) : broadcast(1);
+  return magnitude(facing) <= kEdgeOnSine * steep ? Doubles{} : side;
 }
 
 inline Doubles3 exit_direction(const Doubles3& gradient_T, Doubles steep) {
-  return chosen(steep > 0, -gradient_T / Divisor(steep), {Doubles{}, all(1), Doubles{}});
+  return chosen(steep > 0, -gradient_T / Divisor(steep), {Doubles{}, broadcast(1), Doubles{}});
 }
 
 inline ContactLanes far_contacts(const DiskColumns& disks, const Numbers& numbers) {
@@ -93,20 +93,20 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
 
 // Searches one line in the lanes that are `active`. Returns the lanes whose position moved and is not at the
 // rim of the disk.
-Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
-  const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
+Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PositionLanes& position) {
+  const Doubles3 along = position.at.gradient_T - dot(position.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
   active &= ~is_flat(steep, disk.radius, disk.extent);
   if (!is_any(active)) return Flags{};
-  const Doubles3 start_T = place.p_T, direction_T = -along / Divisor(steep), offset = start_T - disk.p_T;
+  const Doubles3 start_T = position.p_T, direction_T = -along / Divisor(steep), offset = start_T - disk.p_T;
   const Doubles ahead = dot(offset, direction_T), inside = disk.radius * disk.radius - dot(offset, offset);
-  const auto end = [&](Doubles t, Flags looks) {
+  const auto end = [&](Doubles t, Flags sampled) {
     const FieldLanes at = sample(field, start_T + t * direction_T);
-    place.is_known &= at.is_known | ~looks;
+    position.is_known &= at.is_known | ~sampled;
     return EndLanes{t, {at.distance, at.gradient_T}, dot(at.gradient_T, direction_T)};
   };
   const Doubles squared = ahead * ahead + inside;
-  EndLanes low{Doubles{}, place.at, -steep},
+  EndLanes low{Doubles{}, position.at, -steep},
       high = end(root(0 < squared ? squared : Doubles{}) - ahead, active);
   const Flags at_rim = (high.slope < -kFlatSlope) & (high.at.distance < low.at.distance);
   Flags cuts = active & ~at_rim;
@@ -123,49 +123,50 @@ Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceL
   }
   EndLanes best = chosen(high.at.distance <= low.at.distance, high, low);
   const Doubles bent = high.slope - low.slope, part = high.slope / bent;
-  const Doubles above = part < 0 ? Doubles{} : part, fraction = 1 < above ? all(1) : above;
+  const Doubles above = part < 0 ? Doubles{} : part, fraction = 1 < above ? broadcast(1) : above;
   best.at.gradient_T =
       chosen(~at_rim & (low.slope < 0) & (high.slope > low.slope),
              fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T, best.at.gradient_T);
-  place.p_T = chosen(active, start_T + best.t * direction_T, place.p_T);
-  place.at.distance = active ? best.at.distance : place.at.distance;
-  place.at.gradient_T = chosen(active, best.at.gradient_T, place.at.gradient_T);
-  place.at_rim |= active & at_rim;
+  position.p_T = chosen(active, start_T + best.t * direction_T, position.p_T);
+  position.at.distance = active ? best.at.distance : position.at.distance;
+  position.at.gradient_T = chosen(active, best.at.gradient_T, position.at.gradient_T);
+  position.at_rim |= active & at_rim;
   return active & ~at_rim & (best.t > 0);
 }
 
-inline Flags leaves(const PosedField& field, const DiskLanes& disk, PlaceLanes& place, double side,
-                    Flags looks) {
-  const FieldLanes beyond = sample(field, place.p_T - all(side * kStep_m) * disk.n_T);
-  place.is_known &= beyond.is_known | ~looks;
-  return beyond.distance - place.at.distance > 0.5 * kStep_m;
+inline Flags rises_beyond(const PosedField& field, const DiskLanes& disk, PositionLanes& position,
+                          double side, Flags sampled) {
+  const FieldLanes beyond = sample(field, position.p_T - broadcast(side * kStep_m) * disk.n_T);
+  position.is_known &= beyond.is_known | ~sampled;
+  return beyond.distance - position.at.distance > 0.5 * kStep_m;
 }
 
 // depth is NaN if the search left the grid.
 ContactLanes near_contacts(const PosedField& field, const DiskLanes& disk, double known_side) {
-  PlaceLanes place{disk.p_T, disk.at, Flags{}, ~Flags{}};
+  PositionLanes position{disk.p_T, disk.at, Flags{}, ~Flags{}};
   Flags active = disk.has_normal & (disk.radius > 0);
-  for (int line = 0; line < kLines && is_any(active); ++line) active = slide(field, disk, active, place);
+  for (int line = 0; line < kLines && is_any(active); ++line) active = slide(field, disk, active, position);
 
-  const Doubles steep = norm(place.at.gradient_T);
-  const Flags is_inside = place.at.distance < 0;
+  const Doubles steep = norm(position.at.gradient_T);
+  const Flags is_inside = position.at.distance < 0;
   const Flags known = known_side != 0 ? is_inside : Flags{};
-  const Flags is_blind = (place.at.distance < -field.size) & (steep < kBlindGradient);
-  const Doubles facing = facing_side(disk.n_T, place.at.gradient_T, steep);
-  Doubles side = is_blind ? all(1) : facing;
-  side = known ? all(known_side) : side;
+  const Flags is_blind = (position.at.distance < -field.size) & (steep < kMinGradient);
+  const Doubles facing = facing_side(disk.n_T, position.at.gradient_T, steep);
+  Doubles side = is_blind ? broadcast(1) : facing;
+  side = known ? broadcast(known_side) : side;
   side = disk.has_normal ? side : Doubles{};
-  Flags as_plane = (side != 0) & (~place.at_rim | known);
-  const Flags looks = ~as_plane & disk.has_normal;
-  if (is_any(looks)) {
-    const Flags front = leaves(field, disk, place, 1, looks), back = leaves(field, disk, place, -1, looks);
-    const Flags is_flush = looks & (front ^ back);
-    const Doubles flush = front ? all(1) : all(-1);
+  Flags as_plane = (side != 0) & (~position.at_rim | known);
+  const Flags sampled = ~as_plane & disk.has_normal;
+  if (is_any(sampled)) {
+    const Flags front = rises_beyond(field, disk, position, 1, sampled),
+                back = rises_beyond(field, disk, position, -1, sampled);
+    const Flags is_flush = sampled & (front ^ back);
+    const Doubles flush = front ? broadcast(1) : broadcast(-1);
     side = is_flush ? flush : side;
     as_plane |= is_flush;
   }
-  const Doubles3 out = chosen(as_plane, side * disk.n_T, exit_direction(place.at.gradient_T, steep));
-  return {place.p_T, out, place.is_known ? -place.at.distance : all(__builtin_nan("")), side};
+  const Doubles3 out = chosen(as_plane, side * disk.n_T, exit_direction(position.at.gradient_T, steep));
+  return {position.p_T, out, position.is_known ? -position.at.distance : broadcast(__builtin_nan("")), side};
 }
 
 // Stores the contacts of one vector: lane k is the contact out[from[k]].
@@ -191,20 +192,20 @@ void disk_contacts(const DiskColumns& disks, const std::uint32_t* number, std::s
   enum Kind { kFar, kFlat, kSteep, kKinds };
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t size = count - first < kChunk ? count - first : kChunk;
-    std::uint32_t disk[kKinds][kChunk], place[kKinds][kChunk];
+    std::uint32_t disk[kKinds][kChunk], row[kKinds][kChunk];
     std::size_t n[kKinds] = {};
     for (std::size_t k = first; k < first + size; ++k) {
       const std::uint32_t i = number[k];
       const bool is_near = disks.lower[i] <= search_m, is_exact = disks.bound[i] == disks.distance[i];
       const Kind kind = !is_near ? kFar : is_exact ? kFlat : kSteep;
-      disk[kind][n[kind]] = i, place[kind][n[kind]++] = static_cast<std::uint32_t>(k);
+      disk[kind][n[kind]] = i, row[kind][n[kind]++] = static_cast<std::uint32_t>(k);
     }
     for (int kind = kFar; kind < kKinds; ++kind)
       for (std::size_t k = 0; k < n[kind]; k += kDoubles) {
         const Numbers numbers(disk[kind] + k, n[kind] - k);
         put(kind == kFar ? far_contacts(disks, numbers)
                          : near_contacts(field, disks_of(disks, numbers), known_side),
-            place[kind] + k, n[kind] - k, out);
+            row[kind] + k, n[kind] - k, out);
       }
   }
 }

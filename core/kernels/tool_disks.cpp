@@ -15,23 +15,23 @@ inline Flags is_positive(Doubles x) {
 
 // Appends the lanes of `may` that are within the limits to the columns, from index `to` on. Returns their
 // number.
-inline std::size_t put_disks(const PlacesInField& places, const DisksInField& disks, Flags may,
+inline std::size_t put_disks(const PositionsInField& positions, const DisksInField& disks, Flags may,
                              const DiskLimits& limits, double cells_per_m, const DiskColumns& out,
                              std::size_t to) {
-  const Packing packing(may & ((disks.lower <= limits.lower) | ~places.at.is_known));
+  const Packing packing(may & ((disks.lower <= limits.lower) | ~positions.at.is_known));
   const std::size_t count = packing.count();
   if (count == 0) return 0;
-  const Doubles3 &p = places.p_T, &n = disks.n_T, &g = places.at.gradient_T;
+  const Doubles3 &p = positions.p_T, &n = disks.n_T, &g = positions.at.gradient_T;
   const auto put_three = [&](const Doubles3& a, double* const(&columns)[3]) {
     packing.put(a.x, columns[0] + to), packing.put(a.y, columns[1] + to), packing.put(a.z, columns[2] + to);
   };
   put_three(p, out.p_T), put_three(n, out.n_T), put_three(g, out.gradient_T);
-  const Doubles distance = places.at.distance, lower = disks.lower;
+  const Doubles distance = positions.at.distance, lower = disks.lower;
   packing.put(disks.radius, out.radius + to);
   packing.put(disks.extent, out.extent + to);
   packing.put(distance, out.distance + to);
   packing.put(disks.slope, out.slope + to);
-  packing.put(places.at.is_known ? lower : all(__builtin_nan("")), out.lower + to);
+  packing.put(positions.at.is_known ? lower : broadcast(__builtin_nan("")), out.lower + to);
   const Flags is_exact = (lower <= limits.search) & is_flat(disks.slope, disks.radius, disks.extent);
   packing.put(is_exact ? distance : lower, out.bound + to);
   const Flags octant = is_positive(g.x) << 2 | is_positive(g.y) << 1 | is_positive(g.z);
@@ -49,16 +49,16 @@ std::size_t disks_in_field(const PointColumns& points, std::size_t count, double
   for (std::size_t i = 0; i < count; i += kLanes) {
     double& of_group = nearest[i / kLanes];
     if (!is_new && of_group > limits.passed) continue;
-    Doubles min = all(1e300);
+    Doubles min = broadcast(1e300);
     for (std::size_t part = i; part < i + kLanes && part < count; part += kDoubles) {
-      const PlacesInField place = places(points, part, f);
+      const PositionsInField positions = positions_at(points, part, f);
       const Flags is_point = lane_numbers() < static_cast<long>(count - part);
-      const Flags outside = is_point & ~place.at.is_known;
-      min = place.at.distance < min ? place.at.distance : min;
-      const Flags may = (is_point & (place.at.distance <= limits.reach)) | outside;
+      const Flags outside = is_point & ~positions.at.is_known;
+      min = positions.at.distance < min ? positions.at.distance : min;
+      const Flags may = (is_point & (positions.at.distance <= limits.reach)) | outside;
       if (!is_any(may)) continue;
-      found += put_disks(place, disks_at(points, part, fraction, f, place.at), may, limits, cells_per_m, out,
-                         found);
+      found += put_disks(positions, disks_at(points, part, fraction, f, positions.at), may, limits,
+                         cells_per_m, out, found);
       outside_count += Packing(outside).count();
     }
     if (is_new) of_group = least(min);

@@ -90,13 +90,13 @@ struct DiskColumns {
 };
 
 // Limits that select points, m.
-struct PlaceLimits {
+struct PointLimits {
   double reach;   // largest distance
   double passed;  // the same as in DiskLimits
 };
 
 // Points in the tool frame. Each column has capacity for kLanes more than there are points. Lengths in m.
-struct PlaceColumns {
+struct PositionColumns {
   double* p_T[3];
   double* distance;  // NaN outside the grid
   double* number;    // index of the point, a whole number
@@ -154,8 +154,8 @@ struct ToolKernels {
   // is within reach. nearest and is_new are as above, one for each group[i]. Returns the number of points;
   // outside_count is the number of those outside the grid.
   std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
-                                 const PosedField&, const PlaceLimits&, double* nearest, bool is_new,
-                                 const PlaceColumns&, std::size_t& outside_count);
+                                 const PosedField&, const PointLimits&, double* nearest, bool is_new,
+                                 const PositionColumns&, std::size_t& outside_count);
   // Finds the touched points of the groups. A point is touched if it lies in a voxel (1: shell, 2: interior),
   // or if the distance of its centre is at most limits.touch. A point is unclear if it lies outside the grid,
   // or if its disk, of radius fraction x spacing + extent, may be as near as limits.touch and only a search
@@ -164,7 +164,7 @@ struct ToolKernels {
                          double fraction, double clusters_per_m, const PosedField&, const CellTable& voxels,
                          const TouchLimits&, double* nearest, bool is_new, TouchedSummary&);
   // Computes the contacts of the disks number[0..count), bit for bit: those of far_contact() if lower >
-  // search, else those of near_contact() at nearest_place(). depth is NaN if the search leaves the grid.
+  // search, else those of near_contact() at nearest_position(). depth is NaN if the search leaves the grid.
   void (*disk_contacts)(const DiskColumns&, const std::uint32_t* number, std::size_t count, const PosedField&,
                         double search, double known_side, ContactNumbers* contacts);
 };

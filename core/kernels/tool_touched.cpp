@@ -24,7 +24,7 @@ inline Flags can_touch(const PointColumns& points, std::size_t i, double fractio
                        Doubles distance) {
   constexpr double kRounding = 1 + 1e-9;
   const Doubles3 n{load(points.nx + i), load(points.ny + i), load(points.nz + i)};
-  const Doubles off = magnitude(1 - dot(n, n)), steep = off < 1 ? all(1) : off;
+  const Doubles off = magnitude(1 - dot(n, n)), steep = off < 1 ? broadcast(1) : off;
   const Doubles radius = fraction * load(points.spacing + i) + load(points.extent + i);
   return ~(distance > limits.touch + kRounding * limits.slope * (steep * radius));  // true without a normal
 }
@@ -63,34 +63,34 @@ void touched_points(const PointColumns& points, const std::uint32_t* groups, std
   constexpr double kInfinite = __builtin_inf();
   out.point_count = out.clusters = out.unclear_count = 0;
   Summary summary(out);
-  Doubles least_of_all = all(kInfinite);
+  Doubles least_of_all = broadcast(kInfinite);
   Flags inside{};
   for (std::size_t g = 0; g < group_count; ++g) {
     if (!is_new && nearest[g] > limits.passed) continue;
-    Doubles least_of_group = all(kInfinite);
+    Doubles least_of_group = broadcast(kInfinite);
     for (std::size_t i = kLanes * std::size_t{groups[g]}; i < kLanes * (std::size_t{groups[g]} + 1);
          i += kDoubles) {
-      const PlacesInField place = places(points, i, f);
-      const Doubles distance = place.at.distance;
+      const PositionsInField positions = positions_at(points, i, f);
+      const Doubles distance = positions.at.distance;
       least_of_group = distance < least_of_group ? distance : least_of_group;
       const Flags reached = distance <= limits.reach;
       if (!is_any(reached)) continue;
-      const Flags known = reached & place.at.is_known;
-      const Doubles counted = known ? distance : all(kInfinite);
+      const Flags known = reached & positions.at.is_known;
+      const Doubles counted = known ? distance : broadcast(kInfinite);
       least_of_all = counted < least_of_all ? counted : least_of_all;
-      const Flags voxel = (known & place.at.in_cell & (distance <= limits.voxels))
-                              ? voxels_at(voxels, place.at.cell)
+      const Flags voxel = (known & positions.at.in_cell & (distance <= limits.voxels))
+                              ? voxels_at(voxels, positions.at.cell)
                               : Flags{};
       inside |= voxel == kInterior;
       Flags touched = voxel != 0, unclear = reached & ~known;
       const Flags may = known & ~touched & can_touch(points, i, fraction, limits, distance);
       if (is_any(may)) {
-        const DisksInField disks = disks_at(points, i, fraction, f, place.at);
+        const DisksInField disks = disks_at(points, i, fraction, f, positions.at);
         const Flags near = may & (disks.lower <= limits.touch);
         touched |= near & (distance <= limits.touch);
         unclear |= near & ~(distance <= limits.touch) & ~is_flat(disks.slope, disks.radius, disks.extent);
       }
-      summary.add(touched, cell_number(place.p_T, clusters_per_m));
+      summary.add(touched, cell_number(positions.p_T, clusters_per_m));
       summary.add_unclear(unclear, i);
     }
     if (is_new) nearest[g] = least(least_of_group);

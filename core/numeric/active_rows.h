@@ -29,7 +29,7 @@ struct ActiveRows {
   // Moves y until it fulfils a row, and makes that row active. The other active rows stay fulfilled with
   // equality, with multipliers of 0 or more. An active row whose multiplier reaches 0 on the way is removed.
   // Returns false if no such y exists.
-  bool take_in(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
+  bool activate(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
     double its_multiplier = 0;
     for (;;) {
       Packed<N> inside = q.transposed_times(unit_row), outside = unit_row;
@@ -43,19 +43,19 @@ struct ActiveRows {
       const bool is_free = squared > kParallelSquared;
       double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
                             : std::numeric_limits<double>::infinity();
-      int leaves = -1;
+      int leaving = -1;
       for (int j = 0; j < count; ++j)
         if (coefficient[j] > kRounding && multiplier[j] < step * coefficient[j])
-          step = multiplier[j] / coefficient[j], leaves = j;
+          step = multiplier[j] / coefficient[j], leaving = j;
       if (!(step < std::numeric_limits<double>::infinity())) return false;
       if (is_free) y.add(step, outside);
       for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * coefficient[j]);
       its_multiplier += step;
-      if (leaves < 0) {
+      if (leaving < 0) {
         append(row, its_multiplier, outside, coefficient, 1 / std::sqrt(squared));
         return true;
       }
-      remove(leaves);
+      remove(leaving);
     }
   }
 
@@ -68,20 +68,20 @@ struct ActiveRows {
     ++count;
   }
 
-  // Removes the active row with index `gone`. A reflection turns the basis so that its last direction is the
+  // Removes the active row at `index`. A reflection turns the basis so that its last direction is the
   // one that only this row needs. That direction is dropped, and the last active row moves to the free index.
-  void remove(int gone) {
+  void remove(int index) {
     --count;
     Packed<N> v;
-    for (int j = 0; j < N; ++j) v.set(j, inverse.column[j][gone]);
+    for (int j = 0; j < N; ++j) v.set(j, inverse.column[j][index]);
     const double length = std::sqrt(v.dot(v)), last = v[count];
     v.set(count, last + std::copysign(length, last));
     const double factor = 1 / (length * (length + std::abs(last)));
     q.reflect(v, factor), inverse.reflect(v, factor);
     q.column[count] = inverse.column[count] = {};
-    number[gone] = number[count], multiplier[gone] = multiplier[count];
+    number[index] = number[count], multiplier[index] = multiplier[count];
     for (int j = 0; j < N; ++j) {
-      inverse.column[j].set(gone, inverse.column[j][count]);
+      inverse.column[j].set(index, inverse.column[j][count]);
       inverse.column[j].set(count, 0);
     }
   }

@@ -158,7 +158,7 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
     }
     settled = false;
     const int before = held.count;
-    if (held.take_in(worst.row, unit_row(worst.row), bound(worst.row), y)) continue;
+    if (held.activate(worst.row, unit_row(worst.row), bound(worst.row), y)) continue;
     if (held.count == before && worst.distance <= kInfeasible * scale) {
       min = worst.distance;
       continue;

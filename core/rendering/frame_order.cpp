@@ -6,7 +6,7 @@ bool FrameOrder::is_newer(const Frame& frame) const {
   return index_ < 0 || frame.captured_s > captured_s_;
 }
 
-bool FrameOrder::take(const Frame& frame) {
+bool FrameOrder::accept_if_newer(const Frame& frame) {
   if (!is_newer(frame)) {
     dropped_ = true;
     return false;

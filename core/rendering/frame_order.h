@@ -14,7 +14,7 @@ class FrameOrder {
   // Returns true if the frame was captured after the newest one, or is the first.
   bool is_newer(const Frame& frame) const;
   // Same as is_newer(). A newer frame becomes the newest one; any other frame counts as dropped.
-  bool take(const Frame& frame);
+  bool accept_if_newer(const Frame& frame);
   int newest() const { return index_; }  // index of the newest frame; -1 before the first
   double captured_s() const { return captured_s_; }
 

@@ -59,7 +59,7 @@ void FrameAverage::begin(std::size_t points) {
 }
 
 // Stores the positions of the newest frame by the indices of its points.
-void FrameAverage::take(const NeighbourSearch& points) {
+void FrameAverage::store(const NeighbourSearch& points) {
   constexpr double kEverywhere_m = 1e6;
   newest_ = s_.rule == AverageRule::mean ? (newest_ + 1) % s_.mean_frames : 0;
   std::vector<Vec3>& now = history_[newest_];
@@ -100,7 +100,7 @@ Vec3 FrameAverage::mean(std::size_t number) const {
 std::shared_ptr<const NeighbourSearch> FrameAverage::next(const NeighbourSearch& points) {
   all_.reserve(points.size(), true, true);
   if (points.size() != seen_.size() && points.size() > 0) begin(points.size());
-  take(points);
+  store(points);
   shown_last_ = 1 - shown_last_;
   BlockSearch& shown = *shown_[shown_last_];
   shown.clear(seen_.size(), points.organised_columns(), points.has_fixture_radius(), points.has_stiffness());

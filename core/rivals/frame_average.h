@@ -50,7 +50,7 @@ class FrameAverage {
  private:
   static constexpr int kMaxFrames = 16;
   void begin(std::size_t points);
-  void take(const NeighbourSearch& points);
+  void store(const NeighbourSearch& points);
   Vec3 exponential(std::size_t number, const ViewPoint& view);
   Vec3 mean(std::size_t number) const;
   const Vec3& latest(std::size_t number) const { return history_[newest_][number]; }

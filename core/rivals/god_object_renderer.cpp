@@ -49,7 +49,7 @@ void GodObjectRenderer::reserve(std::size_t points) {
   mesh_.reserve(points);
 }
 
-bool GodObjectRenderer::take(const NeighbourSearch& points) {
+bool GodObjectRenderer::set_points(const NeighbourSearch& points) {
   mesh_.reserve(points.size());
   columns_ = points.organised_columns();
   is_meshed_ = false;
@@ -58,7 +58,7 @@ bool GodObjectRenderer::take(const NeighbourSearch& points) {
 
 // Updates the mesh around the god-object. It is large enough for every motion of one round; triangles farther
 // away have no effect.
-void GodObjectRenderer::find_planes() {
+void GodObjectRenderer::update_mesh() {
   const double radius = kMeshed * p_.max_edge_length_m, margin = radius - kMaxStride * p_.max_edge_length_m;
   if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= margin * margin) return;
   meshed_W_ = proxy_W_;
@@ -85,7 +85,7 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
     ++rounds_;
     const PlaneConstraints::Nearest nearest = planes_.nearest(hip_W);
     active_planes_ = nearest.found ? nearest.active_planes : 3;
-    if (!nearest.found || go(nearest.place)) break;
+    if (!nearest.found || go(nearest.position)) break;
   }
   return (proxy_W_ - start_W).norm() > kRestTolerance * p_.surface_offset_m;
 }
@@ -94,7 +94,7 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
 // added. Returns true if this search for planes is over, because no triangle was in the way or there are too
 // many planes.
 bool GodObjectRenderer::go(const Vec3& goal) {
-  find_planes();
+  update_mesh();
   const Vec3 displacement = goal - proxy_W_;
   const double length = displacement.norm(), max_length = kMaxStride * p_.max_edge_length_m;
   const Vec3 end = length > max_length ? Vec3(proxy_W_ + (max_length / length) * displacement) : goal;

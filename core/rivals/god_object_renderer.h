@@ -57,9 +57,9 @@ class GodObjectRenderer final : public RivalRenderer {
   void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
-  bool take(const NeighbourSearch& points) override;
+  bool set_points(const NeighbourSearch& points) override;
   void touch(const Vec3& hip_W, RenderOutput& out) override;
-  void find_planes();
+  void update_mesh();
   bool follow(const Vec3& hip_W);
   bool go(const Vec3& goal);
   void report(const Vec3& hip_W, RenderOutput& out);

@@ -27,7 +27,7 @@ bool contains(const Triangle& t, const Vec3& p) {
 
 void GridMesh::reserve(std::size_t points) {
   triangles_.grow(2 * points);
-  place_.grow(2 * points);  // room for a last row that is not full
+  index_plus_one_.grow(2 * points);  // room for a last row that is not full
 }
 
 void GridMesh::assign(const GatheredPoints& points, int columns, const Ball& ball) {
@@ -41,10 +41,10 @@ void GridMesh::assign(const GatheredPoints& points, int columns, const Ball& bal
     first_column = std::min(first_column, column), last_column = std::max(last_column, column);
   }
   const std::size_t width = last_column - first_column + 1, height = last_row - first_row + 1;
-  std::fill_n(place_.data(), width * height, 0u);
+  std::fill_n(index_plus_one_.data(), width * height, 0u);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t row = points.index()[i] / wide, column = points.index()[i] % wide;
-    place_[(row - first_row) * width + (column - first_column)] = static_cast<std::uint32_t>(i) + 1;
+    index_plus_one_[(row - first_row) * width + (column - first_column)] = static_cast<std::uint32_t>(i) + 1;
   }
 
   const PointsView view = points.view();
@@ -53,7 +53,7 @@ void GridMesh::assign(const GatheredPoints& points, int columns, const Ball& bal
   };
   for (std::size_t row = 0; row + 1 < height; ++row) {
     for (std::size_t column = 0; column + 1 < width; ++column) {
-      const std::uint32_t* const upper = place_.data() + row * width + column;
+      const std::uint32_t* const upper = index_plus_one_.data() + row * width + column;
       const std::uint32_t a = upper[0], b = upper[1], c = upper[width], d = upper[width + 1];
       const int measured = (a != 0) + (b != 0) + (c != 0) + (d != 0);
       if (measured < 3) continue;

@@ -49,7 +49,8 @@ class GridMesh {
   double edge_limit_m_;
   std::size_t count_ = 0;
   Buffer<Triangle> triangles_;
-  Buffer<std::uint32_t> place_;  // index in the list + 1 of each point in a window of the frame; 0: none
+  // Index in the list + 1 of each point in a window of the frame; 0: none.
+  Buffer<std::uint32_t> index_plus_one_;
 };
 
 }  // namespace remote_touch

@@ -27,7 +27,7 @@ class PlaneConstraints {
 
   struct Nearest {
     bool found = false;  // true: a position obeys all planes
-    Vec3 place = Vec3::Zero();
+    Vec3 position = Vec3::Zero();
     int active_planes = 0;  // number of planes that hold it, 0 to 3
   };
   Nearest nearest(const Vec3& goal) const;

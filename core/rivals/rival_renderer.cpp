@@ -11,10 +11,10 @@ constexpr double kMaxHipDistance_m = 1e6;
 }  // namespace
 
 void RivalRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   const std::shared_ptr<const NeighbourSearch> points = shown(frame);
   near_.set_points(points);
-  usable_ = take(*points);
+  usable_ = set_points(*points);
 }
 
 RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {

@@ -28,7 +28,7 @@ class RivalRenderer : public Renderer {
   virtual std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) { return frame.points; }
   // Starts to use these points. Returns false if the method cannot use them. The outputs are then those
   // without a frame until the next frame.
-  virtual bool take(const NeighbourSearch& /*points*/) { return true; }
+  virtual bool set_points(const NeighbourSearch& /*points*/) { return true; }
   // Computes one tick. pre: the HIP is finite and the method can use the frame. The proxy starts at the first
   // HIP. The function fills in force_N, state, nearest_distance_m, steps, converged, contact_count and
   // status, and leaves the proxy and the normal in the members below.

@@ -16,8 +16,8 @@ constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
 // Lengths are in units of R: the longest step between two checks of the HIP's path, the longest slide of a
 // tick in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as
 // none.
-constexpr double kLookStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
-constexpr int kMaxLooks = 64;
+constexpr double kCheckStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
+constexpr int kMaxChecks = 64;
 
 PointCloud joined(const std::deque<std::shared_ptr<const NeighbourSearch>>& frames, const Kernels& kernels) {
   PointCloud all, buffer;
@@ -78,7 +78,7 @@ std::shared_ptr<const NeighbourSearch> SurfelRenderer::shown(const Frame& frame)
   return make_search(joined(latest_, kernels_));
 }
 
-bool SurfelRenderer::take(const NeighbourSearch& points) {
+bool SurfelRenderer::set_points(const NeighbourSearch& points) {
   normals_.set_points(points, view_point(points, p_.view_direction));
   gathered_normals_.grow(points.size() + kLanes);
   if (radius_m_ == 0 && points.size() > 0) {
@@ -119,16 +119,16 @@ void SurfelRenderer::release(const Vec3& hip_W) {
 }
 
 // Moves from the last HIP position to the current one, up to the first checked position behind the surface.
-// If no point is near, it skips the distance to the first point. It moves to the HIP after kMaxLooks checks.
+// If no point is near, it skips the distance to the first point. It moves to the HIP after kMaxChecks checks.
 void SurfelRenderer::approach(const Vec3& hip_W) {
   const double R = radius_m_;
-  for (int look = 1; look <= kMaxLooks; ++look) {
+  for (int check = 1; check <= kMaxChecks; ++check) {
     const Vec3 u = hip_W - proxy_W_;
     const double distance = u.norm();
-    double path_length = kLookStride * R;
+    double path_length = kCheckStride * R;
     if (path_length < distance && R > 0 && near_.within(proxy_W_, R).size() == 0)
       path_length += near_.first_hit(proxy_W_, u / distance, R, distance);
-    const bool is_last = !(path_length < distance) || R == 0 || look == kMaxLooks;
+    const bool is_last = !(path_length < distance) || R == 0 || check == kMaxChecks;
     proxy_W_ = is_last ? hip_W : Vec3(proxy_W_ + path_length / distance * u);
     const SurfaceSample here = sample(proxy_W_);
     if (here.supported && here.value < 0) {

@@ -58,7 +58,7 @@ class SurfelRenderer final : public RivalRenderer {
 
  private:
   std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) override;
-  bool take(const NeighbourSearch& points) override;
+  bool set_points(const NeighbourSearch& points) override;
   void touch(const Vec3& hip_W, RenderOutput& out) override;
   void reset_motion() override { is_held_ = false; }
 

@@ -36,12 +36,12 @@ std::string failed_names(const std::vector<std::pair<std::string, std::string>>&
 
 }  // namespace
 
-SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
+SharedLibrary::SharedLibrary(const Lookup& lookup) : variable_(lookup.variable) {
   // The environment is read here and not in runners/interfaces/cli, because the variable belongs to the
   // loading of libraries, as LD_LIBRARY_PATH does. Only the devices know the names of these variables.
   const char* named = std::getenv(variable_);
   const bool is_named = named != nullptr && *named != '\0';
-  const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : place.names;
+  const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : lookup.names;
   std::vector<std::pair<std::string, std::string>> failures;
   for (const std::string& name : names) {
     handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
@@ -56,7 +56,7 @@ SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
                    "cannot be loaded (" + failed_names(failures) + "); " +
                        (is_named ? variable + " must name the library of "
                                  : "install it or let " + variable + " name its file: it is part of ") +
-                       place.package);
+                       lookup.package);
 }
 
 void* SharedLibrary::address(const char* name) const {

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 class SharedLibrary {
  public:
-  struct Place {
+  struct Lookup {
     std::vector<std::string> names;  // tried in turn, in the loader's search path
     const char* variable;            // environment variable that, if set, names the file instead
     const char* package;             // package that contains the library, for the message
@@ -17,7 +17,7 @@ class SharedLibrary {
 
   // Throws InputError if it is not found. It stays loaded until the program ends, because vendors' libraries
   // leave threads behind.
-  explicit SharedLibrary(const Place& place);
+  explicit SharedLibrary(const Lookup& lookup);
 
   // The file that was loaded.
   const std::string& file() const { return file_; }

@@ -110,23 +110,23 @@ std::vector<std::string> assignments_of(const std::string& text, const std::vect
 
 // Returns the cell of a text with NAME=VALUE for each axis, in any order.
 std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
-  std::vector<std::optional<std::size_t>> place(result.axes.size());
+  std::vector<std::optional<std::size_t>> indices(result.axes.size());
   for (const std::string& item : assignments_of(cell.text, result.axes)) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
     const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
                                    [&](const Column& each) { return each.name == name; });
     const auto i = static_cast<std::size_t>(axis - result.axes.begin());
-    if (axis == result.axes.end() || place[i]) break;
-    place[i] = row_of(cell, *axis, value);
+    if (axis == result.axes.end() || indices[i]) break;
+    indices[i] = row_of(cell, *axis, value);
   }
   std::string names;
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < place.size(); ++i) {
+  for (std::size_t i = 0; i < indices.size(); ++i) {
     names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
-    if (place[i]) found.push_back(*place[i]);
+    if (indices[i]) found.push_back(*indices[i]);
   }
-  if (found.size() != place.size()) refuse_cell(cell, names);
+  if (found.size() != indices.size()) refuse_cell(cell, names);
   return result.cell_at(found);
 }
 
@@ -134,7 +134,7 @@ std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
 
 std::string cell_text(const SweepResult& result, std::size_t cell) {
   std::string text;
-  for (const std::size_t at : result.place(cell))
+  for (const std::size_t at : result.axis_indices(cell))
     text.append(text.empty() ? "" : ",").append(std::to_string(at));
   return text;
 }
@@ -144,17 +144,17 @@ std::size_t cell_of(const NamedCell& cell, const SweepResult& result) {
   std::string allowed;
   for (const Column& axis : result.axes)
     allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
-  std::vector<std::size_t> place;
+  std::vector<std::size_t> indices;
   for (const std::string& item : items_of(cell.text)) {
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), number);
-    if (error != std::errc() || end != item.data() + item.size() || place.size() == result.axes.size() ||
-        number >= result.axes[place.size()].length())
+    if (error != std::errc() || end != item.data() + item.size() || indices.size() == result.axes.size() ||
+        number >= result.axes[indices.size()].length())
       refuse_cell(cell, allowed);
-    place.push_back(number);
+    indices.push_back(number);
   }
-  if (place.size() != result.axes.size()) refuse_cell(cell, allowed);
-  return result.cell_at(place);
+  if (indices.size() != result.axes.size()) refuse_cell(cell, allowed);
+  return result.cell_at(indices);
 }
 
 }  // namespace remote_touch

@@ -38,7 +38,7 @@ struct Sweep::Definition {
 
   // Returns the experiment of one run. It has the values that the result states for its cell.
   Experiment run(std::size_t cell, int replicate) const;
-  std::string title_of_run(const std::vector<std::size_t>& place) const;
+  std::string title_of_run(const std::vector<std::size_t>& indices) const;
   void refuse_other_entry(const SweepAxis& axis, const std::string& label) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
@@ -146,24 +146,24 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
 }  // namespace
 
 Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
-  const std::vector<std::size_t> place = grid.place(cell);
+  const std::vector<std::size_t> indices = grid.axis_indices(cell);
   Json json = experiment;
   for (std::size_t i = 0; i < axes.size(); ++i)
-    set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
-  json["title"] = title_of_run(place);
+    set_value(json, axes[i].parameter, axes[i].values[indices[i]], axes[i].parameter);
+  json["title"] = title_of_run(indices);
   json["cell"] = cell;
   json["replicate"] = static_cast<std::uint64_t>(replicate);
   Experiment made = Experiment::from_json(json);
   for (std::size_t i = 0; i < axes.size(); ++i)
-    require_run(made, axes[i].parameter, axes[i].values[place[i]]);
+    require_run(made, axes[i].parameter, axes[i].values[indices[i]]);
   return made;
 }
 
 // Returns the title of the experiment with the values of the cell.
-std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& place) const {
+std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& indices) const {
   std::vector<ChangedSetting> changes;
   for (std::size_t i = 0; i < axes.size(); ++i)
-    changes.emplace_back(axes[i].parameter, axes[i].values[place[i]]);
+    changes.emplace_back(axes[i].parameter, axes[i].values[indices[i]]);
   return changed_title(experiment.value("title", std::string()), changes);
 }
 
@@ -236,7 +236,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
   inputs.assign(parts.begin(), parts.end());
   if (first_wrong == cells) return;
   std::string where;
-  for (const std::size_t k : grid.place(static_cast<std::size_t>(first_wrong)))
+  for (const std::size_t k : grid.axis_indices(static_cast<std::size_t>(first_wrong)))
     where.append(where.empty() ? "" : ",").append(std::to_string(k));
   throw InputError(label + ": cell " + where, problem);
 }
@@ -297,9 +297,10 @@ SweepResult Sweep::plan(const Shard& shard) const {
   result.start(definition_->refine.has_value());
   std::size_t number = 0;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-    const std::vector<std::size_t> place = result.place(cell);
+    const std::vector<std::size_t> indices = result.axis_indices(cell);
     bool is_first = true;
-    for (std::size_t i = 0; i < place.size(); ++i) is_first &= place[i] % definition_->axes[i].stride == 0;
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      is_first &= indices[i] % definition_->axes[i].stride == 0;
     if (!is_first) continue;
     const RunState state = shard.has(number++) ? RunState::pending : RunState::elsewhere;
     for (int replicate = 0; replicate < definition_->replicates; ++replicate) {

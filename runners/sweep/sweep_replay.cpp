@@ -18,7 +18,7 @@ TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay&
   const std::string config = replay.experiment.to_json();
   if (std::optional<Recipe> recipe = recipe_of(stored.attributes)) {
     recipe->action = "replay";
-    recipe->cell = stored.result.place(cell), recipe->replicate = replicate;
+    recipe->cell = stored.result.axis_indices(cell), recipe->replicate = replicate;
     return provenance(config, *recipe, isa, inputs);
   }
   const std::string command = attribute(stored.attributes, "command") + "; " + program_text() +

@@ -55,7 +55,7 @@ bool may_overwrite(const Statement& later, const Statement& earlier) {
 Statement option(Statement::Of of, const std::string& assignment, const std::string& begin) {
   auto [path, value] = read_assignment(assignment.substr(begin.size()));
   const std::string name = "--set " + begin + path;
-  return {of, name + "=" + shown(value), name, place_keys(path), std::move(value)};
+  return {of, name + "=" + shown(value), name, normalised_keys(path), std::move(value)};
 }
 
 std::vector<Statement> statements_of(const Json& json, const std::vector<std::string>& overrides,
@@ -68,11 +68,11 @@ std::vector<Statement> statements_of(const Json& json, const std::vector<std::st
     if (assignment.starts_with(own)) all.push_back(option(Of::option_of_own_experiment, assignment, own));
   if (const auto set = json.find("set"); set != json.end() && set->is_object())
     for (const auto& item : set->items())
-      all.push_back({Of::set, label + ": set." + item.key(), "set." + item.key(), place_keys(item.key()),
+      all.push_back({Of::set, label + ": set." + item.key(), "set." + item.key(), normalised_keys(item.key()),
                      item.value()});
   for (const std::string& assignment : of_experiment) all.push_back(option(Of::option, assignment, ""));
   for (const SweepAxis& axis : axes)
-    all.push_back({Of::axis, "", "the axis " + axis.parameter, place_keys(axis.parameter), {}});
+    all.push_back({Of::axis, "", "the axis " + axis.parameter, normalised_keys(axis.parameter), {}});
   return all;
 }
 
@@ -100,7 +100,7 @@ bool states(const Json& stated, const Json& run) {
 void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label) {
   for (std::size_t later = 0; later < axes.size(); ++later)
     for (std::size_t i = 0; i < later; ++i) {
-      const Keys a = place_keys(axes[i].parameter), b = place_keys(axes[later].parameter);
+      const Keys a = normalised_keys(axes[i].parameter), b = normalised_keys(axes[later].parameter);
       if (!is_within(a, b) && !is_within(b, a)) continue;
       throw InputError(label + ": axes." + std::to_string(later) + " " + axes[later].parameter,
                        "overlaps axes." + std::to_string(i) + " " + axes[i].parameter +

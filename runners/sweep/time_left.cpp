@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPrior_s =
     2;  // so much work counts as done in its expected time, so that a first short job decides little
-constexpr double kAtLeast = 0.05;  // least share of its time that a job has left, even if it is late
+constexpr double kMinShareLeft = 0.05;  // least share of its time that a job has left, even if it is late
 
 // Returns the factor by which jobs take longer here than expected.
 double slowness(const std::vector<double>& expected_s, const std::vector<JobProgress>& progress) {
@@ -38,7 +38,7 @@ TimeLeft time_left(const std::vector<double>& expected_s, const std::vector<JobP
   for (std::size_t i = 0; i < progress.size(); ++i) {
     if (progress[i].state == JobState::done) continue;
     const double whole_s = slower * expected_s[i];
-    left.of_job_s[i] = std::max(whole_s - progress[i].spent_s, kAtLeast * whole_s);
+    left.of_job_s[i] = std::max(whole_s - progress[i].spent_s, kMinShareLeft * whole_s);
     left.all_s += left.of_job_s[i] / threads;
     // Threads without a job help those that run.
     if (progress[i].state == JobState::running) left.of_job_s[i] *= std::min(1.0, running / threads);

@@ -15,7 +15,7 @@ struct Edge {
   double z, y, dz, dy;  // start and direction, counter-clockwise: the inside is on the left
   double length_squared() const { return dz * dz + dy * dy; }
   // Distance of a point from the edge's line, multiplied by the edge's length; positive outside.
-  double outside(double pz, double py) const { return dy * (pz - z) - dz * (py - y); }
+  double scaled_distance(double pz, double py) const { return dy * (pz - z) - dz * (py - y); }
 };
 
 Edge edge(const std::vector<std::array<double, 2>>& profile, std::size_t i) {
@@ -35,7 +35,7 @@ double Extrusion::signed_distance(const Vec3& p) const {
     const double t = std::clamp((pz * e.dz + py * e.dy) / e.length_squared(), 0.0, 1.0);
     const double rz = pz - t * e.dz, ry = py - t * e.dy;
     nearest_squared = std::min(nearest_squared, rz * rz + ry * ry);
-    inside &= e.outside(p.z(), p.y()) <= 0;
+    inside &= e.scaled_distance(p.z(), p.y()) <= 0;
   }
   const double across = inside ? -std::sqrt(nearest_squared) : std::sqrt(nearest_squared);
   const double beside = std::max(x_low_ - p.x(), p.x() - x_high_);
@@ -56,7 +56,7 @@ double Extrusion::cast(const Vec3& origin, const Vec3& direction) const {
   };
   for (std::size_t i = 0; i < profile_.size(); ++i) {
     const Edge e = edge(profile_, i);
-    clip(e.outside(origin.z(), origin.y()), e.dy * direction.z() - e.dz * direction.y());
+    clip(e.scaled_distance(origin.z(), origin.y()), e.dy * direction.z() - e.dz * direction.y());
   }
   clip(x_low_ - origin.x(), -direction.x());
   clip(origin.x() - x_high_, direction.x());

@@ -39,12 +39,12 @@ struct Lattice {
   double pitch;
   int first_x = 0, first_z = 0, columns = 0, rows = 0;
 
-  Lattice(const PointCloud& places, double pitch_m) : pitch(pitch_m) {
+  Lattice(const PointCloud& positions, double pitch_m) : pitch(pitch_m) {
     double low_x = std::numeric_limits<double>::infinity(), high_x = -low_x, low_z = low_x, high_z = -low_x;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (!places.is_measured(i)) continue;
-      low_x = std::min(low_x, places.x[i]), high_x = std::max(high_x, places.x[i]);
-      low_z = std::min(low_z, places.z[i]), high_z = std::max(high_z, places.z[i]);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      if (!positions.is_measured(i)) continue;
+      low_x = std::min(low_x, positions.x[i]), high_x = std::max(high_x, positions.x[i]);
+      low_z = std::min(low_z, positions.z[i]), high_z = std::max(high_z, positions.z[i]);
     }
     if (!(low_x <= high_x)) return;
     first_x = cell(low_x), first_z = cell(low_z);
@@ -85,18 +85,18 @@ struct Lattice {
 
 }  // namespace
 
-std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& places, const NoiseKey& key,
+std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels) {
   if (noise.correlation_m == 0) {
-    std::vector<std::uint32_t> numbers(places.size());
+    std::vector<std::uint32_t> numbers(positions.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
     return remembered(numbers, noise.memory, key, frame, kernels);
   }
-  const Lattice lattice(places, noise.correlation_m);
+  const Lattice lattice(positions, noise.correlation_m);
   const std::vector<double> nodes = remembered(lattice.numbers(), noise.memory, key, frame, kernels);
-  std::vector<double> values(places.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (places.is_measured(i)) values[i] = lattice.interpolate(nodes, places.x[i], places.z[i]);
+  std::vector<double> values(positions.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (positions.is_measured(i)) values[i] = lattice.interpolate(nodes, positions.x[i], positions.z[i]);
   return values;
 }
 

@@ -16,9 +16,9 @@ struct RayNoise {
   double memory = 0;         // correlation of the noise of successive frames (-)
 };
 
-// Returns one standard normal for each point of a frame. places: position of each point across the view, in x
-// and z, in the unit of correlation_m. A point that was not measured is NaN there, and its noise is NaN if
-// correlation_m is above 0.
+// Returns one standard normal for each point of a frame. positions: position of each point across the view,
+// in x and z, in the unit of correlation_m. A point that was not measured is NaN there, and its noise is NaN
+// if correlation_m is above 0.
 //
 // Without correlation_m every point has independent noise. Otherwise the noise of the lattice's nodes is
 // interpolated bilinearly and scaled to standard deviation 1 everywhere. The noise of two points that are
@@ -27,7 +27,7 @@ struct RayNoise {
 //
 // With memory m, the noise of frame j is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
 // cut off at frame j - 16 and scaled to standard deviation 1.
-std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& places, const NoiseKey& key,
+std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels);
 
 }  // namespace remote_touch

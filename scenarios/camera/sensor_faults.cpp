@@ -123,46 +123,46 @@ int FaultySensor::frame_count() const {
   return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }
 
-int FaultySensor::seen(int frame) const {
+int FaultySensor::scenario_frame(int frame) const {
   return std::min(frame, scenario_->frame_count() - 1);
 }
 
-int FaultySensor::shown(int frame) const {
+int FaultySensor::content_frame(int frame) const {
   while (frame > 0 && uniforms(of_frame(key_, frame), 0)[repeats] < settings_.repeat_probability) --frame;
   return frame;
 }
 
 double FaultySensor::captured_s(int frame) const {
-  const int last = seen(frame);
+  const int last = scenario_frame(frame);
   return scenario_->captured_s(last) + (frame - last) / frame_rate_hz();
 }
 
-std::optional<double> FaultySensor::arrives_s(int frame) const {
+std::optional<double> FaultySensor::leaves_sensor_s(int frame) const {
   std::optional<double> out_s;
-  if (frame == seen(frame)) out_s = scenario_->arrives_s(frame);
+  if (frame == scenario_frame(frame)) out_s = scenario_->leaves_sensor_s(frame);
   if (!(uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_probability)) return out_s;
   return out_s.value_or(captured_s(frame)) + settings_.late_delay_s;
 }
 
 std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {
   if (moves_points() || loses_points() || settings_.rolling_shutter_s > 0) return make_search(cloud(frame));
-  return scenario_->points(seen(shown(frame)));
+  return scenario_->points(scenario_frame(content_frame(frame)));
 }
 
 PointCloud FaultySensor::cloud(int frame) const {
-  const int content = shown(frame);
-  PointCloud cloud = scenario_->cloud(seen(content));
+  const int content = content_frame(frame);
+  PointCloud cloud = scenario_->cloud(scenario_frame(content));
   ViewCoordinates without_faults;
-  if (needs_view_coordinates()) without_faults = across_the_view(cloud);
+  if (needs_view_coordinates()) without_faults = view_coordinates(cloud);
   if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
-  if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.places, content);
+  if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.positions, content);
   if (moves_points()) displace(cloud, content);
   if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
   if (settings_.dropout_probability > 0) drop_points(cloud, content);
   return cloud;
 }
 
-Vec3 FaultySensor::sight(const PointCloud& cloud, const Vec3& p_W) const {
+Vec3 FaultySensor::viewing_direction(const PointCloud& cloud, const Vec3& p_W) const {
   return (cloud.image ? Vec3(p_W - cloud.image->X_WC.translation()) : settings_.view_direction).normalized();
 }
 
@@ -170,9 +170,9 @@ void FaultySensor::shear(PointCloud& cloud, double captured_s) const {
   const std::vector<double> fraction = readout(cloud);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
-    const Vec3 p_W = cloud.point(i), ray = sight(cloud, p_W);
+    const Vec3 p_W = cloud.point(i), ray = viewing_direction(cloud, p_W);
     const double then_s = captured_s - (1 - fraction[i]) * settings_.rolling_shutter_s;
-    move(cloud, i, as_it_was(p_W, captured_s, then_s, cloud.image ? &ray : nullptr));
+    move(cloud, i, earlier_position(p_W, captured_s, then_s, cloud.image ? &ray : nullptr));
   }
 }
 
@@ -195,7 +195,7 @@ Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
 // the normal by the change of the distance. If ray is not null, the result is the position where the ray of
 // this pixel met the surface at then_s. It is NaN if the angle between ray and surface is too small to
 // compute that. Returns p_W if the change is 0 or NaN.
-Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
+Vec3 FaultySensor::earlier_position(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
   constexpr double kMinSlope = 0.1;
   const double change = scenario_->signed_distance(p_W, then_s) - scenario_->signed_distance(p_W, now_s);
   if (change == 0 || std::isnan(change)) return p_W;
@@ -207,12 +207,12 @@ Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const
 }
 
 // Adds noise along the rays. A point of an image is lost if it would lie behind the camera or at it.
-void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const {
+void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& positions, int frame) const {
   const RayNoise& s = settings_.ray_noise;
-  const std::vector<double> noise = standard_noise(s, places, key_, frame, kernels_);
+  const std::vector<double> noise = standard_noise(s, positions, key_, frame, kernels_);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
-    const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
+    const Vec3 p_W = cloud.point(i), direction = viewing_direction(cloud, p_W);
     const double distance = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm()
                                         : settings_.sensor_distance_m + p_W.dot(direction);
     const double displacement = s.sigma_m * distance * distance * noise[i];
@@ -231,9 +231,9 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
     const auto draw = uniforms(stream, static_cast<std::uint32_t>(i));
-    const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
-    const double place = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm() : p_W.dot(direction);
-    double to = place;
+    const Vec3 p_W = cloud.point(i), direction = viewing_direction(cloud, p_W);
+    const double depth_m = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm() : p_W.dot(direction);
+    double to = depth_m;
     if (draw[is_outlier] < s.outlier_probability)
       to += (2 * draw[how_far] - 1) * s.max_outlier_distance_m;
     else if (draw[flies] < s.flying_probability)
@@ -241,47 +241,48 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
     if (s.quantisation_m > 0) to = std::round(to / s.quantisation_m) * s.quantisation_m;
     if (cloud.image && to <= 0)
       lose(cloud, i);
-    else if (to != place)
-      move(cloud, i, p_W + (to - place) * direction);
+    else if (to != depth_m)
+      move(cloud, i, p_W + (to - depth_m) * direction);
   }
 }
 
 // Returns the position of each point across the view, in x and z: in metres, or, for an image, as the
 // position where its ray meets depth 1. Also returns the radius of a hole around each point, in the same
 // unit.
-FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cloud) const {
+FaultySensor::ViewCoordinates FaultySensor::view_coordinates(const PointCloud& cloud) const {
   const Vec3 view_direction = settings_.view_direction.normalized(), across = view_direction.unitOrthogonal(),
              other = view_direction.cross(across);
   const RigidTransform X_CW = cloud.image ? cloud.image->X_WC.inverse() : RigidTransform::Identity();
-  ViewCoordinates seen;
+  ViewCoordinates coordinates;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p = X_CW * cloud.point(i);
     if (cloud.image)
-      seen.places.append({p.x() / p.z(), 0, p.y() / p.z()});
+      coordinates.positions.append({p.x() / p.z(), 0, p.y() / p.z()});
     else
-      seen.places.append({across.dot(p), 0, other.dot(p)});
-    seen.hole_radius.push_back(settings_.hole_radius_m / (cloud.image ? p.z() : 1));
+      coordinates.positions.append({across.dot(p), 0, other.dot(p)});
+    coordinates.hole_radius.push_back(settings_.hole_radius_m / (cloud.image ? p.z() : 1));
     if (cloud.is_measured(i) && (!cloud.image || p.z() > 0))
-      seen.measured.push_back(static_cast<std::uint32_t>(i));
+      coordinates.measured.push_back(static_cast<std::uint32_t>(i));
   }
-  return seen;
+  return coordinates;
 }
 
 // Cuts holes around points that are drawn one after the other, until at least hole_fraction of the points is
 // lost. A point that is already lost can be drawn again.
-void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const {
-  if (seen.measured.empty()) return;
-  const double count = static_cast<double>(seen.measured.size());
-  const UniformGridSearch search(seen.places, seen.hole_radius[seen.measured.front()]);
+void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& coordinates, int frame) const {
+  if (coordinates.measured.empty()) return;
+  const double count = static_cast<double>(coordinates.measured.size());
+  const UniformGridSearch search(coordinates.positions,
+                                 coordinates.hole_radius[coordinates.measured.front()]);
   GatheredPoints inside;
   inside.reserve(cloud.size(), false, false);
   std::vector<bool> gone(cloud.size());
   double lost = 0;
   for (std::uint32_t hole = 1; lost < settings_.hole_fraction * count; ++hole) {
     const double drawn = uniforms(of_frame(key_, frame), hole)[0] * count;
-    const std::uint32_t middle = seen.measured[static_cast<std::size_t>(drawn)];
+    const std::uint32_t middle = coordinates.measured[static_cast<std::size_t>(drawn)];
     inside.clear();
-    search.gather({seen.places.point(middle), seen.hole_radius[middle]}, kernels_, inside);
+    search.gather({coordinates.positions.point(middle), coordinates.hole_radius[middle]}, kernels_, inside);
     for (std::size_t k = 0; k < inside.size(); ++k) {
       const std::uint32_t i = inside.index()[k];
       if (gone[i]) continue;

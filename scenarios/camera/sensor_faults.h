@@ -56,9 +56,9 @@ class FaultySensor final : public Scenario {
   std::string input() const override { return scenario_->input(); }
   std::vector<Note> input_notes() const override { return scenario_->input_notes(); }
   std::optional<RigidTransform> sensor_pose() const override { return scenario_->sensor_pose(); }
-  std::optional<double> arrives_s(int frame) const override;
+  std::optional<double> leaves_sensor_s(int frame) const override;
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
-    return scenario_->fixtures_off(seen(frame));
+    return scenario_->fixtures_off(scenario_frame(frame));
   }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
@@ -76,23 +76,23 @@ class FaultySensor final : public Scenario {
 
  private:
   struct ViewCoordinates {  // a cloud projected along the viewing direction
-    PointCloud places;
+    PointCloud positions;
     std::vector<double> hole_radius;
     std::vector<std::uint32_t> measured;
   };
-  int shown(int frame) const;  // the frame whose content this frame shows
-  int seen(int frame) const;   // the scenario's frame for it: the last one if there is none
+  int content_frame(int frame) const;   // the frame whose content this frame shows
+  int scenario_frame(int frame) const;  // the scenario's frame for it: the last one if there is none
   bool needs_view_coordinates() const;
   bool moves_points() const;
   bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
-  Vec3 sight(const PointCloud& cloud, const Vec3& p_W) const;
+  Vec3 viewing_direction(const PointCloud& cloud, const Vec3& p_W) const;
   void shear(PointCloud& cloud, double captured_s) const;
   Vec3 normal_at(const Vec3& p_W, double time_s) const;
-  Vec3 as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
-  void add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const;
+  Vec3 earlier_position(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
+  void add_ray_noise(PointCloud& cloud, const PointCloud& positions, int frame) const;
   void displace(PointCloud& cloud, int frame) const;
-  ViewCoordinates across_the_view(const PointCloud& cloud) const;
-  void cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const;
+  ViewCoordinates view_coordinates(const PointCloud& cloud) const;
+  void cut_holes(PointCloud& cloud, const ViewCoordinates& coordinates, int frame) const;
   void drop_points(PointCloud& cloud, int frame) const;
 
   const std::unique_ptr<const Scenario> scenario_;

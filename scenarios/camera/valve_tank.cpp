@@ -81,15 +81,15 @@ int ValveTank::frame_count() const {
   return varies ? std::numeric_limits<int>::max() : 1;
 }
 
-ValveTank::Meeting ValveTank::meet(const Vec3& origin_W, const Vec3& ray_W) const {
+ValveTank::ClassifiedHit ValveTank::first_hit(const Vec3& origin_W, const Vec3& ray_W) const {
   const double wall = ray_W.z() < 0 ? -origin_W.z() / ray_W.z() : std::numeric_limits<double>::infinity();
   const double left = wheels_[0].cast(origin_W, ray_W), right = wheels_[1].cast(origin_W, ray_W);
   if (left < wall && left <= right) return {left, Valve::left};
-  return right < wall ? Meeting{right, Valve::right} : Meeting{wall, Valve::none};
+  return right < wall ? ClassifiedHit{right, Valve::right} : ClassifiedHit{wall, Valve::none};
 }
 
 RayHit ValveTank::shaded(const Vec3& origin_W, const Vec3& ray_W) const {
-  const auto [t, valve] = meet(origin_W, ray_W);
+  const auto [t, valve] = first_hit(origin_W, ray_W);
   if (std::isinf(t)) return {};
   const auto i = static_cast<std::size_t>(valve);
   const Vec3 normal_W =
@@ -121,13 +121,13 @@ void ValveTank::fill_with_water() {
 PointCloud ValveTank::cloud(int frame) const {
   PointCloud cloud = camera_.measured(view_, frame);
 #pragma omp parallel for schedule(static)
-  for (int v = 0; v < camera_.intrinsics().height; ++v) see_row(frame, v, cloud);
+  for (int v = 0; v < camera_.intrinsics().height; ++v) apply_water(frame, v, cloud);
   return cloud;
 }
 
 // Replaces the colours of a row by those seen through the water, with noise, and sets lost depths to NaN. The
 // cloud's depths must already have their noise.
-void ValveTank::see_row(int frame, int row, PointCloud& cloud) const {
+void ValveTank::apply_water(int frame, int row, PointCloud& cloud) const {
   const auto width = static_cast<std::size_t>(camera_.intrinsics().width);
   const std::size_t first = width * static_cast<std::size_t>(row);
   const auto number = static_cast<std::uint32_t>(frame);
@@ -161,7 +161,7 @@ double ValveTank::distance_to_valve(Valve valve, const Vec3& p_W) const {
 
 std::vector<Valve> ValveTank::truth() const {
   const auto label = [this](const Vec3& origin_W, const Vec3& ray_W) {
-    const auto [t, valve] = meet(origin_W, ray_W);
+    const auto [t, valve] = first_hit(origin_W, ray_W);
     return RayHit{t, static_cast<std::uint32_t>(valve)};
   };
   std::vector<Valve> classes;

@@ -54,14 +54,14 @@ class ValveTank final : public Scenario {
   std::vector<Valve> truth() const;
 
  private:
-  struct Meeting {
+  struct ClassifiedHit {
     double t;
     Valve valve;
   };
-  Meeting meet(const Vec3& origin_W, const Vec3& ray_W) const;
+  ClassifiedHit first_hit(const Vec3& origin_W, const Vec3& ray_W) const;
   RayHit shaded(const Vec3& origin_W, const Vec3& ray_W) const;
   void fill_with_water();
-  void see_row(int frame, int row, PointCloud& cloud) const;
+  void apply_water(int frame, int row, PointCloud& cloud) const;
 
   const Settings settings_;
   const NoiseKey key_;

@@ -48,7 +48,7 @@ class Scenario {
   // Time at which the frame leaves the sensor. Empty if that is the time of capture. A late frame has a later
   // time. A frame of a recorded live session has the time at which the renderer received it, infinite if it
   // never did.
-  virtual std::optional<double> arrives_s(int /*frame*/) const { return {}; }
+  virtual std::optional<double> leaves_sensor_s(int /*frame*/) const { return {}; }
   // Fixtures that were off when the frame was processed, one bit each; only in a recorded live session.
   virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
 

@@ -11,7 +11,7 @@ namespace {
 
 // A time between two frames that is longer than 1.5 periods is nearer to two periods than to one: a frame is
 // missing.
-constexpr double kPause = 1.5;
+constexpr double kPausePeriods = 1.5;
 
 std::vector<double> periods_s(const std::vector<double>& times_s) {
   std::vector<double> periods;
@@ -46,7 +46,7 @@ FrameTimes::FrameTimes(const RecordingIndex& recording, const RecordingPart& par
                                     " frames a second: expected seconds");
 }
 
-int FrameTimes::place(int frame) const {
+int FrameTimes::index_in_part(int frame) const {
   switch (playback_) {
     case Playback::hold:
       return std::min(frame, count_ - 1);
@@ -55,17 +55,17 @@ int FrameTimes::place(int frame) const {
     case Playback::ping_pong:
       break;
   }
-  const int cycle = std::max(1, 2 * count_ - 2), place = frame % cycle;
-  return place >= count_ ? cycle - place : place;
+  const int cycle = std::max(1, 2 * count_ - 2), index = frame % cycle;
+  return index >= count_ ? cycle - index : index;
 }
 
 std::size_t FrameTimes::source(int frame) const {
-  return static_cast<std::size_t>(first_ + place(frame));
+  return static_cast<std::size_t>(first_ + index_in_part(frame));
 }
 
 double FrameTimes::captured_s(int frame) const {
   if (chosen_hz_ > 0) return frame / rate_hz_;
-  const double since_first_s = since_first_s_[static_cast<std::size_t>(place(frame))];
+  const double since_first_s = since_first_s_[static_cast<std::size_t>(index_in_part(frame))];
   if (playback_ == Playback::hold) return since_first_s;
   if (!follows_stamps()) return frame / rate_hz_;  // a steady rate, without the rounding of sums
   const double length_s = since_first_s_.back();
@@ -90,7 +90,7 @@ std::string FrameTimes::text() const {
   if (!follows_stamps()) return number(rate_hz_) + " Hz";
   const std::vector<double> periods = periods_s(since_first_s_);
   const double longest_s = *std::max_element(periods.begin(), periods.end()), usual_hz = usual_rate_hz();
-  if (longest_s * usual_hz <= kPause) return number(rate_hz_) + " Hz";
+  if (longest_s * usual_hz <= kPausePeriods) return number(rate_hz_) + " Hz";
   return number(usual_hz) + " Hz with pauses of up to " + number(longest_s) + " s (" + number(rate_hz_) +
          " Hz on average)";
 }

@@ -42,7 +42,7 @@ class FrameTimes {
   double usual_rate_hz() const;
 
  private:
-  int place(int frame) const;  // index in the part
+  int index_in_part(int frame) const;
 
   Playback playback_;
   bool is_stamped_;

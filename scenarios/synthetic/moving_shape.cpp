@@ -120,7 +120,7 @@ PointCloud MovingShape::cloud(int frame) const {
     for (std::size_t i = 0; i < nodes_S_.size(); ++i) {
       const Vec3 p_W = pose.to_W(nodes_S_[i] - below);
       if (settings_.normals)
-        cloud.append(p_W, pose.turned(normals_S_[i]));
+        cloud.append(p_W, pose.direction_to_W(normals_S_[i]));
       else
         cloud.append(p_W);
     }
@@ -141,7 +141,7 @@ double MovingShape::signed_distance(const Vec3& p_W, double time_s) const {
 
 std::optional<Vec3> MovingShape::plane_normal(double time_s) const {
   if (settings_.shape.kind != Shape::Kind::flat || has_vanished(newest_frame(time_s))) return {};
-  return true_pose(time_s).turned(Vec3::UnitY());
+  return true_pose(time_s).direction_to_W(Vec3::UnitY());
 }
 
 double MovingShape::surface_height(double x, double z, double time_s) const {

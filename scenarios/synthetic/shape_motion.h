@@ -17,7 +17,7 @@ struct ShapePose {
   Vec3 to_W(const Vec3& p_S) const {
     return {cosine * p_S.x() - sine * p_S.y() + x_m, sine * p_S.x() + cosine * p_S.y() + y_m, p_S.z()};
   }
-  Vec3 turned(const Vec3& direction_S) const {
+  Vec3 direction_to_W(const Vec3& direction_S) const {
     return {cosine * direction_S.x() - sine * direction_S.y(),
             sine * direction_S.x() + cosine * direction_S.y(), direction_S.z()};
   }

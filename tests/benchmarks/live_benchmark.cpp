@@ -98,7 +98,7 @@ void measure_letting_go() {
   std::vector<double> took_us;
   for (int i = 0; i < kHangs; ++i) {
     while (!behind->now().has_motors_on) nap();
-    behind->hang_next(DeviceDouble::reports_force);
+    behind->hang_next(DeviceDouble::write_force);
     while (!behind->is_hanging()) nap();
     const std::int64_t start_ns = steady_clock().now_ns();
     while (behind->now().has_motors_on) nap();

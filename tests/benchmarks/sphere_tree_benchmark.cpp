@@ -36,14 +36,14 @@ const SphereTool& tool_of(const std::string& name, int leaves) {
   return entry->second;
 }
 
-struct Place {
+struct NamedPose {
   std::string name;
   ToolPose pose;
 };
 
 // The poses are out of reach of all regions, at their surface, and with the tool's middle in the tube of the
 // wheel.
-std::vector<Place> places() {
+std::vector<NamedPose> named_poses() {
   ToolPose clear = device_around_wheel(0), touching = clear, deep = clear;
   clear.p_W.z() -= 0.3, touching.p_W.z() -= 0.0225, deep.p_W.z() += 0.03;
   return {{"clear", clear}, {"touching", touching}, {"deep", deep}};
@@ -97,7 +97,7 @@ bool detection_right(const SphereTool& tool, const PointCloud& cloud, const Tool
   TreeCollision collision(*tool.leaves, kernels);
   collision.on_frame(regions);
   std::vector<LeafPair> buffer(expected.size() + 1);
-  if (collision.near(pose, kLookAhead_m, buffer) != expected.size()) return false;
+  if (collision.near_pairs(pose, kLookAhead_m, buffer) != expected.size()) return false;
   for (std::size_t i = 0; i < expected.size(); ++i)
     if (buffer[i].tool != expected[i].tool || buffer[i].region != expected[i].region ||
         buffer[i].gap_m != expected[i].gap_m)
@@ -105,11 +105,11 @@ bool detection_right(const SphereTool& tool, const PointCloud& cloud, const Tool
   return contacts.near(pose, 0).deepest_m == deepest_m(expected);
 }
 
-void add_detection(const std::string& name, const PointCloud& cloud, const Place& place) {
-  const ToolPose pose = place.pose;
+void add_detection(const std::string& name, const PointCloud& cloud, const NamedPose& named) {
+  const ToolPose pose = named.pose;
   for (const Kernels* kernels : supported_kernels())
     add(
-        "region_contacts/" + place.name + "/" + kernels->isa,
+        "region_contacts/" + named.name + "/" + kernels->isa,
         [=, &cloud] { return detection_right(tool_of(name, kLeaves), cloud, pose, *kernels); },
         [=, &cloud](benchmark::State& state) {
           const SphereTool& tool = tool_of(name, kLeaves);
@@ -119,12 +119,12 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Place
           collision.on_frame(contacts.regions().spheres());
           std::size_t chosen = 0;
           for (auto _ : state) chosen = contacts.near(pose, 0).contacts.size();
-          state.counters["pairs"] = static_cast<double>(collision.near(pose, kLookAhead_m, {}));
+          state.counters["pairs"] = static_cast<double>(collision.near_pairs(pose, kLookAhead_m, {}));
           state.counters["leaves"] = static_cast<double>(contacts.regions().points().size());
           state.counters["contacts"] = static_cast<double>(chosen);
         });
   add(
-      "region_contacts_naive/" + place.name, [] { return true; },
+      "region_contacts_naive/" + named.name, [] { return true; },
       [=, &cloud](benchmark::State& state) {
         const SphereTool& tool = tool_of(name, kLeaves);
         RegionTree regions;
@@ -266,7 +266,7 @@ void add_ride(const std::string& name, int leaves, const std::string& kind, cons
 int main(int argc, char** argv) {
   using namespace remote_touch::benchmarks;
   add_tree(wheels());
-  for (const Place& place : places()) add_detection("key", wheels(), place);
+  for (const NamedPose& named : named_poses()) add_detection("key", wheels(), named);
   for (const std::string name : {"key", "husky"}) {
     add_ride(name, kLeaves, "slide", kSlide);
     add_ride(name, kLeaves, "swallowed", kSwallow);

@@ -101,9 +101,9 @@ struct Stepper {
  private:
   Vector6 motion(const ToolPose& pose, const Vector6& desired, std::size_t& listed) {
     if (rule == TouchRule::look_ahead) {
-      const LookAheadProgram::Look look = look_ahead.look(pose, desired, contacts, 0);
-      listed = look.near.contacts.size();
-      return look.a_g;
+      const LookAheadProgram::Detection detection = look_ahead.detect(pose, desired, contacts, 0);
+      listed = detection.near.contacts.size();
+      return detection.a_g;
     }
     const auto found = contacts.in_voxels(pose).contacts;
     listed = found.size();

@@ -34,20 +34,20 @@ class Landing {
     for (Frame* frame : {&down_, &up_}) renderer_.prepare(*frame);  // the camera's thread does so
     ToolPose above = scene.in_contact;
     above.p_W.y() += 0.02;
-    show(down_);
+    send(down_);
     step(above);
     for (int i = 0; i < kTicksUp; ++i) step(device_);
   }
   // tick is 0 .. kTicks - 1, in turn. Tick 0 receives the frame that lands in the tool.
   RenderOutput tick(int tick) {
-    if (tick == 0) show(up_);
-    if (tick == kTicksUp) show(down_);
+    if (tick == 0) send(up_);
+    if (tick == kTicksUp) send(down_);
     return step(device_);
   }
 
  private:
-  void show(Frame& frame) {
-    frame.index = shown_++;
+  void send(Frame& frame) {
+    frame.index = sent_++;
     frame.captured_s = frame.arrives_s = frame.index / 30.0;
     renderer_.on_frame(frame);
   }
@@ -56,7 +56,7 @@ class Landing {
   const ToolPose device_;
   ToolRenderer renderer_;
   Frame down_, up_;
-  int shown_ = 0;
+  int sent_ = 0;
 };
 
 // The result is the same on every level, and the tool comes up with the surface.

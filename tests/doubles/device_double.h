@@ -40,11 +40,11 @@ class DeviceDouble {
 
   struct Event {
     std::int64_t at_ns;
-    std::array<double, 6> told;  // last force and torque sent to the library
+    std::array<double, 6> sent;  // last force and torque sent to the library
     bool has_motors_on;
 
     // Returns the force that the device exerts, which is 0 while its motors are off.
-    double force() const { return has_motors_on ? std::hypot(told[0], told[1], told[2]) : 0; }
+    double force() const { return has_motors_on ? std::hypot(sent[0], sent[1], sent[2]) : 0; }
   };
 
   // --- for tests ---
@@ -52,7 +52,7 @@ class DeviceDouble {
   void follow(SimulatedClock* clock) { simulated_ = clock; }
   void reset() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    state_ = {}, told_ = {}, events_ = {};
+    state_ = {}, sent_ = {}, events_ = {};
     has_motors_on_ = is_open_ = false;
     count_ = 0;
     hang_next_ = none, hangs_ = false;
@@ -63,7 +63,7 @@ class DeviceDouble {
     change(state_);
   }
   // The next such call hangs until release(), and then does its work.
-  enum Call { none, reports_force, switches_on };
+  enum Call { none, write_force, switch_on };
   void hang_next(Call call) { hangs_ = true, hang_next_ = call; }
   void release() { hangs_ = false; }
   bool is_hanging() const { return hangs_ && hang_next_ == none; }
@@ -78,7 +78,7 @@ class DeviceDouble {
   }
   Event now() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return {clock().now_ns(), told_, has_motors_on_};
+    return {clock().now_ns(), sent_, has_motors_on_};
   }
   bool is_open() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -96,9 +96,9 @@ class DeviceDouble {
     const std::lock_guard<std::mutex> lock(mutex_);
     is_open_ = is_open;
   }
-  void tell(const std::array<double, 6>& told) {
+  void send(const std::array<double, 6>& sent) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    told_ = told;
+    sent_ = sent;
     remember();
   }
   void switch_motors(bool on) {
@@ -112,12 +112,12 @@ class DeviceDouble {
   }
 
  private:
-  void remember() { events_[count_++ % events_.size()] = {clock().now_ns(), told_, has_motors_on_}; }
+  void remember() { events_[count_++ % events_.size()] = {clock().now_ns(), sent_, has_motors_on_}; }
 
   SimulatedClock* simulated_ = nullptr;
   mutable std::mutex mutex_;
   State state_;
-  std::array<double, 6> told_{};
+  std::array<double, 6> sent_{};
   bool has_motors_on_ = false, is_open_ = false;
   std::array<Event, 4096> events_{};
   std::uint64_t count_ = 0;

@@ -53,7 +53,7 @@ int dhdStop(char id) {
 }
 
 int dhdEnableForce(unsigned char on, char id) {
-  if (on != 0) device.enter(DeviceDouble::switches_on);
+  if (on != 0) device.enter(DeviceDouble::switch_on);
   const int result = answer(id, device.state().switching_error);
   if (result == 0) device.switch_motors(on != 0);
   return result;
@@ -99,9 +99,9 @@ int dhdGetAngularVelocityRad(double* x, double* y, double* z, char id) {
 
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty, double tz,
                                         double /*gripper*/, char id) {
-  device.enter(DeviceDouble::reports_force);
+  device.enter(DeviceDouble::write_force);
   const int result = answer(id, device.state().writing_error);
-  if (result == 0) device.tell({fx, fy, fz, tx, ty, tz});
+  if (result == 0) device.send({fx, fy, fz, tx, ty, tz});
   return result;
 }
 

@@ -77,7 +77,7 @@ int homeDeviceEAPI(void* handle) {
 
 int setModeEAPI(void* handle, int mode) {
   const bool on = mode == kForceControl;
-  if (on) device.enter(DeviceDouble::switches_on);
+  if (on) device.enter(DeviceDouble::switch_on);
   const DeviceDouble::State state = device.state();
   if (on && !state.is_homed) return kError;
   const int result = answer(handle, on ? state.switching_error : 0);
@@ -102,13 +102,13 @@ int readTaskVelocityEAPI(void* handle, double* velocity, int size) {
 }
 
 int writeForceEAPI(void* handle, double* force, int size) {
-  device.enter(DeviceDouble::reports_force);
+  device.enter(DeviceDouble::write_force);
   if (size < 6) return kError;
   const int result = answer(handle, device.state().writing_error);
   if (result != kOk) return result;
   std::array<double, 6> commanded{};
   std::copy(force, force + 6, commanded.begin());
-  device.tell(commanded);
+  device.send(commanded);
   const std::lock_guard<std::mutex> lock(known_mutex);
   if (device.now().has_motors_on) known = device.state();
   return result;

@@ -24,7 +24,7 @@ constexpr unsigned kHandle = 3, kInvalid = 0xFFFFFFFF;
 constexpr unsigned kBadHandle = 0x0104, kCommunication = 0x0302, kIllegalBegin = 0x0400, kIllegalEnd = 0x0401;
 
 thread_local bool is_in_frame = false;
-thread_local std::array<double, 6> told{};
+thread_local std::array<double, 6> commanded{};
 
 constexpr double kPeriod_s = 1e-3;
 std::thread scheduler;
@@ -112,9 +112,9 @@ void hdEndFrame(unsigned handle) {
   if (handle != kHandle) last_error = kBadHandle;
   if (!is_in_frame) last_error = kIllegalEnd;
   is_in_frame = false;
-  device.enter(DeviceDouble::reports_force);
+  device.enter(DeviceDouble::write_force);
   const int error = device.state().writing_error;
-  if (!device.state().is_unplugged && error == 0) device.tell(told);
+  if (!device.state().is_unplugged && error == 0) device.send(commanded);
   keep(error);
 }
 
@@ -129,7 +129,7 @@ const char* hdGetErrorString(unsigned) {
 }
 
 void hdEnable(unsigned capability) {
-  device.enter(DeviceDouble::switches_on);
+  device.enter(DeviceDouble::switch_on);
   const int error = device.state().switching_error;
   if (capability == 0x4000 && error == 0) device.switch_motors(true);
   keep(error);
@@ -164,7 +164,7 @@ const char* hdGetString(unsigned) {
 
 void hdSetDoublev(unsigned what, const double* values) {
   if (!is_in_frame) last_error = 0x0402;
-  std::copy(values, values + 3, what == 0x2700 ? told.begin() : told.begin() + 3);
+  std::copy(values, values + 3, what == 0x2700 ? commanded.begin() : commanded.begin() + 3);
 }
 
 unsigned long hdScheduleAsynchronous(unsigned (*function)(void*), void* data, unsigned short) {

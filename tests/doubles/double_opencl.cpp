@@ -49,22 +49,22 @@ constexpr const char* kName = "double";
 // Returns true if this call is to fail. It hangs first if it is set to hang.
 bool fails(const char* function) {
   if (std::strcmp(settings.failing, function) != 0 || ++settings.calls < settings.failing_call) return false;
-  while (settings.hangs && !settings.let_go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (settings.hangs && !settings.is_released) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return true;
 }
 
 template <class Answer>
-cl_int answer(const Answer& is, std::size_t room, void* to, std::size_t* bytes) {
+cl_int answer(const Answer& is, std::size_t capacity, void* to, std::size_t* bytes) {
   if (bytes != nullptr) *bytes = sizeof is;
   if (to == nullptr) return CL_SUCCESS;
-  if (room < sizeof is) return CL_INVALID_VALUE;
+  if (capacity < sizeof is) return CL_INVALID_VALUE;
   std::memcpy(to, &is, sizeof is);
   return CL_SUCCESS;
 }
 
-cl_int text(const char* is, std::size_t room, void* to, std::size_t* bytes) {
+cl_int text(const char* is, std::size_t capacity, void* to, std::size_t* bytes) {
   if (bytes != nullptr) *bytes = std::strlen(is) + 1;
-  if (to != nullptr) std::strncpy(static_cast<char*>(to), is, room);
+  if (to != nullptr) std::strncpy(static_cast<char*>(to), is, capacity);
   return CL_SUCCESS;
 }
 
@@ -146,39 +146,39 @@ remote_touch::OpenClDouble* opencl_double() {
   return &settings;
 }
 
-cl_int clGetPlatformIDs(cl_uint room, cl_platform_id* to, cl_uint* count) {
+cl_int clGetPlatformIDs(cl_uint capacity, cl_platform_id* to, cl_uint* count) {
   if (fails("clGetPlatformIDs")) return settings.code;
   if (count != nullptr) *count = 1;
-  if (room > 0) *to = reinterpret_cast<cl_platform_id>(&settings);
+  if (capacity > 0) *to = reinterpret_cast<cl_platform_id>(&settings);
   return CL_SUCCESS;
 }
 
-cl_int clGetPlatformInfo(cl_platform_id, cl_platform_info, size_t room, void* to, size_t* bytes) {
-  return fails("clGetPlatformInfo") ? settings.code.load() : text(kName, room, to, bytes);
+cl_int clGetPlatformInfo(cl_platform_id, cl_platform_info, size_t capacity, void* to, size_t* bytes) {
+  return fails("clGetPlatformInfo") ? settings.code.load() : text(kName, capacity, to, bytes);
 }
 
-cl_int clGetDeviceIDs(cl_platform_id, cl_device_type, cl_uint room, cl_device_id* to, cl_uint* count) {
+cl_int clGetDeviceIDs(cl_platform_id, cl_device_type, cl_uint capacity, cl_device_id* to, cl_uint* count) {
   if (fails("clGetDeviceIDs")) return settings.code;
   if (count != nullptr) *count = 1;
-  if (room > 0) *to = reinterpret_cast<cl_device_id>(&settings);
+  if (capacity > 0) *to = reinterpret_cast<cl_device_id>(&settings);
   return CL_SUCCESS;
 }
 
-cl_int clGetDeviceInfo(cl_device_id, cl_device_info what, size_t room, void* to, size_t* bytes) {
+cl_int clGetDeviceInfo(cl_device_id, cl_device_info what, size_t capacity, void* to, size_t* bytes) {
   if (fails("clGetDeviceInfo")) return settings.code;
   const cl_device_fp_config ieee = CL_FP_ROUND_TO_NEAREST | CL_FP_INF_NAN | CL_FP_DENORM;
   switch (what) {
     case CL_DEVICE_SINGLE_FP_CONFIG:
-      return answer<cl_device_fp_config>(settings.is_imprecise ? ieee & ~CL_FP_DENORM : ieee, room, to,
+      return answer<cl_device_fp_config>(settings.is_imprecise ? ieee & ~CL_FP_DENORM : ieee, capacity, to,
                                          bytes);
     case CL_DEVICE_DOUBLE_FP_CONFIG:
-      return answer(ieee, room, to, bytes);
+      return answer(ieee, capacity, to, bytes);
     case CL_DEVICE_TYPE:
-      return answer<cl_device_type>(CL_DEVICE_TYPE_CPU, room, to, bytes);
+      return answer<cl_device_type>(CL_DEVICE_TYPE_CPU, capacity, to, bytes);
     case CL_DEVICE_COMPILER_AVAILABLE:
-      return answer<cl_bool>(CL_TRUE, room, to, bytes);
+      return answer<cl_bool>(CL_TRUE, capacity, to, bytes);
     default:
-      return text(kName, room, to, bytes);
+      return text(kName, capacity, to, bytes);
   }
 }
 
@@ -210,9 +210,9 @@ cl_int clBuildProgram(cl_program, cl_uint, const cl_device_id*, const char* opti
   filter_half = value("FILTER_HALF="), normal_half = value("NORMAL_HALF=");
   return CL_SUCCESS;
 }
-cl_int clGetProgramBuildInfo(cl_program, cl_device_id, cl_program_build_info, size_t room, void* to,
+cl_int clGetProgramBuildInfo(cl_program, cl_device_id, cl_program_build_info, size_t capacity, void* to,
                              size_t* bytes) {
-  return text("error: of the double\nand more", room, to, bytes);
+  return text("error: of the double\nand more", capacity, to, bytes);
 }
 cl_int clReleaseProgram(cl_program program) {
   return destroy(program);

@@ -24,17 +24,17 @@ struct OpenClDouble {
   std::atomic<const char*> failing{""};
   std::atomic<int> failing_call{0};
   std::atomic<int> code{-5};              // error code that it returns: CL_OUT_OF_RESOURCES
-  std::atomic<bool> hangs{false};         // it hangs until let_go before it returns
+  std::atomic<bool> hangs{false};         // it hangs until is_released before it returns
   std::atomic<bool> is_imprecise{false};  // the device reports that it flushes subnormal numbers
   std::atomic<bool> is_wrong{false};      // the device's normals are a little off
-  std::atomic<bool> let_go{false};
+  std::atomic<bool> is_released{false};
   std::atomic<int> calls{0};        // number of calls of the failing function
   std::atomic<int> kernel_runs{0};  // since the library was loaded
   std::atomic<int> objects{0};      // objects alive: contexts, queues, programs, kernels, buffers
 
   void reset() {
     failing = "", failing_call = 0, code = -5;
-    hangs = false, is_imprecise = false, is_wrong = false, let_go = false, calls = 0;
+    hangs = false, is_imprecise = false, is_wrong = false, is_released = false, calls = 0;
   }
 };
 static_assert(std::is_trivially_destructible_v<OpenClDouble>);

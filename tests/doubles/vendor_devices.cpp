@@ -104,11 +104,11 @@ void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& 
 }
 
 std::vector<std::array<double, 6>> sent_forces(const DeviceDouble& device) {
-  std::vector<std::array<double, 6>> told;
+  std::vector<std::array<double, 6>> sent;
   for (const DeviceDouble::Event& event : device.events())
-    if (event.told != std::array<double, 6>{} && (told.empty() || told.back() != event.told))
-      told.push_back(event.told);
-  return told;
+    if (event.sent != std::array<double, 6>{} && (sent.empty() || sent.back() != event.sent))
+      sent.push_back(event.sent);
+  return sent;
 }
 
 ReadOnce read_once(HapticDevice& device) {

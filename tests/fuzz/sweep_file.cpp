@@ -69,7 +69,7 @@ void read(std::string_view bytes) {
             "every run has a state");
     for (const Column& measure : stored.result.measures)
       require(std::get<std::vector<double>>(measure.values).size() == runs, "every run has its measures");
-    for (std::size_t run = 0; run < runs; ++run) stored.result.place(stored.result.cell_of(run));
+    for (std::size_t run = 0; run < runs; ++run) stored.result.axis_indices(stored.result.cell_of(run));
   });
   ComparisonRules rules;
   for (const bool paired : {false, true}) {

@@ -12,10 +12,10 @@ namespace remote_touch {
 constexpr double kPatience_s = 600;
 
 // Returns true if the condition held within that time.
-inline bool wait_until(const std::function<bool()>& is_so, double patience_s = kPatience_s) {
+inline bool wait_until(const std::function<bool()>& condition, double patience_s = kPatience_s) {
   const double until_s = steady_clock().now_s() + patience_s;
-  while (!is_so() && steady_clock().now_s() < until_s) steady_clock().sleep_s(1e-3);
-  return is_so();
+  while (!condition() && steady_clock().now_s() < until_s) steady_clock().sleep_s(1e-3);
+  return condition();
 }
 
 }  // namespace remote_touch

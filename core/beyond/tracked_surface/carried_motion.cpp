@@ -23,16 +23,16 @@ Matrix6 transport(const Vec3& by, double lever_m) {
 
 }  // namespace
 
-void CarriedMotion::add(const CarriedPlace& place) {
-  if (empty()) first_W_ = place.p_W;
-  const Vec3 r = place.p_W - first_W_;
+void CarriedMotion::add(const CarriedPosition& position) {
+  if (empty()) first_W_ = position.p_W;
+  const Vec3 r = position.p_W - first_W_;
   Vector6 row;
-  row << place.normal_W, r.cross(place.normal_W) / lever_m_;
-  rows_ += place.weight * row * row.transpose();
-  right_ += place.weight * place.moved_m * row;
-  weight_ += place.weight;
-  sum_m_ += place.weight * r;
-  error_m_ += place.weight * place.error_m;
+  row << position.normal_W, r.cross(position.normal_W) / lever_m_;
+  rows_ += position.weight * row * row.transpose();
+  right_ += position.weight * position.moved_m * row;
+  weight_ += position.weight;
+  sum_m_ += position.weight * r;
+  error_m_ += position.weight * position.error_m;
 }
 
 CarriedMotion::Result CarriedMotion::about(const Vec3& about_W, const Vector6& expected) const {
@@ -48,16 +48,17 @@ CarriedMotion::Result CarriedMotion::about(const Vec3& about_W, const Vector6& e
   Vector6 before = expected;
   before.tail<3>() *= lever_m_;
   before = transport(-centre, lever_m_) * before;
-  Vector6 x = Vector6::Zero(), sure = Vector6::Zero();
+  Vector6 x = Vector6::Zero(), shrunk_x = Vector6::Zero();
   for (int k = 0; k < 6; ++k) {
     const double value = eigen.eigenvalues()[k];
     if (!(value >= kObservable)) continue;
     const Vector6 axis = eigen.eigenvectors().col(k);
     const double along = axis.dot(b) / value, before_along = axis.dot(before);
     const double error_m = error_m_ / weight_ / std::sqrt(value);
-    x += along * axis, sure += (before_along + surely(along - before_along, error_m)) * axis;
+    x += along * axis, shrunk_x += (before_along + shrunk(along - before_along, error_m)) * axis;
   }
-  for (auto& [from, to] : {std::pair<const Vector6&, Vector6&>(x, result.motion), {sure, result.sure}}) {
+  for (auto& [from, to] :
+       {std::pair<const Vector6&, Vector6&>(x, result.motion), {shrunk_x, result.shrunk}}) {
     to = transport(centre, lever_m_) * from;
     to.tail<3>() /= lever_m_;
   }

@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 // A position where a surface holds the tool, and the motion of the surface there along its unit normal.
-struct CarriedPlace {
+struct CarriedPosition {
   Vec3 p_W, normal_W;
   double moved_m = 0, error_m = 0;  // error_m: standard error of moved_m
   double weight = 1;
@@ -26,12 +26,12 @@ class CarriedMotion {
   explicit CarriedMotion(double lever_m) : lever_m_(lever_m) {}
   static constexpr double kObservable = 0.1;
   void clear() { *this = CarriedMotion(lever_m_); }
-  void add(const CarriedPlace& place);
+  void add(const CarriedPosition& position);
   bool empty() const { return !(weight_ > 0); }
 
   struct Result {
     Vector6 motion = Vector6::Zero();  // (displacement, rotation vector) of the body in m and rad, world axes
-    Vector6 sure = Vector6::Zero();    // the same: `expected` plus the change that noise does not explain
+    Vector6 shrunk = Vector6::Zero();  // the same: `expected` plus the change that noise does not explain
     bool known = false;
   };
   // Returns the motion as that of a body whose centre is at about_W. expected: predicted motion of the same

@@ -27,7 +27,7 @@ int corner(double coordinate) {
 
 }  // namespace
 
-void HeightFit::take(const PatchPoints& points, const Trend& trend) {
+void HeightFit::set_points(const PatchPoints& points, const Trend& trend) {
   trend_ = trend;
   for (Sums& s : sums_) s.fill(0);
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -26,7 +26,7 @@ class HeightFit {
   HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
   // Computes the sums over the members of points after the trend is subtracted; planes are fitted to the
   // rest. pre: the members lie on the map's square.
-  void take(const PatchPoints& points, const Trend& trend = {});
+  void set_points(const PatchPoints& points, const Trend& trend = {});
 
   // Returns the plane through the points of a square window around (u, v). half_side, in contact radii, is
   // rounded to whole cells.

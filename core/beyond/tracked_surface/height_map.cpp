@@ -78,10 +78,10 @@ void HeightMap::extend(int rings) {
   fill_cells();
 }
 
-void HeightMap::steady(const HeightMap& earlier) {
+void HeightMap::shrink_change_since(const HeightMap& earlier) {
   constexpr double kLever = 3;  // rms distance of a wide window's points from its middle, contact radii
   const auto keep = [](double& now, double before, double error) {
-    now = before + surely(now - before, error);
+    now = before + shrunk(now - before, error);
   };
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& now = nodes_[i];

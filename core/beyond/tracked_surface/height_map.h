@@ -39,7 +39,7 @@ class HeightMap {
   // Reduces the change since an earlier map of the same patch to the part that the errors of the nodes do not
   // explain. Then noise moves the map much less from frame to frame, and a motion well above the noise is
   // hardly delayed.
-  void steady(const HeightMap& earlier);
+  void shrink_change_since(const HeightMap& earlier);
   // Adds a plane: the motion and rotation of the sheet.
   void add_plane(double height, double slope_u, double slope_v);
 

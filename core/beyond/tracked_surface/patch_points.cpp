@@ -10,7 +10,7 @@ void PatchPoints::reserve(std::size_t points) {
   source_.grow(capacity), member_.grow(capacity), bin_.grow(capacity);
 }
 
-void PatchPoints::take(const GatheredPoints& gathered, const PatchRegion& region) {
+void PatchPoints::set_points(const GatheredPoints& gathered, const PatchRegion& region) {
   PatchAxes axes{};
   const PatchFrame& frame = region.frame;
   for (int k = 0; k < 3; ++k) {

@@ -18,9 +18,9 @@ class PatchPoints {
   void reserve(std::size_t points);
   // Replaces the points with the gathered points of a region; none is a member of the sheet yet. pre:
   // reserve() was called for their frame.
-  void take(const GatheredPoints& gathered, const PatchRegion& region);
-  // clear() and add() are the alternative to take(): they add points one by one, as members or not. These
-  // points have no source.
+  void set_points(const GatheredPoints& gathered, const PatchRegion& region);
+  // clear() and add() are the alternative to set_points(): they add points one by one, as members or not.
+  // These points have no source.
   void clear() { count_ = 0; }
   void add(const PatchPlace& place, bool is_member);
   // Computes the residual of each point: its height above the height that a map predicts; NaN if the map

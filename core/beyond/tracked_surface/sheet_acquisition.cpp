@@ -85,7 +85,7 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     found.frame = PatchFrame(foot_W, normal, contact_radius_m);
-    points.take(buffers.gathered, {found.frame, HeightMap::kHalf, reach});
+    points.set_points(buffers.gathered, {found.frame, HeightMap::kHalf, reach});
     HeightProfile profile;
     const double radius = profile_of_column(points, reach, profile);
     if (!(radius > 0)) return {};
@@ -97,7 +97,7 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
       const PatchPlace p = points.place(i);
       points.set_member(i, p.u * p.u + p.v * p.v <= radius * radius && p.h < top && p.h > bottom);
     }
-    buffers.fit.take(points);
+    buffers.fit.set_points(points);
     const PlaneFit plane = buffers.fit.plane_around(0, 0, radius);
     found.sigma = buffers.fit.noise();
     found.known = radius;

@@ -34,17 +34,17 @@ Vec3 world(const ToolPose& pose, const Vec3& p_T) {
 SheetPatches::SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches,
                            const VoxelTool& tool, const Kernels& kernels)
     : unit_m_(unit_m),
-      places_(tool.mesh, kGroupRadius * unit_m, max_patches),
-      patches_(std::max(max_patches, places_.groups().size())),
+      positions_(tool.mesh, kGroupRadius * unit_m, max_patches),
+      patches_(std::max(max_patches, positions_.groups().size())),
       shown_radius_m_(tool.reach_m + 2 * kMaxReach * unit_m) {
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     Patch& patch = patches_[i];
     patch.tracker = std::make_unique<SheetTracker>(settings, unit_m, kernels, SheetTracker::Shows::points);
-    patch.of_group = patch.in_use = i < places_.groups().size();
-    patch.places_T = places_.all(), patch.reach_m = kContactReach * unit_m;
+    patch.of_group = patch.in_use = i < positions_.groups().size();
+    patch.positions_T = positions_.all(), patch.reach_m = kContactReach * unit_m;
     if (!patch.of_group) continue;
-    const ToolPlaces::Group& group = places_.groups()[i];
-    patch.places_T = places_.of(group), patch.middle_T = group.middle_T;
+    const ToolPositions::Group& group = positions_.groups()[i];
+    patch.positions_T = positions_.of(group), patch.middle_T = group.middle_T;
     patch.reach_m = std::clamp((HeightMap::kHalf - kShownBeyond) * unit_m - group.radius_m,
                                kMinReach * unit_m, kMaxReach * unit_m);
   }
@@ -75,7 +75,7 @@ SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& po
   const PatchRegion& region = patch.tracker->region();
   const HeightMap& map = patch.tracker->map();
   const auto each = [&](auto&& use) {
-    for (const Vec3& p_T : patch.places_T) {
+    for (const Vec3& p_T : patch.positions_T) {
       const Vec3 p_W = world(pose, p_T);
       const PatchPlace p = region.frame.place(p_W);
       if (p.u * p.u + p.v * p.v < region.radius * region.radius && map.covers(p.u, p.v))
@@ -98,16 +98,16 @@ SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& po
 
 // Returns the position of a patch's proxy. It is a contact radius above the lowest position on the tool, and
 // over the middle of the group if the sheet is seen there.
-ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, bool held) const {
-  ProxyPlace place{world(pose, patch.middle_T), holds(patch, held)};
-  if (!patch.tracker->tracks()) return place;
+ProxyPosition SheetPatches::proxy_position(const Patch& patch, const ToolPose& pose, bool held) const {
+  ProxyPosition position{world(pose, patch.middle_T), holds(patch, held)};
+  if (!patch.tracker->tracks()) return position;
   const Lowest low = lowest(patch, pose);
-  if (!low.found) return place;
+  if (!low.found) return position;
   const PatchFrame& frame = patch.tracker->region().frame;
-  PatchPlace p = frame.place(place.p_W);
+  PatchPlace p = frame.place(position.p_W);
   if (!patch.of_group || !patch.tracker->map().covers(p.u, p.v)) p = frame.place(low.p_W);
-  place.p_W = frame.world({p.u, p.v, patch.tracker->map().height(p.u, p.v) + low.clearance + 1});
-  return place;
+  position.p_W = frame.world({p.u, p.v, patch.tracker->map().height(p.u, p.v) + low.clearance + 1});
+  return position;
 }
 
 // Returns the index of the patch that explains a contact; -1 if none does.
@@ -153,7 +153,7 @@ void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSea
                           const ToolHold& hold, double captured_s) {
   const double interval_s = captured_s - patch.captured_s;
   const SheetUpdate update =
-      patch.tracker->on_frame(frame, proxy_place(patch, hold.pose, hold.held), interval_s);
+      patch.tracker->on_frame(frame, proxy_position(patch, hold.pose, hold.held), interval_s);
   patch.missing = update.points == nullptr;
   if (patch.missing) return;
   patch.interval_s = interval_s, patch.captured_s = captured_s;
@@ -201,7 +201,7 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
 // Computes the motion of the tool with the surfaces that hold it. Their velocity is kept, apart from changes
 // that noise does not explain.
 ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
-  CarriedMotion places(kLever * unit_m_);
+  CarriedMotion positions(kLever * unit_m_);
   double interval_s = 0;
   for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
     if (patch_of_[k] < 0) continue;
@@ -210,12 +210,12 @@ ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
     const Vec3 p_W = world(hold.pose, hold.contacts[k].r_T);
     const double moved = patch.tracker->moved(p_W), error = patch.tracker->moved_error(p_W);
     if (!std::isfinite(moved)) continue;
-    places.add({p_W, patch.tracker->region().frame.normal_W(), moved * unit_m_, error * unit_m_,
-                1.0 / patch.contacts});
+    positions.add({p_W, patch.tracker->region().frame.normal_W(), moved * unit_m_, error * unit_m_,
+                   1.0 / patch.contacts});
     interval_s = std::max(interval_s, patch.interval_s);
   }
-  const CarriedMotion::Result result = places.about(hold.pose.p_W, interval_s * rate_per_s_);
-  rate_per_s_ = interval_s > 0 ? Vector6(result.sure / interval_s) : Vector6(Vector6::Zero());
+  const CarriedMotion::Result result = positions.about(hold.pose.p_W, interval_s * rate_per_s_);
+  rate_per_s_ = interval_s > 0 ? Vector6(result.shrunk / interval_s) : Vector6(Vector6::Zero());
   return {result.motion, rate_per_s_};
 }
 
@@ -224,12 +224,14 @@ ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
 Vec3 SheetPatches::out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const {
   const SheetTracker& tracker = *patch.tracker;
   double out = 0;
-  for (const Vec3& p_T : patch.places_T) {
+  for (const Vec3& p_T : patch.positions_T) {
     const Vec3 p_W = world(now, p_T), before_W = world(before, p_T);
     const PatchPlace p = tracker.region().frame.place(p_W);
-    const double is = tracker.clearance(p_W), was = tracker.clearance(before_W) + tracker.moved(before_W);
-    if (!(is < 0) || !(was > kBehind) || !tracker.map().covers(p.u, p.v)) continue;  // also skips NaN
-    out = std::max(out, std::min(-is, was - is));
+    const double clearance_now = tracker.clearance(p_W),
+                 clearance_before = tracker.clearance(before_W) + tracker.moved(before_W);
+    if (!(clearance_now < 0) || !(clearance_before > kBehind) || !tracker.map().covers(p.u, p.v))
+      continue;  // also skips NaN
+    out = std::max(out, std::min(-clearance_now, clearance_before - clearance_now));
   }
   return out * unit_m_ * tracker.region().frame.normal_W();
 }
@@ -285,11 +287,11 @@ Vector6 SheetPatches::requery(const ToolPose& pose, bool held) {
     SheetTracker& tracker = *patch.tracker;
     const bool tracked = tracker.tracks() && !patch.missing;
     const Lowest before = tracked ? lowest(patch, pose) : Lowest{};
-    const ProxyPlace place = proxy_place(patch, pose, held);
+    const ProxyPosition position = proxy_position(patch, pose, held);
     if (patch.missing)
-      tracker.reacquire(place.p_W);
+      tracker.reacquire(position.p_W);
     else
-      tracker.requery(place);
+      tracker.requery(position);
     patch.missing = false;
     note_query(patch, pose);
     if (!before.found || !tracker.changes_points() || before.clearance < kBehind) continue;
@@ -320,7 +322,7 @@ bool SheetPatches::concerns(const BoundingSphere& sphere) const {
 // Moves a point onto the nearest sheet and sets its normal. If patches of that sheet overlap, the result is
 // their weighted mean. A point of another surface, or outside all patches, stays as it is. Returns false for
 // a stray point, which is not shown.
-bool SheetPatches::show(Point& point) const {
+bool SheetPatches::apply(Point& point) const {
   const Vec3 measured_W = point.p_W;
   const auto each = [&](auto&& use) {
     for (const Patch& patch : patches_)

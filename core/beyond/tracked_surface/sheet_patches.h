@@ -7,7 +7,7 @@
 
 #include "core/beyond/tracked_surface/carried_motion.h"
 #include "core/beyond/tracked_surface/sheet_tracker.h"
-#include "core/beyond/tracked_surface/tool_places.h"
+#include "core/beyond/tracked_surface/tool_positions.h"
 #include "core/dissertation/tool/contact/tiled_cloud.h"
 #include "core/dissertation/tool/dynamics/motion_program.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
@@ -55,7 +55,7 @@ class SheetPatches final : public PointChange {
   // requery.
   double shown_radius_m() const { return shown_radius_m_; }
   bool concerns(const BoundingSphere& sphere) const override;
-  bool show(Point& point) const override;
+  bool apply(Point& point) const override;
 
   // Access for tests and for pages that show the patches.
   std::size_t size() const { return patches_.size(); }
@@ -65,7 +65,7 @@ class SheetPatches final : public PointChange {
  private:
   struct Patch {
     std::unique_ptr<SheetTracker> tracker;
-    std::span<const Vec3> places_T;
+    std::span<const Vec3> positions_T;
     Vec3 middle_T = Vec3::Zero();
     double reach_m = 0;     // distance that the tool may move until the next query
     bool of_group = false;  // true: the patch of a group; false: of a contact
@@ -85,7 +85,7 @@ class SheetPatches final : public PointChange {
   };
   bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
   Lowest lowest(const Patch& patch, const ToolPose& pose) const;
-  ProxyPlace proxy_place(const Patch& patch, const ToolPose& pose, bool held) const;
+  ProxyPosition proxy_position(const Patch& patch, const ToolPose& pose, bool held) const;
   static bool holds(const Patch& patch, bool held) { return held && patch.contacts > 0; }
   int patch_of(const ToolHold& hold, const ToolContact& contact) const;
   void count_contacts(const ToolHold& hold);
@@ -99,7 +99,7 @@ class SheetPatches final : public PointChange {
   void note_query(Patch& patch, const ToolPose& pose) const;
 
   const double unit_m_;
-  const ToolPlaces places_;
+  const ToolPositions positions_;
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;
   Vector6 rate_per_s_ = Vector6::Zero();  // rate of a held tool at the previous frame

@@ -41,7 +41,7 @@ void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiff
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
 }
 
-void SheetTracker::swap_buffers() {
+void SheetTracker::reserve_for_newest() {
   reserve(newest_->size(), newest_->has_fixture_radius(), newest_->has_stiffness());
 }
 
@@ -55,7 +55,7 @@ void SheetTracker::gather(double half_height) {
   gathered_->clear();
   newest_->gather(region_.around(), kernels_, *gathered_);
   gathered_->finish();
-  points_.take(*gathered_, region_);
+  points_.set_points(*gathered_, region_);
 }
 
 void SheetTracker::forget() {
@@ -98,7 +98,7 @@ void SheetTracker::begin(const Vec3& foot_W, const Vec3& normal_W, double sigma)
 
 // Returns true if the hand moved to another surface, or if the tracked sheet is not the one that holds the
 // proxy.
-bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
+bool SheetTracker::is_of_other_surface(const ProxyPosition& proxy) const {
   const PatchPlace p = patch().place(proxy.p_W);
   if (!(p.u * p.u + p.v * p.v < region_.radius * region_.radius)) return true;
   const double clearance = p.h - map_.height(p.u, p.v);
@@ -127,7 +127,7 @@ void SheetTracker::recentre(const Vec3& middle_W) {
     return !(q.u * q.u + q.v * q.v < region_.radius * region_.radius);
   });
   for (const PatchPlace& q : sheet_) points_.add(q, true);
-  fit_.take(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
+  fit_.set_points(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
   fit_.fit(0.3 * sigma_, map_);
 }
 
@@ -148,7 +148,7 @@ double SheetTracker::predicted_shift(double interval_s) const {
   if (age_ == 0 || !(interval_s_ > 0)) return 0;
   const double ratio = interval_s / interval_s_;
   const double change = age_ >= 2 ? shift_ - shift_before_ : 0;
-  return shift_ * ratio + surely(change, 1.5 * shift_error_) * ratio * ratio;
+  return shift_ * ratio + shrunk(change, 1.5 * shift_error_) * ratio * ratio;
 }
 
 // Selects the points that belong to the sheet that the map predicts: they are within its noise and nearer to
@@ -169,7 +169,7 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
 }
 
 void SheetTracker::fit_map(double weight_of_new_noise) {
-  fit_.take(points_, fit_trend(points_, std::max(sigma_, kUntouched)));
+  fit_.set_points(points_, fit_trend(points_, std::max(sigma_, kUntouched)));
   fit_.fit(sigma_, map_);
   sigma_ += weight_of_new_noise * (fit_.noise() - sigma_);
 }
@@ -193,7 +193,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
     const double found = find_members(proxy);
     if (found >= kDoubtful * before || (gate_m >= s_.max_gate_m && found >= kLost * before && found >= 3)) {
       fit_map(age_ >= 1 ? 0.4 : 1);
-      if (shows_ == Shows::points && age_ >= 1 && changes_points()) map_.steady(before_it);
+      if (shows_ == Shows::points && age_ >= 1 && changes_points()) map_.shrink_change_since(before_it);
       return true;
     }
     map_ = before_it;
@@ -219,7 +219,7 @@ double SheetTracker::contact_distance(const PatchPlace& proxy) const {
 
 std::shared_ptr<const NeighbourSearch> SheetTracker::keep(std::shared_ptr<const NeighbourSearch> frame) {
   newest_ = std::move(frame);
-  swap_buffers();
+  reserve_for_newest();
   tracks_ = before_.known = false;
   return newest_;
 }
@@ -273,7 +273,7 @@ double SheetTracker::exit_distance(const Vec3& proxy_W) const {
 // Returns the displacement of the proxy along the normal, in contact radii. A proxy that the sheet holds back
 // keeps its clearance. A free proxy is moved only out of a sheet that swept over it, and no farther than the
 // sheet moved.
-double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearance_before) const {
+double SheetTracker::proxy_displacement(const ProxyPosition& proxy, double clearance_before) const {
   const double now = clearance(proxy.p_W), moved = clearance_before - now;
   if (!(std::abs(moved) > kResolution)) return 0;
   if (proxy.pressing) return moved;
@@ -287,7 +287,7 @@ SheetUpdate SheetTracker::reacquire(const Vec3& proxy_W) {
   return {show(proxy_W), Vec3::Zero(), 0, Vec3::Zero()};
 }
 
-SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
+SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPosition& proxy,
                                    double interval_s) {
   const Vec3 ahead = last_proxy_W_ ? Vec3(0.5 * (proxy.p_W - *last_proxy_W_)) : Vec3::Zero();
   last_proxy_W_ = proxy.p_W;
@@ -295,7 +295,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   const bool continues = tracks_ && !is_of_other_surface(proxy);
   const double held = continues ? contact_distance(patch().place(proxy.p_W)) : 1;
   newest_ = std::move(frame);
-  swap_buffers();
+  reserve_for_newest();
   if (!continues) return reacquire(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
   if (shows_ == Shows::points) level();
@@ -330,7 +330,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
   shift_error_ = error_of_two(map_.nearest_node(p.u, p.v).error);
   interval_s_ = interval_s;
   ++age_;
-  return surely(shift_, shift_error_) * unit_m_ / interval_s;
+  return shrunk(shift_, shift_error_) * unit_m_ / interval_s;
 }
 
 bool SheetTracker::must_requery(const Vec3& proxy_W) const {
@@ -342,7 +342,7 @@ bool SheetTracker::must_requery(const Vec3& proxy_W) const {
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
 }
 
-SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
+SheetUpdate SheetTracker::requery(const ProxyPosition& proxy) {
   if (!tracks_ || is_of_other_surface(proxy)) return reacquire(proxy.p_W);
   before_.known = false;
   recentre(proxy.p_W);

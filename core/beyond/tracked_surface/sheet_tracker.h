@@ -16,7 +16,7 @@
 namespace remote_touch {
 
 // Position of the proxy. pressing: a surface holds the proxy back.
-struct ProxyPlace {
+struct ProxyPosition {
   Vec3 p_W = Vec3::Zero();
   bool pressing = false;
 };
@@ -51,7 +51,7 @@ class SheetTracker {
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
   // Processes a new frame, interval_s after the one before.
-  SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
+  SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPosition& proxy,
                        double interval_s);
   // Stores a frame for requery() while the proxy has no position yet. Returns the frame unchanged.
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
@@ -64,7 +64,7 @@ class SheetTracker {
   // sigma: estimate of its noise, contact radii. No allocation.
   void begin(const Vec3& foot_W, const Vec3& normal_W, double sigma);
   // Updates the patch around the proxy's new position, from the newest frame's points. No allocation.
-  SheetUpdate requery(const ProxyPlace& proxy);
+  SheetUpdate requery(const ProxyPosition& proxy);
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
 
@@ -90,12 +90,12 @@ class SheetTracker {
   static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is not removed
   void gather(double half_height);
   const PatchFrame& patch() const { return region_.frame; }
-  void swap_buffers();
+  void reserve_for_newest();
   double half_height() const;
   void forget();
   void restart(const Vec3& proxy_W);
   void grow(const PatchFrame& frame, double known, const Vec3& proxy_W);
-  bool is_of_other_surface(const ProxyPlace& proxy) const;
+  bool is_of_other_surface(const ProxyPosition& proxy) const;
   void recentre(const Vec3& middle_W);
   void level();
   double predicted_shift(double interval_s) const;
@@ -103,7 +103,7 @@ class SheetTracker {
   double find_members(const PatchPlace& proxy);
   void fit_map(double weight_of_new_noise);
   double exit_distance(const Vec3& proxy_W) const;
-  double proxy_displacement(const ProxyPlace& proxy, double clearance_before) const;
+  double proxy_displacement(const ProxyPosition& proxy, double clearance_before) const;
   double velocity(const Vec3& proxy_W, double clearance_before, double interval_s);
   double contact_distance(const PatchPlace& proxy) const;
   std::shared_ptr<const NeighbourSearch> show(const Vec3& proxy_W);

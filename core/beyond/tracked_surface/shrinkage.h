@@ -13,7 +13,7 @@ inline double error_of_two(double error) {
 
 // Returns the part of a measurement that its standard error does not explain: nearly all of a large
 // measurement, nearly nothing of a small one.
-inline double surely(double x, double error) {
+inline double shrunk(double x, double error) {
   const double square = x * x;
   return square > 0 ? square / (square + 4 * error * error) * x : 0;
 }

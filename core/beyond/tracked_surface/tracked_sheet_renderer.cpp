@@ -47,7 +47,7 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
   const double interval_s = has_frame_ ? frame.captured_s - captured_s_ : 0;
   SheetUpdate update;
   if (placed_)
-    update = tracker_.on_frame(frame.points, proxy_place(), interval_s);
+    update = tracker_.on_frame(frame.points, proxy_position(), interval_s);
   else
     update.points = tracker_.keep(frame.points);
   if (update.points) {
@@ -72,7 +72,7 @@ RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s
     hold_until_s_ = std::numeric_limits<double>::infinity();
     show(tracker_.reacquire(proxy_.proxy_W()));
   } else if (placed_ && tracker_.must_requery(proxy_.proxy_W())) {
-    show(tracker_.requery(proxy_place()));
+    show(tracker_.requery(proxy_position()));
   }
   proxy_.stop_at_convergence(tracker_.changes_points());
   return proxy_.step(device, time_s);

@@ -42,7 +42,7 @@ class TrackedSheetRenderer final : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
-  ProxyPlace proxy_place() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
+  ProxyPosition proxy_position() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
   void show(const SheetUpdate& update);
 
   const int max_hold_frames_;

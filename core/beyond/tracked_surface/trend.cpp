@@ -41,13 +41,13 @@ bool solve(double a[kTerms][kTerms], double b[kTerms]) {
 // curvature. No curvature is kept if the improvement is below kOfChance. a: the Cholesky factor.
 double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
   constexpr double kOfChance = 6;
-  double betters = 0;
+  double improvement = 0;
   for (int j = kPlane; j < kTerms; ++j) {
     double term = 0;
     for (int i = j; i < kTerms; ++i) term += a[i][j] * c[i];
-    betters += term * term;
+    improvement += term * term;
   }
-  return std::max(0.0, 1 - kOfChance * sigma * sigma / std::max(betters, 1e-12));
+  return std::max(0.0, 1 - kOfChance * sigma * sigma / std::max(improvement, 1e-12));
 }
 
 }  // namespace

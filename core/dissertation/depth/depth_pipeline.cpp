@@ -53,7 +53,7 @@ struct DepthPipeline::Frame {
   CameraIntrinsics camera;
   PixelRectangle at;
   double X_WC[12];
-  bool keep_points;
+  bool has_points;
   int normal_half = 0, filter_half = 0;       // 0: no filter
   int shift = 0;                              // distance of the windows beside a pixel; 0: none
   double filter_scale = 1, normal_scale = 1;  // units of a plane per metre
@@ -112,7 +112,7 @@ void DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& cam
 void DepthPipeline::process_frame(const DepthFrame& whole, PointCloud& cloud) {
   Frame frame =
       frame_of(whole.depth_m, whole.camera, {0, 0, whole.camera.width, whole.camera.height}, whole.X_WC);
-  frame.keep_points = whole.keep_points;
+  frame.has_points = whole.has_points;
   run(frame, cloud);
 }
 
@@ -231,7 +231,7 @@ void DepthPipeline::row_to_cloud(const Frame& frame, int row, const PointPlanes&
                                  {fits.a + at, fits.b + at, fits.c + at, fits.error + at}, sharp_row);
     of_row = sharp_row;
   }
-  if (!frame.keep_points)
+  if (!frame.has_points)
     kernels_.depth.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
   kernels_.depth.normals_to_cloud(width, z, of_row, frame.X_WC, out);
 }

@@ -44,8 +44,8 @@ std::string validate(const DepthPipelineSettings& s);
 struct DepthFrame {
   const double* depth_m;
   CameraIntrinsics camera;
-  RigidTransform X_WC;       // registration of the camera in the base frame
-  bool keep_points = false;  // the cloud has its points already, and they are not filtered
+  RigidTransform X_WC;      // registration of the camera in the base frame
+  bool has_points = false;  // the cloud has its points already, and they are not filtered
 
   std::size_t pixels() const { return camera.pixels(); }
 };
@@ -87,7 +87,7 @@ class DepthProcessor {
     return false;
   }
 
-  // Computes the normals of every pixel of the frame and, unless keep_points is set, the points. The cloud
+  // Computes the normals of every pixel of the frame and, unless has_points is set, the points. The cloud
   // has columns x, y, z of the frame's size, and the image layout.
   virtual void process_frame(const DepthFrame& frame, PointCloud& cloud) = 0;
 

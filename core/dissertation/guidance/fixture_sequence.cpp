@@ -14,7 +14,7 @@ Parameters parameters(SequenceStep& s) {
       {"start", choice(s.start, {"previous", "button"}), 0, 0,
        "previous: start when the previous step has ended; button: then wait for the button"},
       {"not_before_s", &s.not_before_s, 0, 86400, "earliest start time"},
-      {"done", choice(s.done, {"immediately", "reached", "button"}), 0, 0,
+      {"done", choice(s.end, {"immediately", "reached", "button"}), 0, 0,
        "when the step ends: immediately, when the tool has reached the goal, or when the button is pressed"},
       {"button", &s.button, 0, 31, "number of the button"},
       {"deadline_s", &s.deadline_s, 0, 86400,
@@ -30,16 +30,16 @@ std::string name_of(const SequenceStep& s) {
 }
 
 std::string validate(const SequenceStep& s) {
-  const bool needs_fixture = s.action != FixtureAction::wait || s.done == StepEnd::reached;
+  const bool needs_fixture = s.action != FixtureAction::wait || s.end == StepEnd::reached;
   if (needs_fixture && s.fixture.empty()) return "fixture = \"\": expected the label of a fixture";
   if (!needs_fixture && !s.fixture.empty())
     return "fixture = \"" + s.fixture + "\": expected none for wait, unless done = reached";
   if (s.action != FixtureAction::activate && !s.offset_m.isZero(0))
     return "offset_m: expected 0 unless action = activate";
-  if (s.done == StepEnd::immediately && s.deadline_s > 0)
+  if (s.end == StepEnd::immediately && s.deadline_s > 0)
     return "deadline_s = " + std::to_string(s.deadline_s) + ": expected 0 for done = immediately";
   const bool guided = s.action == FixtureAction::activate || s.action == FixtureAction::wait;
-  if (s.done == StepEnd::reached && !guided)
+  if (s.end == StepEnd::reached && !guided)
     return "done = reached: expected only with action = activate or wait";
   return {};
 }
@@ -68,8 +68,8 @@ bool FixtureSequence::begins(double time_s) {
 bool FixtureSequence::ends(double time_s, bool reached) {
   if (!running_) return false;
   const SequenceStep& s = step();
-  const bool done = s.done == StepEnd::immediately || (s.done == StepEnd::reached && reached) ||
-                    (s.done == StepEnd::button && takes_press(s.button));
+  const bool done = s.end == StepEnd::immediately || (s.end == StepEnd::reached && reached) ||
+                    (s.end == StepEnd::button && takes_press(s.button));
   const bool missed = !done && s.deadline_s > 0 && time_s - began_s_ >= s.deadline_s - kRounding_s;
   if (!done && !missed) return false;
   missed_ += missed ? 1 : 0;

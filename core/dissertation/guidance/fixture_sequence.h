@@ -26,7 +26,7 @@ struct SequenceStep {
   std::string fixture;  // label of the fixture; wait has one only with StepEnd::reached
   StepStart start = StepStart::previous;
   double not_before_s = 0;
-  StepEnd done = StepEnd::immediately;
+  StepEnd end = StepEnd::immediately;
   int button = 0;
   double deadline_s = 0;  // time limit from the beginning of the step; 0: none
   Vec3 offset_m{0, 0, 0};

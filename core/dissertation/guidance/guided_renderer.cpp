@@ -109,7 +109,7 @@ void GuidedRenderer::begin_with(const std::vector<FixtureValues>& fixtures) {
 
 void GuidedRenderer::on_frame(const Frame& frame) {
   inner_->on_frame(frame);
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   for (std::size_t i = 0; i < guides_.size(); ++i)
     guides_[i].presence.on_frame(i < frame.guidance.size() ? frame.guidance[i] : GuidanceTarget{},
                                  frame.arrives_s);
@@ -143,7 +143,7 @@ void GuidedRenderer::act(const SequenceStep& step) {
 
 // Returns the guide whose goal the step waits for; null if it waits for none.
 const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) const {
-  if (step.done != StepEnd::reached) return nullptr;
+  if (step.end != StepEnd::reached) return nullptr;
   const std::size_t fixture = number_of(step.fixture);
   const auto found = std::find_if(guides_.begin(), guides_.end(),
                                   [&](const Guide& guide) { return guide.fixture == fixture; });

@@ -26,7 +26,7 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
 
 // Stores the frame and returns true if it is newer than all before.
 bool ProxyRenderer::take(const Frame& frame) {
-  if (!order_.take(frame)) return false;
+  if (!order_.accept_if_newer(frame)) return false;
   replace_points(frame.points);
   frame_arrived_s_ = frame.arrives_s;
   return true;
@@ -192,7 +192,7 @@ int ProxyRenderer::leave_regions(const Vec3& hip_W) {
 // Returns true if the step in contact uses each touching region by itself, not the tangent plane. Updates
 // in_crease_. The angle at which a crease begins is larger than the angle at which it ends, because the two
 // rules would alternate otherwise.
-bool ProxyRenderer::takes_regions(const LocalQuery& here) {
+bool ProxyRenderer::update_region_rule(const LocalQuery& here) {
   if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
   constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
   in_crease_ = is_in_crease(here.points, proxy_W_, unit_normal(here.query, normal_W_), p_.r2_m,
@@ -209,13 +209,13 @@ Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
     case ContactState::contact:
       break;
   }
-  if (!takes_regions(here)) return contact_step(normal_W_, u, p_);
+  if (!update_region_rule(here)) return contact_step(normal_W_, u, p_);
   const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m).value_or(Vec3::Zero());
   return region_step(near_, proxy_W_, goal, u, p_);
 }
 
 // Fills in the output for the position at the end of the tick. Also updates clear_W_ and, through
-// takes_regions(), in_crease_.
+// update_region_rule(), in_crease_.
 void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   const LocalQuery& here = local_query();
   out.proxy_W = proxy_W_;
@@ -229,7 +229,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
       here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(here.query.touching_count);
   const Vec3 u = hip_W - proxy_W_;
-  if (here.state == ContactState::contact && takes_regions(here))
+  if (here.state == ContactState::contact && update_region_rule(here))
     out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
   else
     out.converged = has_converged(here.state, out.normal_W, u, p_);

@@ -58,7 +58,7 @@ class ProxyRenderer final : public Renderer {
   const LocalQuery& local_query();
   int move(const Vec3& hip_W);
   int leave_regions(const Vec3& hip_W);
-  bool takes_regions(const LocalQuery& here);
+  bool update_region_rule(const LocalQuery& here);
   Vec3 next_step(const LocalQuery& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
   void report(const Vec3& hip_W, RenderOutput& out);
@@ -84,7 +84,7 @@ class ProxyRenderer final : public Renderer {
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy was placed at the first HIP
   bool in_contact_ = false;                // stays true until a free tick, or until free at the HIP
-  bool in_crease_ = false;                 // last result of takes_regions() under ContactRule::creases
+  bool in_crease_ = false;                 // last result of update_region_rule() under ContactRule::creases
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // k_s before the newest change

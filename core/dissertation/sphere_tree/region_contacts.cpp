@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Number of contacts that ContactThinning can sort without losing any.
-constexpr std::size_t kMaxToThin = ContactThinning::kMaxCells / 2;
+constexpr std::size_t kMaxToThin = ContactThinning::kSlots / 2;
 
 }  // namespace
 

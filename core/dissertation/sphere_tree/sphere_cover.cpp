@@ -85,8 +85,8 @@ SphereCover::Result SphereCover::cover(double inflation_m, std::size_t max) cons
     entries[i] = {count_of(static_cast<std::uint32_t>(i)), static_cast<std::uint32_t>(i)};
   std::priority_queue<Entry> heap({}, std::move(entries));
   Result result;
-  result.left = points_.size();
-  while (!heap.empty() && result.left > 0 && result.spheres.size() <= max) {
+  result.uncovered_count = points_.size();
+  while (!heap.empty() && result.uncovered_count > 0 && result.spheres.size() <= max) {
     Entry best = heap.top();
     heap.pop();
     const std::uint32_t now = count_of(best.sphere);
@@ -98,7 +98,7 @@ SphereCover::Result SphereCover::cover(double inflation_m, std::size_t max) cons
     }
     within(grown(best.sphere), [&](std::uint32_t point) { covered[point] = 1; });
     result.spheres.push_back(grown(best.sphere));
-    result.left -= now;
+    result.uncovered_count -= now;
   }
   return result;
 }

@@ -20,7 +20,7 @@ class SphereCover {
   // first is selected.
   struct Result {
     std::vector<Sphere> spheres;
-    std::size_t left = 0;  // points that are not covered
+    std::size_t uncovered_count = 0;  // points that are not covered
   };
   Result cover(double inflation_m, std::size_t max) const;
 

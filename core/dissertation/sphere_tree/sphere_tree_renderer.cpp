@@ -60,7 +60,7 @@ void SphereTreeRenderer::reserve(std::size_t points) {
 }
 
 void SphereTreeRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   contacts_.on_frame(form_of<RegionTree>(frame, kernels_));
   updated_ = true;
 }

@@ -43,11 +43,11 @@ std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m) {
   return samples;
 }
 
-std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m) {
+std::vector<Vec3> thinned(const std::vector<Vec3>& positions, double spacing_m) {
   std::unordered_set<std::uint64_t> seen;
   std::vector<Vec3> kept;
-  for (const Vec3& place : places)
-    if (seen.insert(cell_number(place, 1 / spacing_m)).second) kept.push_back(place);
+  for (const Vec3& position : positions)
+    if (seen.insert(cell_number(position, 1 / spacing_m)).second) kept.push_back(position);
   return kept;
 }
 

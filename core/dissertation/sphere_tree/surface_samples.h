@@ -13,7 +13,7 @@ namespace remote_touch {
 std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m);
 
 // Keeps the first of the positions in every cube of side spacing_m.
-std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m);
+std::vector<Vec3> thinned(const std::vector<Vec3>& positions, double spacing_m);
 
 double surface_area_m2(const TriangleMesh& mesh);
 

@@ -67,7 +67,7 @@ SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, st
     // Most of the range is far too much: the first steps divide by ten.
     const double middle = low == 0 ? 0.1 * high : 0.5 * (low + high);
     SphereCover::Result result = cover.cover(middle, max_leaves);
-    if (result.left == 0 && result.spheres.size() <= max_leaves)
+    if (result.uncovered_count == 0 && result.spheres.size() <= max_leaves)
       best = std::move(result), high = middle;
     else
       low = middle;

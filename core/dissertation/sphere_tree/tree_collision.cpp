@@ -109,7 +109,7 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
 }
 
 // When `pairs` is full, it becomes a heap with the shallowest of the kept pairs on top.
-std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
+std::size_t TreeCollision::near_pairs(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
   std::size_t count = 0;
   for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {
     const Found found = regions_near(leaf, margin_m);

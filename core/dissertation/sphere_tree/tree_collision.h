@@ -49,7 +49,7 @@ class TreeCollision {
   // Writes all pairs with gaps of margin_m or less, sorted by the leaf of the tool, then by the region. If
   // `pairs` is too short, the deepest pairs are written; pairs with smaller numbers come first among equally
   // deep ones. Returns the number of all pairs.
-  std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
+  std::size_t near_pairs(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
 
  private:
   void meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops);

@@ -83,7 +83,7 @@ std::vector<GuidanceTarget> FixtureAssignment::targets(const PointCloud& cloud, 
   return all;
 }
 
-std::vector<std::size_t> FixtureAssignment::without_points(const PointCloud& cloud) const {
+std::vector<std::size_t> FixtureAssignment::rules_without_points(const PointCloud& cloud) const {
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < rules_.size(); ++i)
     about_rule(i, [&] {

@@ -47,7 +47,7 @@ class FixtureAssignment {
 
   // Returns the indices of the rules that select no point of the cloud: all their weights are 0. Throws as
   // assign().
-  std::vector<std::size_t> without_points(const PointCloud& cloud) const;
+  std::vector<std::size_t> rules_without_points(const PointCloud& cloud) const;
 
   bool empty() const { return rules_.empty(); }
   // True if two frames of the same cloud can get different values.

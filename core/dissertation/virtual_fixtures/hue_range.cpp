@@ -25,7 +25,7 @@ std::string validate(const HueRange::Settings& s) {
   return validate(s.values);
 }
 
-bool HueRange::holds(std::uint32_t rgb) const {
+bool HueRange::contains(std::uint32_t rgb) const {
   if (rgb == kNoColour) return false;
   const HueSaturationLightness colour = hue_saturation_lightness(rgb);
   if (colour.saturation < settings_.min_saturation || colour.lightness < settings_.min_lightness ||
@@ -44,7 +44,7 @@ std::vector<double> HueRange::weights(const PointCloud& cloud) const {
   require(cloud);
   std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    weights[i] = cloud.point(i).allFinite() && holds(cloud.colour[i]) ? 1 : 0;
+    weights[i] = cloud.point(i).allFinite() && contains(cloud.colour[i]) ? 1 : 0;
   return weights;
 }
 

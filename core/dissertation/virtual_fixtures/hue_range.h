@@ -24,7 +24,7 @@ class HueRange final : public FixtureRule {
   const Settings& settings() const { return settings_; }
 
  private:
-  bool holds(std::uint32_t rgb) const;
+  bool contains(std::uint32_t rgb) const;
 
   const Settings settings_;
 };

@@ -68,7 +68,7 @@ void check_settings(Configurable& factory) {
   EXPECT_EQ(factory.validate(), "");
 }
 
-void contract_tests(const Catalog& catalog, const FillSettings& fill) {
+void register_contract_tests(const Catalog& catalog, const FillSettings& fill) {
   use_catalog(with_built_in(catalog));
   register_checks("ScenarioContract", catalog.scenarios(), scenario_checks(), fill);
   register_checks("FixtureContract", catalog.fixtures(), fixture_checks(), fill);

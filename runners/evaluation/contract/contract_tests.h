@@ -4,7 +4,7 @@
 //
 //   int main(int argc, char** argv) {
 //     testing::InitGoogleTest(&argc, argv);
-//     remote_touch::contract_tests(my_entries());  // a Catalog of your own entries alone
+//     remote_touch::register_contract_tests(my_entries());  // a Catalog of your own entries alone
 //     return RUN_ALL_TESTS();
 //   }
 //
@@ -23,6 +23,6 @@ using FillSettings = std::function<void(const std::string& name, const Parameter
 
 // Registers a test for every entry and every rule of its contract: RendererContract.NoForceInFreeSpace/NAME.
 // Must be called before RUN_ALL_TESTS(). The program then uses the built-in catalog with these entries added.
-void contract_tests(const Catalog& catalog, const FillSettings& fill = {});
+void register_contract_tests(const Catalog& catalog, const FillSettings& fill = {});
 
 }  // namespace remote_touch

@@ -37,21 +37,21 @@ bool same_value(double a, double b) {
 void is_described(const Measure& measure, const FillSettings&) {
   EXPECT_GT(measure.meaning.size(), 10u);
   EXPECT_FALSE(measure.unit.empty()) << "expected \"1\" for a number without a unit";
-  ASSERT_TRUE(measure.of);
+  ASSERT_TRUE(measure.compute);
 }
 
 void the_same_trace_has_the_same_value(const Measure& measure, const FillSettings&) {
   for (const Trace& trace : traces()) {
     if (!applies(measure, trace)) continue;
-    const double first = measure.of(trace);
-    EXPECT_TRUE(same_value(measure.of(trace), first));
+    const double first = measure.compute(trace);
+    EXPECT_TRUE(same_value(measure.compute(trace), first));
     EXPECT_FALSE(std::isinf(first)) << "expected NaN where nothing can be said";
   }
 }
 
 void a_trace_without_ticks_does_no_harm(const Measure& measure, const FillSettings&) {
   const Trace none;
-  EXPECT_FALSE(std::isinf(measure.of(none)));
+  EXPECT_FALSE(std::isinf(measure.compute(none)));
 }
 
 constexpr ContractCheck<Measure> kMeasureChecks[] = {

@@ -242,7 +242,7 @@ void a_guided_step_allocates_nothing(const RendererEntry& entry, const FillSetti
   SequenceStep lock, activate;
   lock.action = FixtureAction::lock, lock.fixture = "table", lock.not_before_s = 0.05;
   activate.action = FixtureAction::activate, activate.fixture = "valve", activate.start = StepStart::button;
-  activate.done = StepEnd::reached, activate.deadline_s = 0.1;
+  activate.end = StepEnd::reached, activate.deadline_s = 0.1;
   GuidedRenderer renderer(build(entry, fill), {}, fixtures, {lock, activate},
                           std::make_shared<FixtureSwitches>());
   Frame frame = scenes::frame(grid_for(entry, 100));

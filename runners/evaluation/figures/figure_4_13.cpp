@@ -13,7 +13,7 @@ namespace {
 
 // Adds the survival of the same regions in the second implementation, and the difference from ours in
 // standard errors.
-Table with_second(Table regions) {
+Table with_second_implementation(Table regions) {
   const auto column = [](const char* name) { return second_column("chapter_4", "/map/regions", name); };
   const std::vector<double> second = column("survived"), variance = column("variance"),
                             nodes = column("nodes"), &survived = numbers(regions, "survived");
@@ -32,7 +32,7 @@ Figure figure_4_13(const FigureContext& context) {
   const Table map = map_table("map", context.sweep(context.map("fig4.13")));
   const Table without = map_table(
       "map_without_estimate", context.sweep(context.map("fig4.13", {"renderer.velocity_estimate=false"})));
-  const Table regions = with_second(region_table("regions", map));
+  const Table regions = with_second_implementation(region_table("regions", map));
   Figure figure{
       "4.13",
       "Pop-through map",
@@ -47,7 +47,7 @@ Figure figure_4_13(const FigureContext& context) {
       map_panel("Without", {{"survived_without_estimate", "noise", "acceleration", CurveStyle::squares,
                              "did not pop through"},
                             bound})};
-  figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
+  figure.panels[0].grid_position = {0, 0}, figure.panels[1].grid_position = {0, 1};
   figure.claims = {
       of_map(claim_agrees("4.13", "success over the whole map, 5396 lifts, 1000 steps per frame", "-",
                           mean(numbers(map, "survived")), second_fraction("/map/whole"), 1)),

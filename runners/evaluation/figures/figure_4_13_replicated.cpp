@@ -93,7 +93,7 @@ Figure figure_4_13_replicated(const FigureContext& context) {
       {map, without, half, contour("contour_without_estimate", without, columns), second}};
   figure.panels = {probability_panel("With the velocity estimate", "map", "contour"),
                    probability_panel("Without", "map_without_estimate", "contour_without_estimate")};
-  figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
+  figure.panels[0].grid_position = {0, 0}, figure.panels[1].grid_position = {0, 1};
   constexpr double kLiftsANode = 20;
   figure.claims = {
       of_map(claim_agrees("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")),

@@ -274,7 +274,7 @@ Figure figure_4_13_tracked(const FigureContext& context) {
       slide_panel("Force along the surface", "mean ratio to the normal force", "lateral_force")};
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::size_t row = i / 2, column = i % 2;
-    figure.panels[i].place = {static_cast<double>(row), static_cast<double>(column)};
+    figure.panels[i].grid_position = {static_cast<double>(row), static_cast<double>(column)};
   }
   figure.claims = claims(context, lifts, ours, paper);
   for (Claim& claim : lateral_claims(figure.name, ours, paper)) figure.claims.push_back(std::move(claim));

@@ -150,7 +150,7 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
 // Places the panels from `first` on below each other in a column.
 void place_in_column(Figure& figure, std::size_t first, int column) {
   for (std::size_t i = first; i < figure.panels.size(); ++i)
-    figure.panels[i].place = std::pair(static_cast<double>(i - first), static_cast<double>(column));
+    figure.panels[i].grid_position = std::pair(static_cast<double>(i - first), static_cast<double>(column));
 }
 
 // The HIP presses at one pixel while the camera moves.

@@ -174,7 +174,7 @@ Figure figure_5_6(const FigureContext& context) {
                     {{"stiffness_run", "hip_x", "force", CurveStyle::line, ""}}}};
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::size_t row = i % 2, column = i / 2;
-    figure.panels[i].place = std::pair(static_cast<double>(row), static_cast<double>(column));
+    figure.panels[i].grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   }
 
   const std::size_t peak = row_of_max_force(at_zero), peak_below = row_of_max_force(below);

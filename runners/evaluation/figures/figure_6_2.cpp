@@ -174,13 +174,13 @@ void add_panels(Figure& figure) {
              {{"profile", "pixel", "truth", CurveStyle::dashed, "walls"},
               {"profile", "pixel", "wide", CurveStyle::line, "sigma_f = 0.025 m"},
               {"profile", "pixel", "narrow", CurveStyle::line, "sigma_f = 0.010 m"}}};
-  step.place = std::pair(1.0, 0.0);
+  step.grid_position = std::pair(1.0, 0.0);
   Panel gain{"Noise left on the walls",
              "sigma_f (m)",
              "share of the noise",
              false,
              {{"step", "sigma_f", "noise_gain", CurveStyle::bars, ""}}};
-  gain.place = std::pair(1.0, 1.0);
+  gain.grid_position = std::pair(1.0, 1.0);
   const auto seen = [&](const std::vector<ScenePart>& parts) {
     return Scene{eye, target, -Vec3::UnitY(), 0.20, 1.05, parts};
   };

@@ -42,9 +42,9 @@ std::vector<Turning> turnings(const SweepResult& result) {
   for (const std::string& rule : rules)
     for (const double spacing_m : spacings) list.push_back({rule, spacing_m, {}, {}, {}, {}, {}, {}});
   for (std::size_t run = 0; run < result.run_count(); ++run) {
-    const std::vector<std::size_t> place = result.place(result.cell_of(run));
-    Turning& one = list[place[2] * spacings.size() + place[1]];
-    const double angle_deg = angles[place[0]];
+    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
+    Turning& one = list[indices[2] * spacings.size() + indices[1]];
+    const double angle_deg = angles[indices[0]];
     one.commanded_deg.push_back(angle_deg);
     // The device stays at the commanded angle for as long as the tool needs; the lag is largest there.
     one.turned_deg.push_back(angle_deg - result.measure("max_tool_lag_angle")[run] / kRadiansPerDegree);

@@ -24,8 +24,8 @@ constexpr double kDeepestInShell_m = 2.5981 * kVoxel_m;
 
 // A picture of a run: the part of the recording around the object, and the viewpoint.
 struct DrawnMoment {
-  const char *experiment, *table, *words;
-  double remaining_m, right_m, top_m, bottom_m, max_depth_m;
+  const char *experiment, *table, *label;
+  double left_m, right_m, top_m, bottom_m, max_depth_m;
   Vec3 eye, target;
   double width_m;
 };
@@ -107,7 +107,7 @@ Table touch_table(const TouchRun& run) {
       {"exhausted", "1", "the tick ended before the tool was at rest"},
       {"force", "N", "magnitude of the force"},
       {"torque", "N m", "magnitude of the torque"}};
-  return table_of(table_name(run), run.shown->words + (", contact rule " + run.rule), columns, rows);
+  return table_of(table_name(run), run.shown->label + (", contact rule " + run.rule), columns, rows);
 }
 
 // Returns every second pixel, in a chequered pattern, of the part of the recording that is shown.
@@ -116,7 +116,7 @@ std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment&
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
-    if ((i / width + i % width) % 2 == 0 && p.x() > shown.remaining_m && p.x() < shown.right_m &&
+    if ((i / width + i % width) % 2 == 0 && p.x() > shown.left_m && p.x() < shown.right_m &&
         p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m)
       chosen.push_back(i);
   }
@@ -140,7 +140,7 @@ void add_panels(Figure& figure, const TouchRun& run, int row) {
   for (std::size_t instant = 0; instant < 2; ++instant) {
     const double time_s = run.trace.time_s[tick_at(run.trace, instant == 0 ? kFirst_s : kSecond_s)];
     figure.panels.push_back(
-        scene_panel(std::string(shown.words) + ", " + std::to_string(time_s).substr(0, 3) + " s", row,
+        scene_panel(std::string(shown.label) + ", " + std::to_string(time_s).substr(0, 3) + " s", row,
                     static_cast<int>(instant),
                     {shown.eye, shown.target, -Vec3::UnitY(), shown.width_m, 0.8,
                      tool_in_cloud(shown.table, instant, 0.003)}));
@@ -192,19 +192,20 @@ void add_claims(Figure& figure, const TouchRun& run) {
   const Trace& t = run.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string name = figure.name,
-                    words = run.shown->words + std::string(is_printed(run) ? ", as printed: " : ": ");
-  claim(claim_at_most(name, words + "ticks with a number that is not finite", "-", non_finite_fraction(t), 0,
-                      "fraction"));
-  claim(claim_at_most(name, words + "deepest point in the tool at the end of a tick without a new frame", "0",
-                      deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m"));
-  claim(claim_at_most(name, words + "ticks whose detections and log of a used-up budget do not fit", "-",
+                    opening = run.shown->label + std::string(is_printed(run) ? ", as printed: " : ": ");
+  claim(claim_at_most(name, opening + "ticks with a number that is not finite", "-", non_finite_fraction(t),
+                      0, "fraction"));
+  claim(claim_at_most(name, opening + "deepest point in the tool at the end of a tick without a new frame",
+                      "0", deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m"));
+  claim(claim_at_most(name, opening + "ticks whose detections and log of a used-up budget do not fit", "-",
                       inconsistent_ticks(run), 0, "ticks"));
   claim(claim_at_least(
-      name, words + "share of the sliding time in which the tool touches", "-",
+      name, opening + "share of the sliding time in which the tool touches", "-",
       fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9,
       "fraction"));
-  claim(claim_at_least(name, words + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
-  claim(claim_at_most(name, words + "force at the end", "0", t.force_N[t.length() - 1].norm(), 0, "N"));
+  claim(
+      claim_at_least(name, opening + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
+  claim(claim_at_most(name, opening + "force at the end", "0", t.force_N[t.length() - 1].norm(), 0, "N"));
 }
 
 Table summary_table(const std::vector<TouchRun>& runs) {

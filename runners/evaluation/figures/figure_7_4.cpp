@@ -84,10 +84,10 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   const std::size_t last = t.length() - 1;
   const Vec3 aside = t.proxy_position_m[last] - t.intended_position_m[last];
   figure.claims.push_back(claim_at_least(figure.name,
-                                         slip.words + ": how far the tool was pushed up, past the valve", "-",
+                                         slip.label + ": how far the tool was pushed up, past the valve", "-",
                                          aside.y(), 0.01, "m"));
   figure.claims.push_back(claim_at_least(figure.name,
-                                         slip.words + ": least distance of its mesh to the true valve", "-",
+                                         slip.label + ": least distance of its mesh to the true valve", "-",
                                          min_clearance_m(slip, Valve::left), kValveRegion_m - 1e-3, "m"));
   add_task_claims(figure, slip);
 }

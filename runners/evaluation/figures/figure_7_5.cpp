@@ -41,35 +41,35 @@ double residual_N(const Trace& t) {
 void add_common_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name, words = task.words + ": ";
+  const std::string name = figure.name, opening = task.label + ": ";
   const std::size_t first = first_pull(t);
   if (first == t.length()) {
-    claim(claim_not_run(name, words + "guidance", "it never pulled"));
+    claim(claim_not_run(name, opening + "guidance", "it never pulled"));
     return;
   }
-  claim(claim_at_least(name, words + "force of the region before, pushed to the left", "rises",
+  claim(claim_at_least(name, opening + "force of the region before, pushed to the left", "rises",
                        t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N"));
-  claim(claim_at_most(name, words + "force at the end", "decays", residual_N(t), 0.2, "N"));
-  claim(claim_at_most(name, words + "torque about the handle's y and z at the end", "-",
+  claim(claim_at_most(name, opening + "force at the end", "decays", residual_N(t), 0.2, "N"));
+  claim(claim_at_most(name, opening + "torque about the handle's y and z at the end", "-",
                       max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
-  claim(claim_at_least(name, words + "least distance of the tool's mesh to the true left valve", "-",
+  claim(claim_at_least(name, opening + "least distance of the tool's mesh to the true left valve", "-",
                        min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);
-  claim(set_up(claim_between(name, words + "when guidance begins to pull", "about 3", t.time_s[first],
+  claim(set_up(claim_between(name, opening + "when guidance begins to pull", "about 3", t.time_s[first],
                              kPressed_s, kPressed_s + 1e-9, "s")));
-  claim(set_up(claim_between(name, words + "its force in that tick, cut at 4 N", "a step",
+  claim(set_up(claim_between(name, opening + "its force in that tick, cut at 4 N", "a step",
                              t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N")));
 }
 
 void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six) {
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  claim(claim_at_least(figure.name, five.words + ": torque about the roll axis at the end",
+  claim(claim_at_least(figure.name, five.label + ": torque about the roll axis at the end",
                        "never reaches zero", residual_Nm(five.trace).x(), 10 * kLittle_Nm, "N m"));
-  claim(claim_at_most(figure.name, six.words + ": torque about the roll axis at the end", "-",
+  claim(claim_at_most(figure.name, six.label + ": torque about the roll axis at the end", "-",
                       residual_Nm(six.trace).x(), kLittle_Nm, "N m"));
-  claim(claim_between(figure.name, five.words + ": steps of the task that are missed", "-",
+  claim(claim_between(figure.name, five.label + ": steps of the task that are missed", "-",
                       five.trace.sequence_missed.back(), 1, 1, "steps"));
-  claim(claim_at_most(figure.name, six.words + ": steps of the task that are missed", "-",
+  claim(claim_at_most(figure.name, six.label + ": steps of the task that are missed", "-",
                       six.trace.sequence_missed.back(), 0, "steps"));
 }
 
@@ -78,7 +78,7 @@ Panel time_panel(const char* title, const char* label, int row, int column) {
 }
 
 void add_panels(Figure& figure, const ValveTask& task, int column) {
-  Panel force = time_panel(task.words.c_str(), "force (N)", 0, column);
+  Panel force = time_panel(task.label.c_str(), "force (N)", 0, column);
   Panel torque = time_panel("", "torque (N m)", 1, column);
   Panel axes = time_panel("", "torque about the handle's axes (N m)", 2, column);
   force.curves = {{task.name, "time", "force", CurveStyle::line, ""}};

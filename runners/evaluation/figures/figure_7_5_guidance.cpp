@@ -11,20 +11,20 @@ namespace remote_touch {
 namespace {
 
 // Results at the end of the task for one device, one entry for each stiffness of guidance.
-struct Led {
+struct GuidedEnds {
   std::string name, label;
   std::vector<double> stiffness_N_per_m, error_mm, error_deg, clearance_mm;
 };
 
-std::vector<Led> led(const SweepResult& result) {
+std::vector<GuidedEnds> guided_ends(const SweepResult& result) {
   const auto& stiffnesses = std::get<std::vector<double>>(result.axes.at(0).values);
-  std::vector<Led> list(2);
+  std::vector<GuidedEnds> list(2);
   list[0].name = "six_motors", list[0].label = "six motors";
   list[1].name = "five_motors", list[1].label = "no motor about x";
   for (std::size_t run = 0; run < result.run_count(); ++run) {
-    const std::vector<std::size_t> place = result.place(result.cell_of(run));
-    Led& one = list[place[1]];  // the axis is torque_x: true, false
-    one.stiffness_N_per_m.push_back(stiffnesses[place[0]]);
+    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
+    GuidedEnds& one = list[indices[1]];  // the axis is torque_x: true, false
+    one.stiffness_N_per_m.push_back(stiffnesses[indices[0]]);
     one.error_mm.push_back(1e3 * result.measure("guidance_error")[run]);
     one.error_deg.push_back(result.measure("guidance_error_angle")[run] / kRadiansPerDegree);
     one.clearance_mm.push_back(1e3 * result.measure("min_clearance")[run]);
@@ -32,7 +32,7 @@ std::vector<Led> led(const SweepResult& result) {
   return list;
 }
 
-Table led_table(const Led& one) {
+Table guided_table(const GuidedEnds& one) {
   Table table{one.name, "end of the task, " + one.label};
   table.add("stiffness", "N/m", "stiffness of guidance", one.stiffness_N_per_m);
   table.add("error", "mm", "distance of the tool from the goal at the end", one.error_mm);
@@ -41,10 +41,10 @@ Table led_table(const Led& one) {
   return table;
 }
 
-Panel led_panel(const std::string& title, const std::string& column, const std::string& y_label,
-                const std::vector<Led>& list) {
+Panel guided_panel(const std::string& title, const std::string& column, const std::string& y_label,
+                   const std::vector<GuidedEnds>& list) {
   Panel panel{title, "stiffness of guidance (N/m)", y_label};
-  for (const Led& one : list)
+  for (const GuidedEnds& one : list)
     panel.curves.push_back({one.name, "stiffness", column,
                             one.name == "five_motors" ? CurveStyle::dashed : CurveStyle::line, one.label});
   return panel;
@@ -53,17 +53,17 @@ Panel led_panel(const std::string& title, const std::string& column, const std::
 }  // namespace
 
 Figure figure_7_5_guidance(const FigureContext& context) {
-  const std::vector<Led> list = led(context.sweep(Sweep::load("fig7.5-guidance")));
-  const Led &six = list[0], &five = list[1];
+  const std::vector<GuidedEnds> list = guided_ends(context.sweep(Sweep::load("fig7.5-guidance")));
+  const GuidedEnds &six = list[0], &five = list[1];
   Figure figure{
       "7.5-guidance",
       "Where guidance leads the hand",
       "The task of Fig 7.5 with guidance of 50 to 300 N/m, frames at 10 Hz, a device with six motors and "
       "one without torque about x; simulated. The operator has relaxed at 3.3 s. The position is reached in "
       "both cases. Without the motor an error of the angle remains at every stiffness of guidance.",
-      {led_table(six), led_table(five)},
-      {led_panel("Distance from the goal", "error", "distance (mm)", list),
-       led_panel("Angle to the goal", "angle", "angle (deg)", list)}};
+      {guided_table(six), guided_table(five)},
+      {guided_panel("Distance from the goal", "error", "distance (mm)", list),
+       guided_panel("Angle to the goal", "angle", "angle (deg)", list)}};
   const std::string name = "7.5-guidance";
   figure.claims = {
       claim_at_most(name, "distance from the goal at the end, all runs", "-",

@@ -49,7 +49,7 @@ struct Measured {
   std::vector<double> axis_of_runs(std::size_t a) const {
     std::vector<double> list;
     for (std::size_t run = 0; run < plan.run_count(); ++run)
-      list.push_back(axis(a)[plan.place(plan.cell_of(run))[a]]);
+      list.push_back(axis(a)[plan.axis_indices(plan.cell_of(run))[a]]);
     return list;
   }
 };
@@ -179,7 +179,7 @@ std::vector<Panel> panels() {
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::size_t row = i / 2, column = i % 2;
-    list[i].place = std::pair(static_cast<double>(row), static_cast<double>(column));
+    list[i].grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   }
   return list;
 }

@@ -45,9 +45,9 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
   const std::vector<NoiseMeans> lifts = context.measure(sweep, noise_means);
   std::vector<Machine> list;
   for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
-    const auto place = plan.place(cell);
-    const double rate_hz = std::get<std::vector<double>>(plan.axes[0].values)[place[0]];
-    if (place[1] == 0)
+    const auto indices = plan.axis_indices(cell);
+    const double rate_hz = std::get<std::vector<double>>(plan.axes[0].values)[indices[0]];
+    if (indices[1] == 0)
       list.emplace_back().steps = static_cast<int>(std::lround(steps_per_tick * rate_hz / kFrames_hz));
     NoiseMeans sum;
     double count = 0;
@@ -57,7 +57,7 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
       sum.thickness_m += one.thickness_m, sum.at_end += one.at_end, sum.in_time += one.in_time, ++count;
     }
     Machine& to = list.back();
-    to.noise_m.push_back(std::get<std::vector<double>>(plan.axes[1].values)[place[1]]);
+    to.noise_m.push_back(std::get<std::vector<double>>(plan.axes[1].values)[indices[1]]);
     to.thickness_m.push_back(sum.thickness_m / count);
     to.at_end.push_back(sum.at_end / count), to.in_time.push_back(sum.in_time / count);
   }

@@ -211,12 +211,12 @@ Table deviation_table(const std::string& name, const std::string& title, const s
 }
 
 Panel deviation_panel(const Table& table, const std::string& of, const std::string& x_label,
-                      const std::string& y_label, std::pair<double, double> place) {
+                      const std::string& y_label, std::pair<double, double> grid_position) {
   Panel panel{table.title, x_label, y_label};
   for (const ToolMethod& method : kToolMethods)
     panel.curves.push_back({table.name, table.columns[0].name, std::string(method.column) + "_" + of,
                             CurveStyle::line, method.label});
-  panel.place = place;
+  panel.grid_position = grid_position;
   return panel;
 }
 
@@ -230,13 +230,13 @@ Table slot_table(const PressResults& results) {
   return table;
 }
 
-Panel slot_panel(const Table& table, std::pair<double, double> place) {
+Panel slot_panel(const Table& table, std::pair<double, double> grid_position) {
   Panel panel{table.title, "angle of the device (deg)", "torque (N m)"};
   for (const ToolMethod& method : kToolMethods)
     panel.curves.push_back({table.name, "angle", method.column, CurveStyle::line, method.label});
   panel.curves.push_back({table.name, "angle", "exact", CurveStyle::dashed, "exact"});
   panel.x_range = {15, 32};
-  panel.place = place;
+  panel.grid_position = grid_position;
   return panel;
 }
 

@@ -248,7 +248,7 @@ std::vector<Claim> shape_claims(const std::vector<Table>& still, const std::vect
   return claims;
 }
 
-Panel pool_panel(const Table& pooled, std::pair<double, double> place) {
+Panel pool_panel(const Table& pooled, std::pair<double, double> grid_position) {
   Panel panel{pooled.title, "speed / derived bound", "fraction carried"};
   for (const CarrierName& carrier : kCarriers) {
     const std::string column = carrier.column;
@@ -256,7 +256,7 @@ Panel pool_panel(const Table& pooled, std::pair<double, double> place) {
         {pooled.name, "ratio", column + "_low", CurveStyle::band, "", 0, column + "_high"});
     panel.curves.push_back({pooled.name, "ratio", column + "_carried", CurveStyle::line, carrier.label});
   }
-  panel.place = place;
+  panel.grid_position = grid_position;
   return panel;
 }
 

@@ -262,7 +262,7 @@ std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& pri
   return claims;
 }
 
-std::pair<double, double> place_of(std::size_t panel) {
+std::pair<double, double> grid_position_of(std::size_t panel) {
   const std::size_t row = panel / 4, column = panel % 4;
   return {static_cast<double>(row), static_cast<double>(column)};
 }
@@ -316,7 +316,7 @@ Figure figure_tool_tracked(const FigureContext& context) {
     figure.panels.push_back(jump_panel(table, "_force", "force jump at frames, rms (N)"));
     figure.panels.push_back(jump_panel(table, "_torque", "torque jump at frames, rms (N m)"));
   }
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].place = place_of(i);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].grid_position = grid_position_of(i);
   const Table shapes = shape_table(context);
   figure.claims = tracked_tool_claims(ours, printed, jumps, shapes);
   figure.tables.insert(figure.tables.end(), jumps.begin(), jumps.end());

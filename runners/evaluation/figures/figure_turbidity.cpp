@@ -106,7 +106,7 @@ Panel fraction_panel(const std::string& title, const std::string& value, int col
     panel.curves.push_back({name, "turbidity", value, CurveStyle::line, name + std::string(" valve")});
   panel.x_range = std::pair(0.0, 3.0);
   panel.y_range = std::pair(-0.02, 1.02);
-  panel.place = std::pair(2.0, static_cast<double>(column));
+  panel.grid_position = std::pair(2.0, static_cast<double>(column));
   return panel;
 }
 
@@ -141,7 +141,7 @@ double max_rise(const std::vector<Level>& levels, std::size_t k,
 // Returns the smallest precision over the levels with enough picked pixels; NaN if there are none.
 double min_precision(const std::vector<Level>& levels, std::size_t k) {
   return min_where(
-      levels.size(), [&](std::size_t i) { return levels[i].score[k].picked() >= kEnoughPicked; },
+      levels.size(), [&](std::size_t i) { return levels[i].score[k].selected() >= kEnoughPicked; },
       [&](std::size_t i) { return levels[i].score[k].precision(); });
 }
 

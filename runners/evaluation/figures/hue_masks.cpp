@@ -53,7 +53,7 @@ Panel picture_panel(const std::string& title, int row, int column, const std::st
   panel.curves.front().z = "colour";
   panel.x_range = std::pair(crop.left - 0.5, crop.right - 0.5);
   panel.y_range = std::pair(crop.bottom - 0.5, crop.top - 0.5);  // rows count downwards
-  panel.place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   return panel;
 }
 

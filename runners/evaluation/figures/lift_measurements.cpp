@@ -121,9 +121,9 @@ LiftMap lift_map(const FigureContext& context, int seed) {
   result.updates = context.measure(sweep, updates_of);
   std::vector<double> noise, acceleration, survived;
   for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
-    const auto place = plan.place(cell);
-    noise.push_back(std::get<std::vector<double>>(plan.axes[0].values)[place[0]] / kContactRadius_m);
-    acceleration.push_back(std::get<std::vector<double>>(plan.axes[1].values)[place[1]] / kContactRadius_m);
+    const auto indices = plan.axis_indices(cell);
+    noise.push_back(std::get<std::vector<double>>(plan.axes[0].values)[indices[0]] / kContactRadius_m);
+    acceleration.push_back(std::get<std::vector<double>>(plan.axes[1].values)[indices[1]] / kContactRadius_m);
     survived.push_back(result.updates[cell].back().above_after ? 1 : 0);
   }
   result.map = cell_table("map", "lifts that did not pop through", noise, acceleration);

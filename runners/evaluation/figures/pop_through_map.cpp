@@ -34,10 +34,10 @@ Table map_table(const std::string& name, const SweepResult& result, const std::s
   std::vector<double> x, y, survived, low, high, runs;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
     const Tally t = tally(result, popped, cell);
-    const auto place = result.place(cell);
+    const auto indices = result.axis_indices(cell);
     const auto interval = wilson_interval(t.runs - t.events, t.runs);
-    x.push_back(sigma[place[0]] / kContactRadius_m);
-    y.push_back(acceleration[place[1]] / kContactRadius_m);
+    x.push_back(sigma[indices[0]] / kContactRadius_m);
+    y.push_back(acceleration[indices[1]] / kContactRadius_m);
     survived.push_back(1 - static_cast<double>(t.events) / t.runs);
     low.push_back(interval.first), high.push_back(interval.second);
     runs.push_back(t.runs);

@@ -21,9 +21,9 @@ inline constexpr int kRiseFrames = 15;
 Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
                  std::vector<double> acceleration);
 // Returns a table with one row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its
-// Wilson interval, runs. popped: name of the measure that is 1 for a run that popped through.
+// Wilson interval, runs. popped_measure: name of the measure that is 1 for a run that popped through.
 Table map_table(const std::string& name, const SweepResult& result,
-                const std::string& popped = "popped_through");
+                const std::string& popped_measure = "popped_through");
 // Returns the cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 

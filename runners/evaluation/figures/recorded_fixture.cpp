@@ -14,9 +14,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kAround_px = 10;  // 1 cm at 0.6 m
 
 // Index of a frame in the recording, which plays forwards and backwards: 0 1 2 3 2 1 0 1 ...
-int place_of(int frame, int count) {
-  const int cycle = std::max(1, 2 * count - 2), place = frame % cycle;
-  return place < count ? place : cycle - place;
+int recorded_frame(int frame, int count) {
+  const int cycle = std::max(1, 2 * count - 2), index = frame % cycle;
+  return index < count ? index : cycle - index;
 }
 
 double median_or_unknown(std::vector<double> values) {
@@ -77,7 +77,7 @@ std::vector<FrameOutcome> last_ticks(const Trace& trace) {
   return outcomes;
 }
 
-int places(const Experiment& experiment) {
+int recorded_frame_count(const Experiment& experiment) {
   const RecordingPart part = experiment.inputs().front();
   const FrameRange frames = frames_of(part, index_recording(find_recording(part.path)));
   return frames.last - frames.first + 1;
@@ -89,16 +89,16 @@ int places(const Experiment& experiment) {
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run) {
   const Trace& trace = run.trace;
   std::vector<FrameOutcome> outcomes = last_ticks(trace);
-  const int count = places(experiment);
-  std::vector<Motion> to(static_cast<std::size_t>(count));  // motion to each place from the one before
+  const int count = recorded_frame_count(experiment);
+  std::vector<Motion> to(static_cast<std::size_t>(count));  // motion to each frame from the one before
   PointCloud before;
-  for (int place = 0; place < count; ++place) {
-    PointCloud cloud = run.scenario->cloud(place);
-    if (place > 0)
-      to[static_cast<std::size_t>(place)] =
+  for (int index = 0; index < count; ++index) {
+    PointCloud cloud = run.scenario->cloud(index);
+    if (index > 0)
+      to[static_cast<std::size_t>(index)] =
           motion(before, cloud, pixel_of(trace.hip_position_m[0], cloud.image->camera));
     for (FrameOutcome& outcome : outcomes) {
-      if (place_of(trace.frame_index[outcome.tick], count) != place) continue;
+      if (recorded_frame(trace.frame_index[outcome.tick], count) != index) continue;
       outcome.nearest_distance_m = nearest_distance_m(trace.proxy_position_m[outcome.tick], cloud);
       outcome.hidden_m = hidden_m(trace.proxy_position_m[outcome.tick], cloud);
     }
@@ -107,7 +107,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
   for (FrameOutcome& outcome : outcomes) {
     const int frame = trace.frame_index[outcome.tick];
     if (frame <= 0) continue;
-    const int now = place_of(frame, count), last = place_of(frame - 1, count);
+    const int now = recorded_frame(frame, count), last = recorded_frame(frame - 1, count);
     const Motion& step = to[static_cast<std::size_t>(std::max(now, last))];
     outcome.camera_motion_m = step.camera_position_m;
     outcome.surface_motion_m = now > last ? step.surface_m : -step.surface_m;  // played backwards

@@ -44,7 +44,7 @@ double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& 
 
 // Positions on the boundary of the union of the regions.
 std::vector<Vec3> boundary(const SphereTree& regions) {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   const double golden = 2.399963229728653;
   for (std::size_t leaf = 0; leaf < regions.leaves().size(); leaf += kRegionsEvery)
     for (int i = 0; i < kRaysOfRegion; ++i) {
@@ -52,10 +52,10 @@ std::vector<Vec3> boundary(const SphereTree& regions) {
       const auto [sine, cosine] = sin_cos(golden * i);
       const Vec3 along(r * cosine, y, r * sine);
       const Vec3& from = regions.leaves()[leaf].centre;
-      const Vec3 place = from + exit_distance_m(regions, from, along) * along;
-      if (place.z() > 0) places.push_back(place);
+      const Vec3 position = from + exit_distance_m(regions, from, along) * along;
+      if (position.z() > 0) positions.push_back(position);
     }
-  return places;
+  return positions;
 }
 
 // Returns the points of the valves, and those of the wall in every second pixel of every second row.
@@ -86,7 +86,7 @@ std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     std::shared_ptr<const Scenario> scenario = experiments[i].build_scenario(context.kernels());
     std::shared_ptr<const VoxelTool> tool = tool_of(experiments[i]);
-    runs.push_back({tasks[i].name, tasks[i].words, std::move(experiments[i]), std::move(traces[i]),
+    runs.push_back({tasks[i].name, tasks[i].label, std::move(experiments[i]), std::move(traces[i]),
                     std::dynamic_pointer_cast<const ValveTank>(scenario), std::move(tool)});
   }
   return runs;
@@ -150,7 +150,7 @@ Table task_table(const ValveTask& task) {
       {"penetration", "m", "deepest leaf of the tool in a region at the end of the tick"},
       {"detections", "1", "collision detections in the tick"},
       {"exhausted", "1", "the tick ended before the tool was at rest"}};
-  return table_of(task.name, task.words, columns, rows);
+  return table_of(task.name, task.label, columns, rows);
 }
 
 Table sequence_table(const ValveTask& task) {
@@ -164,7 +164,7 @@ Table sequence_table(const ValveTask& task) {
                                            {"missed", "1", "whether its deadline ended it"},
                                            {"distance", "m", "from the tool to the goal when it ended"},
                                            {"angle", "deg", "between tool and goal when it ended"}};
-  return table_of(task.name + "_steps", "steps of the task: " + task.words, columns, rows);
+  return table_of(task.name + "_steps", "steps of the task: " + task.label, columns, rows);
 }
 
 void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
@@ -175,10 +175,10 @@ void add_task_picture_tables(Figure& figure, const FigureContext& context, const
   task.experiment.build_fixtures().assign(cloud, 0);
   RegionTree regions;
   regions.assign(cloud);
-  std::vector<std::vector<double>> places;
-  for (const Vec3& p : boundary(regions.spheres())) places.push_back({p.x(), p.y(), p.z()});
+  std::vector<std::vector<double>> positions;
+  for (const Vec3& p : boundary(regions.spheres())) positions.push_back({p.x(), p.y(), p.z()});
   figure.tables.push_back(table_of(task.name + "_regions", "places on the boundary of the forbidden regions",
-                                   {{"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, places));
+                                   {{"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, positions));
   figure.tables.push_back(vertex_table(task.name + "_vertices", task.tool->mesh));
   figure.tables.push_back(triangle_table(task.name + "_triangles", task.tool->mesh));
   figure.tables.push_back(pose_table(task.name + "_poses", task.trace, ticks));
@@ -201,9 +201,9 @@ Panel task_picture(const ValveTask& task, const std::string& title, std::size_t 
 void add_task_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  claim(claim_at_most(figure.name, task.words + ": ticks with a number that is not finite", "-",
+  claim(claim_at_most(figure.name, task.label + ": ticks with a number that is not finite", "-",
                       non_finite_fraction(t), 0, "fraction"));
-  claim(claim_at_most(figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick",
+  claim(claim_at_most(figure.name, task.label + ": deepest leaf of the tool in a region at the end of a tick",
                       "very small", max_of(t.tool_penetration_m), kSettled_m, "m"));
 }
 

@@ -12,7 +12,7 @@
 namespace remote_touch {
 
 struct ValveTask {
-  std::string name, words;  // name in tables; words for readers
+  std::string name, label;  // name in tables; label for readers
   Experiment experiment;
   Trace trace;
   std::shared_ptr<const ValveTank> tank;
@@ -20,7 +20,7 @@ struct ValveTask {
 };
 
 struct NamedTask {
-  std::string name, words, experiment;
+  std::string name, label, experiment;
   std::vector<std::string> overrides = {};
 };
 

@@ -219,11 +219,11 @@ std::string spread_text(const Tolerances& spread) {
   return text;
 }
 
-Measured measured_over_builds(const Blessing& blessing, const Baseline& baseline,
-                              const std::filesystem::path& scratch) {
+MeasuredSpread measured_over_builds(const Blessing& blessing, const Baseline& baseline,
+                                    const std::filesystem::path& scratch) {
   std::vector<std::string> programs = {this_program()};
   programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
-  Measured measured = measure_spread(blessing.folder, baseline, programs, scratch, blessing.stop);
+  MeasuredSpread measured = measure_spread(blessing.folder, baseline, programs, scratch, blessing.stop);
   if (measured.compilers.size() < 2 && !blessing.one_compiler)
     throw InputError("--other-build", "by the same compiler, " + *measured.compilers.begin() +
                                           ": expected a build by another compiler, or --one-compiler");
@@ -242,7 +242,7 @@ std::string bless(const Blessing& blessing) {
   const std::filesystem::path file = file_of(blessing.folder, baseline);
   for (const auto& target : {file, manifest_file(blessing.folder)}) remove_leftovers(target);
   const ScratchFolder scratch;
-  const Measured measured = measured_over_builds(blessing, baseline, scratch.path());
+  const MeasuredSpread measured = measured_over_builds(blessing, baseline, scratch.path());
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);
   std::vector<Column> now = judged_columns(measured.reference, baseline.command);
   if (!old.empty()) now = keep_old_bits(old, std::move(now), baseline.tolerances);

@@ -127,7 +127,7 @@ Json sweep_json(const SweepComparison& sweep, bool paired) {
   for (std::size_t i = 0; i < sweep.measures.size(); ++i)
     json["measures"].push_back(measure_json(sweep.measures[i], judgement_of(sweep, i, paired)));
   if (sweep.first)
-    json["first_difference"] = {{"cell", sweep.first->place},
+    json["first_difference"] = {{"cell", sweep.first->axis_indices},
                                 {"replicate", sweep.first->replicate},
                                 {"measure", sweep.first->measure},
                                 {"baseline", sweep.first->baseline},

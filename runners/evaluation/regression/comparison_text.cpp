@@ -198,8 +198,8 @@ void print_sweep(const SweepComparison& sweep, bool paired, std::FILE* out) {
   if (!sweep.first) return;
   print_regions(sweep, out);
   std::string cell;
-  for (const std::size_t place : sweep.first->place)
-    cell.append(cell.empty() ? "" : ",").append(std::to_string(place));
+  for (const std::size_t index : sweep.first->axis_indices)
+    cell.append(cell.empty() ? "" : ",").append(std::to_string(index));
   std::fprintf(out, "  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
   if (!sweep.first->measure.empty())
     std::fprintf(out, ", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,

@@ -40,7 +40,7 @@ std::optional<Measured> measured(const ColumnSource& source, const TextAttribute
   trace->held_depth_m = stored_held_depth_m(attributes);
   Measured result{trace->length()};
   for (const Measure& measure : measures())
-    result.values.push_back(applies(measure, *trace) ? std::optional(measure.of(*trace)) : std::nullopt);
+    result.values.push_back(applies(measure, *trace) ? std::optional(measure.compute(*trace)) : std::nullopt);
   return result;
 }
 
@@ -61,7 +61,7 @@ std::optional<std::vector<ValueComparison>> compare_measures(const ColumnSource&
     if (!b || !c) continue;
     const Tolerance tolerance = tolerance_of(tolerances, measure.name);
     all.push_back({measure.name, measure.unit, measure.better, tolerance, *b, *c,
-                   judged(*b, *c, measure.better, tolerance)});
+                   judge_value(*b, *c, measure.better, tolerance)});
   }
   const bool same_outcome = std::none_of(all.begin(), all.end(), [](const ValueComparison& measure) {
     return is_outcome(measure.name) && measure.judgement != Judgement::equal;

@@ -207,7 +207,7 @@ std::string kind_of(const Hdf5Reader& result) {
 
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const ComparisonRules& rules) {
-  check_names(rules.tolerances, baseline.columns());
+  check_names(rules.tolerances, baseline.column_names());
   // A figure's configuration is a list of all that it ran, which is too long for a list of its differences.
   ResultComparison result = begin("figure", {}, {});
   result.columns = compare_by_name(baseline, candidate, rules.tolerances);
@@ -237,7 +237,7 @@ ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
-  std::vector<std::string> names = baseline.columns();
+  std::vector<std::string> names = baseline.column_names();
   std::erase(names, std::string(kRunningHash));  // follows from the others
   check_names(rules.tolerances, names, directions());
   ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);

@@ -95,15 +95,15 @@ std::vector<Column> judged_columns(const std::filesystem::path& file, const std:
   if (command == "sweep") return read_sweep(file).result.measures;
   const StoredTrace trace(file);
   std::vector<Column> columns;
-  for (const std::string& name : trace.columns())
+  for (const std::string& name : trace.column_names())
     if (name != kRunningHash) columns.push_back(trace.column(name));
   return columns;
 }
 
-Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
-                        const std::vector<std::string>& programs, const std::filesystem::path& scratch,
-                        const std::atomic<bool>* stop) {
-  Measured measured{scratch / "reference.h5"};
+MeasuredSpread measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
+                              const std::vector<std::string>& programs, const std::filesystem::path& scratch,
+                              const std::atomic<bool>* stop) {
+  MeasuredSpread measured{scratch / "reference.h5"};
   std::vector<Column> reference;
   TextAttributes first;
   for (const std::string& program : programs)

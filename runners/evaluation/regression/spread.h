@@ -19,7 +19,7 @@ namespace remote_touch {
 // sweep.
 std::vector<Column> judged_columns(const std::filesystem::path& file, const std::string& command);
 
-struct Measured {
+struct MeasuredSpread {
   std::filesystem::path reference;  // made by the first program at this machine's highest level
   std::set<std::string> compilers = {};
   std::vector<std::string> over = {};  // compilers, levels and threads
@@ -30,9 +30,9 @@ struct Measured {
 // into the scratch folder. Throws InputError if a program fails or is of another source or configuration than
 // the first. Throws InputError also if a state, a hash or the finiteness of a number differs, because these
 // have no tolerance. Throws Interrupted when stop is set.
-Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
-                        const std::vector<std::string>& programs, const std::filesystem::path& scratch,
-                        const std::atomic<bool>* stop);
+MeasuredSpread measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
+                              const std::vector<std::string>& programs, const std::filesystem::path& scratch,
+                              const std::atomic<bool>* stop);
 
 // Returns the new values, but with the old bits in every row that is within the tolerance. pre: old and new
 // columns of the same result.

@@ -24,9 +24,9 @@ constexpr CheckName kTouch{
 // ticks only. With `nothing` the HIP passes through the points, a moving mesh (`mesh`) leaves the HIP behind
 // it, and `oriented` ignores forbidden regions, so it meets only the points in their middle.
 double min_touch(ContactModel contact_model) {
-  const bool lets_go = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
-                       contact_model == ContactModel::oriented;
-  return lets_go ? 0.02 : 0.5;
+  const bool loses_contact = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
+                             contact_model == ContactModel::oriented;
+  return loses_contact ? 0.02 : 0.5;
 }
 
 // Makes the renderer under test, as often as it is needed.
@@ -79,8 +79,8 @@ class Subject {
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = max_length_m(parameters);
-    run.view_matters = entry_.contact_model == ContactModel::oriented;
-    run.fits_a_sheet = entry_.contact_model == ContactModel::sheet || run.view_matters;
+    run.uses_camera = entry_.contact_model == ContactModel::oriented;
+    run.depends_on_axes = entry_.contact_model == ContactModel::sheet || run.uses_camera;
     run.order_matters = entry_.contact_model == ContactModel::mesh;
     run.can_be_mirrored = !is_tool() || (entry_.contact_model != ContactModel::regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;

@@ -59,8 +59,10 @@ std::array<double, kQuantities> differences(const RenderOutput& a, const RenderO
                                             const OutputTolerance& tolerance) {
   const bool rounded = tolerance.rounded;
   // Far from the points the weights of a normal are as small as their own rounding.
-  const bool normal_counts = !tolerance.pose_only && (!rounded || a.state != ContactState::free);
-  const double nearest = tolerance.pose_only ? 0 : difference(a.nearest_distance_m, b.nearest_distance_m);
+  const bool normal_counts =
+      !tolerance.without_contact_details && (!rounded || a.state != ContactState::free);
+  const double nearest =
+      tolerance.without_contact_details ? 0 : difference(a.nearest_distance_m, b.nearest_distance_m);
   return {std::max({difference(a.proxy_W, b.proxy_W), difference(a.frame_correction_m, b.frame_correction_m),
                     difference(a.slave_W, b.slave_W)}),
           std::max(nearest, penetration_difference(a, b)),
@@ -69,7 +71,7 @@ std::array<double, kQuantities> differences(const RenderOutput& a, const RenderO
           normal_counts ? difference(a.normal_W, b.normal_W) : 0,
           rotation_between(a, b),
           torque_difference(a, b),
-          tolerance.pose_only || others_agree(a, b, rounded) ? 0.0 : 1.0};
+          tolerance.without_contact_details || others_agree(a, b, rounded) ? 0.0 : 1.0};
 }
 
 std::vector<Deviation> none_yet(const std::vector<RenderOutput>& expected, const OutputTolerance& tolerance) {

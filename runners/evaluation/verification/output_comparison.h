@@ -17,7 +17,7 @@ struct OutputTolerance {
   double rotation_rad = 0;     // rotation of a tool
   double torque_fraction = 0;  // fraction of the largest torque in the run
   // true: the nearest distance, the normal and "other" are not compared; the depth in a tool still is.
-  bool pose_only = false;
+  bool without_contact_details = false;
 };
 
 // The largest difference of one kind.

@@ -15,12 +15,12 @@ namespace {
 
 // True if the renderer needs the images of the clouds, which a search by grid removes.
 bool needs_its_images(const Variation& run) {
-  return run.view_matters && std::any_of(run.scene.views.begin(), run.scene.views.end(),
-                                         [](const CloudView& view) { return view.cloud.image.has_value(); });
+  return run.uses_camera && std::any_of(run.scene.views.begin(), run.scene.views.end(),
+                                        [](const CloudView& view) { return view.cloud.image.has_value(); });
 }
 
 bool mirror_axis(Variation& run, int axis) {
-  if (run.fits_a_sheet || !run.can_be_mirrored) return false;
+  if (run.depends_on_axes || !run.can_be_mirrored) return false;
   mirror(run, axis);
   return true;
 }
@@ -181,7 +181,7 @@ bool mirror_z(Variation& run) {
 }
 
 bool move(Variation& run) {
-  if (run.fits_a_sheet) return false;
+  if (run.depends_on_axes) return false;
   RigidTransform motion = RigidTransform::Identity();
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);
@@ -257,7 +257,7 @@ bool send_late(Variation& run) {
 // A step to the side over bumps has a component along the normal, which (4.13) interprets as a motion of the
 // cloud.
 bool double_rate(Variation& run) {
-  if (run.fits_a_sheet) return false;
+  if (run.depends_on_axes) return false;
   if (!run.scene.cloud_rests || run.scene.hip_rests) return false;
   send_more_often(run, 0);
   run.until_velocity = true;
@@ -265,7 +265,7 @@ bool double_rate(Variation& run) {
 }
 
 bool double_rate_at_rest(Variation& run) {
-  if (run.fits_a_sheet) return false;
+  if (run.depends_on_axes) return false;
   if (!run.scene.cloud_rests || !run.scene.hip_rests) return false;
   send_more_often(run, 1);
   return true;

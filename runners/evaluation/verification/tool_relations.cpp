@@ -16,7 +16,7 @@ constexpr OutputTolerance poses_within(double position_m, double rotation_rad, d
           .rounded = true,
           .rotation_rad = rotation_rad,
           .torque_fraction = torque_fraction,
-          .pose_only = true};
+          .without_contact_details = true};
 }
 // A tick ends when the steps become shorter than the rest threshold, or bring the tool no nearer to the
 // device. It may leave depths of up to 0.1 mm. The final pose within these limits depends on rounding, on the

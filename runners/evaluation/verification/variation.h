@@ -22,8 +22,8 @@ struct Variation {
   double reach_m = 0;           // the renderer's largest length
   // The renderer fits a sheet (ContactModel::sheet or oriented). Its result depends on the world's axes,
   // along which its cells lie, and on the number of frames, from which it estimates the noise.
-  bool fits_a_sheet = false;
-  bool view_matters = false;                     // the renderer also uses the camera of an image layout
+  bool depends_on_axes = false;
+  bool uses_camera = false;                      // the renderer also uses the camera of an image layout
   bool order_matters = false;                    // the renderer depends on the points' rows and columns
   bool can_be_mirrored = true;                   // false: a tool of unknown shape, or of regions
   std::optional<double> stiffness_N_per_m = {};  // parameter of the renderer, if it has one of that name

@@ -221,7 +221,7 @@ Catalog& Catalog::add(RendererEntry entry) {
   return *this;
 }
 Catalog& Catalog::add(Measure measure) {
-  if (!measure.of) throw InputError("measure \"" + measure.name + "\"", "has no function");
+  if (!measure.compute) throw InputError("measure \"" + measure.name + "\"", "has no function");
   append(measures_, std::move(measure), "measure");
   return *this;
 }

@@ -140,7 +140,7 @@ void check_without_image(const ExperimentConfiguration& configuration, const std
   check_plane(configuration, scenario);
 }
 
-bool some_normal(const PointCloud& cloud) {
+bool may_have_normals(const PointCloud& cloud) {
   bool measured = false;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
@@ -169,7 +169,7 @@ void RendererNeeds::check(const Frame& frame) const {
   if (!stored || !stored->cloud().has_normals())
     throw InputError(subject(renderer_), "needs normals, and the points of frame " + number +
                                              " have none: expected them in every frame");
-  if (frame.index == 0 && !some_normal(stored->cloud()))
+  if (frame.index == 0 && !may_have_normals(stored->cloud()))
     throw InputError(subject(renderer_),
                      "needs normals, and no point of frame 0 has one: expected more points within "
                      "depth_pipeline.normal_radius_m of each");

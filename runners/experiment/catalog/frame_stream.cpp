@@ -104,10 +104,10 @@ double FrameStream::captured_s(int frame) const {
 void FrameStream::send(int frame) {
   const auto chance = uniforms(noise_stream(key_, NoiseUse::transport, static_cast<std::uint32_t>(frame)), 0);
   if (chance[0] < transport_.drop_probability) return;
-  std::optional<double> out_s;  // time at which the frame leaves the sensor, if not at its capture
-  if (frame == source_frame(frame)) out_s = scenario_.arrives_s(frame);
-  const double there_s = out_s.value_or(captured_s(frame));
-  const FrameInTransit sent{there_s + transport_.latency_s + chance[1] * transport_.jitter_s, frame};
+  std::optional<double> delayed_leave_s;  // time at which the frame leaves the sensor, if not at its capture
+  if (frame == source_frame(frame)) delayed_leave_s = scenario_.leaves_sensor_s(frame);
+  const double leaves_sensor_s = delayed_leave_s.value_or(captured_s(frame));
+  const FrameInTransit sent{leaves_sensor_s + transport_.latency_s + chance[1] * transport_.jitter_s, frame};
   const auto after = [](const FrameInTransit& a, const FrameInTransit& b) {
     return a.arrives_s < b.arrives_s;
   };

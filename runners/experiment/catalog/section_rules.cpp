@@ -14,7 +14,7 @@ namespace {
 // Returns true if the button of the step can be pressed, or if the step needs none. A simulated device has
 // only those buttons that the operator's settings press.
 bool can_be_pressed(const ExperimentConfiguration& configuration, const SequenceStep& step) {
-  if (step.start != StepStart::button && step.done != StepEnd::button) return true;
+  if (step.start != StepStart::button && step.end != StepEnd::button) return true;
   const std::string& hand = configuration.trajectory.name;
   if (configuration.live || find_entry(trajectories(), hand, "trajectory.name").has_buttons)
     return true;  // the device has buttons of its own

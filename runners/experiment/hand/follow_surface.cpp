@@ -76,21 +76,21 @@ FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path
   const Vec3 path = level_line_m(s);
   const int pieces = static_cast<int>(std::ceil(path.norm() / kSampling_m));
   std::vector<double> heights;
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   for (int i = 0; i <= pieces; ++i) {
-    places.push_back(s.from_m + (static_cast<double>(i) / pieces) * path);
-    heights.push_back(scenario.surface_height(places.back().x(), places.back().z(), 0));
+    positions.push_back(s.from_m + (static_cast<double>(i) / pieces) * path);
+    heights.push_back(scenario.surface_height(positions.back().x(), positions.back().z(), 0));
   }
   if (!std::isfinite(heights.front()))
     throw InputError("trajectory.name = follow-surface",
                      "the scenario has no surface height: expected a height field");
   const std::vector<double> depths = inside(heights, path.norm() / pieces, s.depth_m);
   const std::vector<double> tops = step_tops(heights, path.norm() / pieces, s);
-  const auto at_height = [&](std::size_t i, double y) { return Vec3(places[i].x(), y, places[i].z()); };
+  const auto at_height = [&](std::size_t i, double y) { return Vec3(positions[i].x(), y, positions[i].z()); };
   path_ = PolylinePath(at_height(0, heights.front() + s.clearance_m));
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
     path_.go_to(at_height(i, std::max(depths[i], tops[i] + s.clearance_m)), s.speed_m_per_s);
-  path_.go_to(at_height(places.size() - 1, heights.back() + s.clearance_m), s.speed_m_per_s);
+  path_.go_to(at_height(positions.size() - 1, heights.back() + s.clearance_m), s.speed_m_per_s);
 }
 
 }  // namespace remote_touch

@@ -137,18 +137,19 @@ StepEnergy HeldForceStep::energy(const Start& start) const {
   const Vec3 apart_sum = duration_s_ * start.apart - psi_ * slip - chi_ * r;  // the integral of p - x
   const Vec3 apart_change = -(phi_ * slip + psi_ * r);
   const Vec3 velocity_change = phi_ * r - (w_ * psi_ + d_ * phi_) * slip;
-  const Responses of = responses(w_, d_, duration_s_, Squares::integrated);
+  const Responses integrals = responses(w_, d_, duration_s_, Squares::integrated);
   const Vec3 a = pull(start), ramp = w_ * path_velocity;
   const double velocity_squares =
-      of.slope_slope * start.velocity.squaredNorm() + of.phi_phi * a.squaredNorm() +
-      of.psi_psi * ramp.squaredNorm() + phi_ * phi_ * a.dot(start.velocity) +
-      2 * (phi_ * psi_ - of.phi_phi) * ramp.dot(start.velocity) + psi_ * psi_ * a.dot(ramp);
+      integrals.slope_slope * start.velocity.squaredNorm() + integrals.phi_phi * a.squaredNorm() +
+      integrals.psi_psi * ramp.squaredNorm() + phi_ * phi_ * a.dot(start.velocity) +
+      2 * (phi_ * psi_ - integrals.phi_phi) * ramp.dot(start.velocity) + psi_ * psi_ * a.dot(ramp);
 
   StepEnergy energy;
   energy.force_work_J = start.force.dot(motion(start).displacement);
   energy.path_work_J = path_velocity.dot(system_.stiffness * apart_sum + system_.path_damping * apart_change);
-  energy.path_damper_J = system_.path_damping * (of.slope_slope * slip.squaredNorm() +
-                                                 phi_ * phi_ * slip.dot(r) + of.phi_phi * r.squaredNorm());
+  energy.path_damper_J =
+      system_.path_damping * (integrals.slope_slope * slip.squaredNorm() + phi_ * phi_ * slip.dot(r) +
+                              integrals.phi_phi * r.squaredNorm());
   energy.ground_damper_J = system_.ground_damping * velocity_squares;
   energy.kinetic_J = 0.5 * system_.mass * velocity_change.dot(2 * start.velocity + velocity_change);
   energy.potential_J = 0.5 * system_.stiffness * apart_change.dot(2 * start.apart + apart_change);

@@ -111,7 +111,7 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   const Settings& s = settings_;
   const CameraIntrinsics& camera = layout.camera;
   const auto depth_at = [&](int u) { return scan_.depth_m[static_cast<std::size_t>(u)]; };
-  const auto place = [&](int u, double offset) {
+  const auto position = [&](int u, double offset) {
     const double z = depth_at(u) + offset;
     if (!(z > 0))
       throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
@@ -132,20 +132,20 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
     return in_front_of(nearest, s.clearance_m) - depth_at(u);
   };
 
-  path_ = PolylinePath(place(scan_.patches.front().first_column, -s.clearance_m));
+  path_ = PolylinePath(position(scan_.patches.front().first_column, -s.clearance_m));
   for (std::size_t i = 0; i < scan_.patches.size(); ++i) {
     const ScanPatch& patch = scan_.patches[i];
     for (int u = patch.first_column; u <= patch.last_column; ++u) {
-      path_.go_to(place(u, s.depth_m), s.speed_m_per_s);
+      path_.go_to(position(u, s.depth_m), s.speed_m_per_s);
       if (u == patch.first_column) touches_.push_back({path_.duration_s(), 0});
     }
     touches_.back().ends_s = path_.duration_s();
-    path_.go_to(place(patch.last_column, -s.clearance_m), s.speed_m_per_s);
+    path_.go_to(position(patch.last_column, -s.clearance_m), s.speed_m_per_s);
     if (i + 1 == scan_.patches.size()) break;
     const int from = patch.last_column, to = scan_.patches[i + 1].first_column;
-    path_.go_to(place(from, flight_offset(from, from, to)), s.speed_m_per_s);
-    path_.go_to(place(to, flight_offset(to, from, to)), s.speed_m_per_s);
-    path_.go_to(place(to, -s.clearance_m), s.speed_m_per_s);
+    path_.go_to(position(from, flight_offset(from, from, to)), s.speed_m_per_s);
+    path_.go_to(position(to, flight_offset(to, from, to)), s.speed_m_per_s);
+    path_.go_to(position(to, -s.clearance_m), s.speed_m_per_s);
   }
 }
 

@@ -82,12 +82,12 @@ void OperatorModel::prepare(double grip, double duration_s) {
       duration_s);
 }
 
-DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wrench& device_wrench) {
-  const ToolPose intended{path.position_W, path.orientation_W};
+DeviceState OperatorModel::move(const DeviceState& intended, double time_s, const Wrench& device_wrench) {
+  const ToolPose intended_pose{intended.position_W, intended.orientation_W};
   if (last_time_s_) {
     const double duration_s = tick_s_ * elapsed_ticks(*last_time_s_, time_s, 1 / tick_s_);
     prepare(scheduled(s_.grip, time_s), duration_s);
-    const Vector6 path_velocity = displacement(intended_, intended) / duration_s;
+    const Vector6 path_velocity = displacement(intended_, intended_pose) / duration_s;
     const Vector6 apart = displacement(pose_, intended_);
     start_ = {apart.head<3>(), velocity_, path_velocity.head<3>(), device_wrench.force_N};
     turning_start_ = {apart.tail<3>(), angular_velocity_, path_velocity.tail<3>(), device_wrench.torque_Nm};
@@ -100,9 +100,9 @@ DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wr
     pose_ = moved(pose_, motion);
     if (turning.displacement.isZero(0)) pose_.q_WT = before;  // rounding would change it
   } else {
-    pose_ = intended;
+    pose_ = intended_pose;
   }
-  intended_ = intended, last_time_s_ = time_s;
+  intended_ = intended_pose, last_time_s_ = time_s;
   return {pose_.p_W, pose_.q_WT, buttons(time_s)};
 }
 

@@ -18,7 +18,7 @@ constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
 // twelfths as exponents.
 constexpr double kAxisRate[] = {
     1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
-constexpr double kRotation = 6.283185307179586;
+constexpr double kTwoPi = 6.283185307179586;
 
 // Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
 // allowed speed.
@@ -54,7 +54,7 @@ RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
   const NoiseStream stream = noise_stream({settings.seed}, NoiseUse::motion, 0);
   for (std::size_t axis = 0; axis < 6; ++axis) {
     const auto random = uniforms(stream, static_cast<std::uint32_t>(axis));
-    for (std::size_t i = 0; i < kSines; ++i) phase_[axis][i] = kRotation * random[i];
+    for (std::size_t i = 0; i < kSines; ++i) phase_[axis][i] = kTwoPi * random[i];
   }
 }
 
@@ -69,15 +69,15 @@ double RandomWalk::coordinate(int axis, double time_s) const {
 
 DeviceState RandomWalk::at(double time_s) const {
   const double t = std::clamp(time_s, 0.0, settings_.duration_s);
-  Vec3 place, angles;
+  Vec3 position, angles;
   for (int axis = 0; axis < 3; ++axis) {
-    place[axis] = settings_.centre_m[axis] + settings_.extent_m[axis] * coordinate(axis, t);
+    position[axis] = settings_.centre_m[axis] + settings_.extent_m[axis] * coordinate(axis, t);
     angles[axis] = coordinate(axis + 3, t);
   }
   // The rotation vector lies in a cube, whose corners are farther from the centre than its faces by the root
   // of three. The division keeps the rotation below max_rotation_deg.
   constexpr double root_of_three = 1.7320508075688772;
-  return {place, rotation(settings_.max_rotation_deg * kRadiansPerDegree / root_of_three * angles)};
+  return {position, rotation(settings_.max_rotation_deg * kRadiansPerDegree / root_of_three * angles)};
 }
 
 }  // namespace remote_touch

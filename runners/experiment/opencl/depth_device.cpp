@@ -33,7 +33,7 @@ std::optional<Address> address_of(const std::string& text) {
   return address;
 }
 
-std::string inexact(const OpenClDevice& device, const DepthTrial& trial) {
+std::string inexact_reason(const OpenClDevice& device, const DepthTrial& trial) {
   if (!device.inexact_because.empty()) return device.inexact_because;
   return trial.failure.empty() && !trial.same_bits ? "gave other bits than the CPU in a trial frame" : "";
 }
@@ -67,7 +67,7 @@ std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, c
   double best_ms = std::numeric_limits<double>::infinity();
   for (const OpenClDevice& device : devices_or_none(why_none)) {
     if (!device.inexact_because.empty()) continue;
-    const DepthTrial trial = tried(device, settings, kernels);
+    const DepthTrial trial = trial_of(device, settings, kernels);
     if (!trial.failure.empty() || !trial.same_bits || trial.device_ms >= std::min(trial.cpu_ms, best_ms))
       continue;
     best_ms = trial.device_ms, best = device;
@@ -75,7 +75,7 @@ std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, c
   return best;
 }
 
-OpenClDevice asked_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
+OpenClDevice requested_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
   const Address address = address_of(settings.device).value_or(Address{});
   std::string why;
   std::vector<OpenClDevice> devices = devices_or_none(why);
@@ -84,9 +84,9 @@ OpenClDevice asked_device(const DepthDeviceSettings& settings, const Kernels& ke
   for (const OpenClDevice& device : devices) {
     if (address.platform >= 0 && (device.platform != address.platform || device.number != address.number))
       continue;
-    const DepthTrial trial = tried(device, settings, kernels);
+    const DepthTrial trial = trial_of(device, settings, kernels);
     std::string problem = trial.failure;
-    if (problem.empty() && settings.exact) problem = inexact(device, trial);
+    if (problem.empty() && settings.exact) problem = inexact_reason(device, trial);
     if (problem.empty()) return device;
     why += (why.empty() ? "" : "; ") + device.full_name() + " " + problem;
     if (trial.failure.empty()) why += "; depth_pipeline.exact = false allows it";
@@ -115,8 +115,8 @@ void note_choice(const DepthDeviceSettings& settings, const std::string& name) {
   choices().name_of(settings) = name;
 }
 
-std::unique_ptr<DepthProcessor> opened(const OpenClDevice& device, const DepthDeviceSettings& settings,
-                                       const Kernels& kernels, const DepthReport& report) {
+std::unique_ptr<DepthProcessor> open_pipeline(const OpenClDevice& device, const DepthDeviceSettings& settings,
+                                              const Kernels& kernels, const DepthReport& report) {
   const std::string name = device.full_name();
   auto made = std::make_unique<DevicePipeline>(device, settings, kernels, [=](const std::string& why) {
     note_choice(settings, name + ", which failed: then the CPU");
@@ -152,9 +152,9 @@ std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& 
                                                      const Kernels& kernels, const DepthReport& report) {
   std::optional<OpenClDevice> device;
   if (settings.device == "auto" && is_for_devices(settings)) device = faster_device(settings, kernels);
-  if (address_of(settings.device)) device = asked_device(settings, kernels);
+  if (address_of(settings.device)) device = requested_device(settings, kernels);
   try {
-    if (device) return opened(*device, settings, kernels, report);
+    if (device) return open_pipeline(*device, settings, kernels, report);
   } catch (const OpenClError& error) {
     if (settings.device != "auto") refuse(settings, device->full_name() + " " + error.what());
   }
@@ -170,8 +170,8 @@ std::string depth_device_of(const DepthDeviceSettings& settings) {
 std::vector<FoundDepthDevice> try_depth_devices(const Kernels& kernels, std::string& why_none) {
   std::vector<FoundDepthDevice> found;
   for (const OpenClDevice& device : devices_or_none(why_none)) {
-    const DepthTrial trial = tried(device, {}, kernels);
-    found.push_back({device.address(), device.name, inexact(device, trial), trial});
+    const DepthTrial trial = trial_of(device, {}, kernels);
+    found.push_back({device.address(), device.name, inexact_reason(device, trial), trial});
   }
   return found;
 }

@@ -145,21 +145,21 @@ void DeviceFrames::fill_columns(const DeviceFrame& frame) {
     start(filter_, depth_m_, ray_x_, ray_y_, raw_, change_unit_m, normal_scale, change_, smooth_);
   start(normals_of_, ray_x_, ray_y_, smooth_, static_cast<float>(1 / camera_.fx),
         static_cast<float>(1 / camera_.fy), X_, width, columns_);
-  if (!frame.keep_points)
+  if (!frame.has_points)
     start(place_, depth_m_, change_, is_filtered, change_unit_m, wide_ray_x_, wide_ray_y_, X_, width,
           columns_);
   if (!frame.colour.empty()) assign_fixtures(frame);
 }
 
 void DeviceFrames::assign_fixtures(const DeviceFrame& frame) {
-  const cl_int keeps_points = frame.keep_points ? 1 : 0, width = camera_.width;
+  const cl_int keeps_points = frame.has_points ? 1 : 0, width = camera_.width;
   start(fixtures_, rgb_, depth_m_, keeps_points, steps_, static_cast<cl_int>(frame.steps.size()), width,
         columns_);
 }
 
 void DeviceFrames::download(DeviceFrame& frame) {
   const std::size_t pixels = camera_.pixels();
-  const int first = frame.keep_points ? DeviceFrame::nx : DeviceFrame::x;
+  const int first = frame.has_points ? DeviceFrame::nx : DeviceFrame::x;
   int end = DeviceFrame::fixture_radius;
   if (!frame.colour.empty()) end = frame.has_stiffness() ? DeviceFrame::kColumns : DeviceFrame::stiffness;
   cl_int code = CL_SUCCESS;

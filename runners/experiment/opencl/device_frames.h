@@ -24,7 +24,7 @@ struct DeviceFrame {
   std::vector<double> depth_m;  // empty: `units` has the depths
   std::vector<std::uint16_t> units = {};
   double metres_per_unit = 0;
-  bool keep_points = false;  // true: columns x, y, z are not written
+  bool has_points = false;  // true: columns x, y, z are not written
   // Colour of each pixel. If it is not empty, the columns fixture_radius and stiffness are written according
   // to `steps`.
   std::vector<std::uint32_t> colour = {};

@@ -16,7 +16,7 @@ void exchange(DeviceFrame& frame, PointCloud& cloud) {
     old.swap(frame.columns[made]);
   };
   swap(DeviceFrame::nx, cloud.nx), swap(DeviceFrame::ny, cloud.ny), swap(DeviceFrame::nz, cloud.nz);
-  if (!frame.keep_points)
+  if (!frame.has_points)
     swap(DeviceFrame::x, cloud.x), swap(DeviceFrame::y, cloud.y), swap(DeviceFrame::z, cloud.z);
   if (frame.colour.empty()) return;
   swap(DeviceFrame::fixture_radius, cloud.fixture_radius_m);
@@ -80,7 +80,7 @@ bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const H
   start(size, steps, raw.colour);
   frame_->units.assign(raw.units, raw.units + size.pixels());
   frame_->metres_per_unit = raw.metres_per_unit;
-  if (!on_device()) return false;
+  if (!process_on_device()) return false;
   become_image(cloud, raw.camera, raw.X_WC);
   cloud.colour.assign(raw.colour.begin(), raw.colour.end());
   exchange(*frame_, cloud);
@@ -90,7 +90,7 @@ bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const H
 bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud) {
   start(frame, steps, cloud.colour);
   frame_->depth_m.assign(frame.depth_m, frame.depth_m + frame.pixels());
-  if (!on_device()) return false;
+  if (!process_on_device()) return false;
   exchange(*frame_, cloud);
   return true;
 }
@@ -98,7 +98,7 @@ bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* ste
 // Prepares frame_, except for its depths. steps: null if the columns of fixtures are not needed.
 void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
                            std::span<const std::uint32_t> colour) {
-  frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;
+  frame_->camera = frame.camera, frame_->has_points = frame.has_points;
   const RigidTransform X_CW = frame.X_WC.inverse();
   for (int i = 0; i < 12; ++i) frame_->X_WC[i] = frame.X_WC.matrix()(i / 4, i % 4);
   for (int i = 0; i < 4; ++i) frame_->X_CW_z[i] = X_CW.matrix()(2, i);
@@ -106,7 +106,7 @@ void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
   if (steps != nullptr) frame_->colour.assign(colour.begin(), colour.end()), frame_->steps = *steps;
 }
 
-bool DevicePipeline::on_device() {
+bool DevicePipeline::process_on_device() {
   bool in_time = false;
   try {
     in_time = thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, frame_limit_);

@@ -42,7 +42,7 @@ class DevicePipeline final : public DepthProcessor {
  private:
   bool process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud);
   void start(const DepthFrame& frame, const HueSteps* steps, std::span<const std::uint32_t> colour);
-  bool on_device();
+  bool process_on_device();
   void give_up(const std::string& why);
 
   const OpenClDevice device_;

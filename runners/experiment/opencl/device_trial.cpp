@@ -126,7 +126,8 @@ Known& known() {
 
 }  // namespace
 
-DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels) {
+DepthTrial trial_of(const OpenClDevice& device, const DepthPipelineSettings& settings,
+                    const Kernels& kernels) {
   DepthTrial trial;
   trial.failure = device.unfit_because;
   if (!trial.failure.empty()) return trial;

@@ -21,7 +21,8 @@ struct DepthTrial {
 // Returns the earlier result of this process for this device and these settings. If there is none, tries the
 // device, after the trials of other threads. A failure is not stored, so that the next call tries again; only
 // the failure to open the device in time is stored.
-DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels);
+DepthTrial trial_of(const OpenClDevice& device, const DepthPipelineSettings& settings,
+                    const Kernels& kernels);
 // Forgets the results for a device that has failed since.
 void forget_trials(const OpenClDevice& device);
 

@@ -32,7 +32,7 @@ std::string text_info(const char* function, const Ask& ask) {
 
 // Returns the property of IEEE arithmetic that the device lacks in this precision, single or double; empty:
 // none.
-std::string lacks(cl_device_fp_config has, const char* precision) {
+std::string missing_arithmetic(cl_device_fp_config has, const char* precision) {
   const std::string of = std::string(" in ") + precision + " precision";
   if (!(has & CL_FP_ROUND_TO_NEAREST)) return "does not round to nearest" + of;
   if (!(has & CL_FP_INF_NAN)) return "has no infinity and NaN" + of;
@@ -40,7 +40,7 @@ std::string lacks(cl_device_fp_config has, const char* precision) {
   return {};
 }
 
-void ask_arithmetic(const OpenClLibrary& library, OpenClDevice& device) {
+void read_arithmetic(const OpenClLibrary& library, OpenClDevice& device) {
   const auto single = device_info<cl_device_fp_config>(library, device.id, CL_DEVICE_SINGLE_FP_CONFIG);
   const auto wide = device_info<cl_device_fp_config>(library, device.id, CL_DEVICE_DOUBLE_FP_CONFIG);
   device.rounds_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
@@ -49,8 +49,9 @@ void ask_arithmetic(const OpenClLibrary& library, OpenClDevice& device) {
     device.unfit_because = "has no double precision, in which points and normals are given";
   else if (device_info<cl_bool>(library, device.id, CL_DEVICE_COMPILER_AVAILABLE) == CL_FALSE)
     device.unfit_because = "has no compiler for kernels";
-  device.inexact_because = lacks(single, "single");
-  if (device.inexact_because.empty() && device.has_double) device.inexact_because = lacks(wide, "double");
+  device.inexact_because = missing_arithmetic(single, "single");
+  if (device.inexact_because.empty() && device.has_double)
+    device.inexact_because = missing_arithmetic(wide, "double");
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library) {
       device.name += ", " + platform_name;
       device.is_gpu =
           (device_info<cl_device_type>(library, ids[d], CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU) != 0;
-      ask_arithmetic(library, device);
+      read_arithmetic(library, device);
       all.push_back(std::move(device));
     }
   }

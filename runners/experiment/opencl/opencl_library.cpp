@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-const SharedLibrary::Place kOpenClLibrary{
+const SharedLibrary::Lookup kOpenClLibrary{
     {"libOpenCL.so.1"},
     "REMOTE_TOUCH_LIBOPENCL",
     "the OpenCL loader (Debian: ocl-icd-libopencl1); a device comes with its driver (Debian: "

@@ -30,7 +30,7 @@ class SessionScene final : public Scenario {
   PointCloud cloud(int frame) const override;
   // NaN: the truth is not known.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  std::optional<double> arrives_s(int frame) const override {
+  std::optional<double> leaves_sensor_s(int frame) const override {
     return arrives_s_[static_cast<std::size_t>(frame)];
   }
   std::optional<std::uint64_t> fixtures_off(int frame) const override {

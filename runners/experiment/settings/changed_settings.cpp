@@ -22,7 +22,7 @@ std::vector<Assignment> read_all(const std::vector<std::string>& assignments) {
   std::vector<Assignment> all;
   for (const std::string& text : assignments) {
     auto [path, value] = read_assignment(text);
-    Keys keys = place_keys(path);
+    Keys keys = normalised_keys(path);
     all.push_back({std::move(path), std::move(keys), std::move(value)});
   }
   return all;
@@ -67,7 +67,7 @@ std::string first_part(const std::string& text, std::size_t max) {
   return text.substr(0, max) + "...";
 }
 
-std::vector<std::string> place_keys(const std::string& path) {
+std::vector<std::string> normalised_keys(const std::string& path) {
   Keys keys = path_keys(path);
   for (std::string& key : keys)
     if (!key.empty() && key.find_first_not_of("0123456789") == std::string::npos)

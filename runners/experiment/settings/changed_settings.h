@@ -18,7 +18,7 @@ std::string first_part(const std::string& text, std::size_t max);
 
 // Returns the keys of a path. Indices in lists have no leading zeros, so that equal keys are the same
 // setting.
-std::vector<std::string> place_keys(const std::string& path);
+std::vector<std::string> normalised_keys(const std::string& path);
 
 // assignments: "key=value", in the order in which they are applied. Throws InputError, with both paths, if an
 // assignment has no effect: a later one sets an object or a list around it, without the same value there.

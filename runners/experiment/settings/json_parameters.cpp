@@ -167,7 +167,7 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
 
 // Returns the present name of a key that was renamed, otherwise the known key with the most similar spelling.
 // pre: there is a known key.
-std::string meant(const std::string& key, const std::vector<std::string>& known) {
+std::string intended_key(const std::string& key, const std::vector<std::string>& known) {
   return new_name(key, known)
       .value_or(*std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
         return edit_distance(key, a) < edit_distance(key, b);
@@ -176,8 +176,9 @@ std::string meant(const std::string& key, const std::vector<std::string>& known)
 
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
                              const std::string& prefix) {
-  throw InputError(prefix + key, known.empty() ? "unknown; no parameters here"
-                                               : "unknown; did you mean " + prefix + meant(key, known));
+  throw InputError(prefix + key, known.empty()
+                                     ? "unknown; no parameters here"
+                                     : "unknown; did you mean " + prefix + intended_key(key, known));
 }
 
 }  // namespace
@@ -251,7 +252,7 @@ std::vector<std::string> path_keys(const std::string& path) {
 namespace {
 
 // Returns the index in the list that a key states; nothing if it is not an index of the list.
-std::optional<std::size_t> place_in(const Json& list, const std::string& key) {
+std::optional<std::size_t> index_in(const Json& list, const std::string& key) {
   std::size_t i = 0;
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
   if (error != std::errc() || end != key.data() + key.size() || i >= list.size()) return std::nullopt;
@@ -264,9 +265,9 @@ const Json* find_value(const Json& json, std::span<const std::string> keys) {
   const Json* value = &json;
   for (const std::string& key : keys) {
     if (value->is_array()) {
-      const auto place = place_in(*value, key);
-      if (!place) return nullptr;
-      value = &(*value)[*place];
+      const auto index = index_in(*value, key);
+      if (!index) return nullptr;
+      value = &(*value)[*index];
     } else {
       const auto member = value->find(key);  // end() if the value is no object
       if (member == value->end()) return nullptr;
@@ -284,7 +285,7 @@ void set_value(Json& configuration, const std::string& path, const Json& value, 
   for (const std::string& key : path_keys(path)) {
     if (place->is_null()) *place = Json::object();
     if (place->is_array() && !place->empty()) {
-      const auto i = place_in(*place, key);
+      const auto i = index_in(*place, key);
       if (!i)
         throw InputError(subject, "expected an index of the list, 0 to " + std::to_string(place->size() - 1));
       place = &(*place)[*i];

@@ -23,7 +23,7 @@ constexpr Count kCounts[] = {{"wait_frames", "wait_s"},
                              {"vanish_at_frame", "vanish_at_s"},
                              {"empty_frame", "empty_frame_at_s"}};
 
-bool is_lifted(const Json& value) {
+bool is_moving_scene(const Json& value) {
   if (!value.is_object()) return false;
   const auto name = value.find("name");
   return name != value.end() && (*name == "moving-lift" || *name == "moving-shape");
@@ -42,32 +42,32 @@ const Count* count_of(const std::string& key, const Json& value) {
 }
 
 // Keeps the order of the keys, because configurations are also compared as texts.
-Json told_in_seconds(const Json& scenario) {
+Json in_seconds(const Json& scenario) {
   const double rate_hz = number_or(scenario, "frame_rate_hz", kUsualRate_hz);
-  Json told = Json::object();
+  Json converted = Json::object();
   bool has_counts = false;
   for (const auto& [key, value] : scenario.items()) {
     const Count* const count = count_of(key, value);
     has_counts |= count != nullptr;
     if (count)
-      told[count->time] = value.get<double>() < 0 ? -1.0 : value.get<double>() / rate_hz;
+      converted[count->time] = value.get<double>() < 0 ? -1.0 : value.get<double>() / rate_hz;
     else
-      told[key] = value;
+      converted[key] = value;
   }
   // Older versions updated the motion at each frame, and made it linear between frames. These settings keep
   // that, because other updates would give other bits.
   const bool accelerates = number_or(scenario, "acceleration_m_per_s2", 0) != 0;
   const bool moves = accelerates || number_or(scenario, "start_velocity_m_per_s", 0) != 0;
-  if (has_counts && moves && rate_hz != kUsualRate_hz) told["update_rate_hz"] = rate_hz;
+  if (has_counts && moves && rate_hz != kUsualRate_hz) converted["update_rate_hz"] = rate_hz;
   if (has_counts && accelerates && scenario.value("truth", Json()) == "moving")
-    told["between_updates"] = "line";
-  return told;
+    converted["between_updates"] = "line";
+  return converted;
 }
 
-void tell_in_seconds(Json& value) {
+void convert_to_seconds(Json& value) {
   if (!value.is_structured()) return;
-  for (Json& part : value) tell_in_seconds(part);
-  if (is_lifted(value)) value = told_in_seconds(value);
+  for (Json& part : value) convert_to_seconds(part);
+  if (is_moving_scene(value)) value = in_seconds(value);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ std::string stored_configuration(const std::string& text) {
     return text;
   }
   const Json before = configuration;
-  tell_in_seconds(configuration);
+  convert_to_seconds(configuration);
   return configuration == before ? text : configuration.dump();
 }
 

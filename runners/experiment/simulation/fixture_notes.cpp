@@ -14,10 +14,10 @@ std::vector<Note> fixture_notes(const FixtureAssignment& fixtures,
   const auto* const at_first = dynamic_cast<const CloudSearch*>(first.get());
   const auto* const at_last = dynamic_cast<const CloudSearch*>(last.get());
   if (fixtures.empty() || !at_first || !at_last) return {};
-  std::vector<std::size_t> rules = fixtures.without_points(at_first->cloud());
+  std::vector<std::size_t> rules = fixtures.rules_without_points(at_first->cloud());
   if (!rules.empty() && at_last != at_first) {
     std::vector<std::size_t> in_both;
-    const std::vector<std::size_t> later = fixtures.without_points(at_last->cloud());
+    const std::vector<std::size_t> later = fixtures.rules_without_points(at_last->cloud());
     std::set_intersection(rules.begin(), rules.end(), later.begin(), later.end(),
                           std::back_inserter(in_both));
     rules = std::move(in_both);

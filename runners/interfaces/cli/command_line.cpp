@@ -16,7 +16,7 @@ namespace remote_touch {
 namespace {
 
 // Adds the renderers of the plug-ins to the catalog. Results record the plug-ins and their hashes.
-void take_plugins(const std::vector<std::string>& files) {
+void load_plugins(const std::vector<std::string>& files) {
   if (files.empty()) return;
   Catalog catalog = catalog_in_use();
   ProgramIdentity program = program_identity();
@@ -72,7 +72,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   }
   if (threads >= 0) use_threads(threads);
   line.kernels = &choose_kernels();
-  take_plugins(line.plugins);
+  load_plugins(line.plugins);
   return act();
 }
 

@@ -108,7 +108,7 @@ void FigureFolder::report(const FigureProgress& progress, Progress& shown) {
   }
   std::fflush(stdout);
   write_progress(progress);
-  shown.update(words(runs_, progress));
+  shown.update(progress_text(runs_, progress));
 }
 
 int FigureFolder::exit_code() const {

@@ -64,7 +64,7 @@ void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
     if (failure) std::rethrow_exception(failure);
 }
 
-std::string words(const std::vector<FigureRun>& runs, const FigureProgress& progress) {
+std::string progress_text(const std::vector<FigureRun>& runs, const FigureProgress& progress) {
   std::size_t made = 0;
   std::string at_work;
   for (std::size_t i = 0; i < runs.size(); ++i) {

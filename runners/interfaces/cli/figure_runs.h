@@ -39,6 +39,6 @@ void make_figures(
     const std::function<void(const FigureProgress& progress)>& report);
 
 // Returns the progress as text: "12 of 23, making 4.13, bounds; about 85 s left".
-std::string words(const std::vector<FigureRun>& runs, const FigureProgress& progress);
+std::string progress_text(const std::vector<FigureRun>& runs, const FigureProgress& progress);
 
 }  // namespace remote_touch

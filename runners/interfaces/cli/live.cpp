@@ -56,7 +56,7 @@ std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment&
 
 // Makes SIGQUIT end the program as SIGINT does, and ignores SIGPIPE and SIGTSTP. A haptic device must be
 // released however the program ends, and a stopped program would not release it.
-void see_to_every_end() {
+void set_live_signals() {
   struct sigaction interrupt {};
   sigaction(SIGINT, nullptr, &interrupt);
   sigaction(SIGQUIT, &interrupt, nullptr);
@@ -67,7 +67,7 @@ void see_to_every_end() {
 // Writes a page that redirects to the address. Returns its file, or an empty name if it cannot be written.
 // The browser gets this file as its argument and not the address, because the arguments of all processes can
 // be read, and whoever has the address can move the hand.
-std::string page_that_leads_to(const std::string& address) {
+std::string redirect_page(const std::string& address) {
   std::string file = (std::filesystem::temp_directory_path() / "remote-touch-XXXXXX.html").string();
   const int descriptor = mkstemps(file.data(), 5);  // only this user can read it
   if (descriptor < 0) return {};
@@ -87,12 +87,12 @@ void report_no_browser(const std::string& why) {
 // or an empty name. Reports why no browser could be started.
 std::string show_in_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
-  std::string program = "xdg-open", place = page_that_leads_to(address);
-  if (place.empty()) {
+  std::string program = "xdg-open", file = redirect_page(address);
+  if (file.empty()) {
     report_no_browser("its page cannot be written");
     return {};
   }
-  char* const arguments[] = {program.data(), place.data(), nullptr};
+  char* const arguments[] = {program.data(), file.data(), nullptr};
   posix_spawnattr_t own_session;
   posix_spawnattr_init(&own_session);
   posix_spawnattr_setflags(&own_session, POSIX_SPAWN_SETSID);
@@ -100,7 +100,7 @@ std::string show_in_browser(const std::string& address) {
   const int error = posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
   posix_spawnattr_destroy(&own_session);
   if (error != 0) report_no_browser(program + ": " + std::strerror(error));
-  return place;
+  return file;
 }
 
 std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& request,
@@ -114,7 +114,7 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
 
 // Prints the address, and opens it in a browser if there is a desktop. Returns the file that redirects to it,
 // or an empty name. If the session has a device other than browser:, the page only shows the run.
-std::string lead_to(const LiveView& view, const std::string& device) {
+std::string show_address(const LiveView& view, const std::string& device) {
   std::printf("open this page to see the run%s: %s\n", device == "browser:" ? " and to move the hand" : "",
               view.address().c_str());
   std::fflush(stdout);
@@ -122,9 +122,9 @@ std::string lead_to(const LiveView& view, const std::string& device) {
 }
 
 // Removes the page when the run has ended.
-struct LeadingPage {
+struct RedirectPage {
   std::string file;
-  ~LeadingPage() {
+  ~RedirectPage() {
     if (!file.empty()) unlink(file.c_str());
   }
 };
@@ -140,11 +140,11 @@ void report_now(const LiveReport& report, const std::string& file, const TextAtt
 // Writes the trace if --output is given. If all ticks were kept, prints its digest, which a replay of the
 // recording has too.
 void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttributes& origin) {
-  const std::string sum = request.output.empty()
-                              ? digest(log.trace.columns())
-                              : write_trace(request.output, log.trace, origin, log.row_step_s);
+  const std::string trace_digest = request.output.empty()
+                                       ? digest(log.trace.columns())
+                                       : write_trace(request.output, log.trace, origin, log.row_step_s);
   if (log.is_whole())
-    std::printf("  digest of the trace: %s\n", sum.c_str());
+    std::printf("  digest of the trace: %s\n", trace_digest.c_str());
   else
     std::printf("  only the first %zu of %lld ticks were kept as a trace; --record keeps all of them\n",
                 log.trace.length(), static_cast<long long>(log.ticks));
@@ -212,12 +212,12 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
     report_now(report, request.report, options.provenance);
   };
   const auto view = request.view ? open_view(line, request, experiment, options) : nullptr;
-  LeadingPage leading;
+  RedirectPage redirect;
   options.on_start = [&] {
-    if (view) leading.file = lead_to(*view, options.device);
+    if (view) redirect.file = show_address(*view, options.device);
     if (!line.quiet) print_files(request);
   };
-  see_to_every_end();
+  set_live_signals();
   print_replaced(request.overrides);
   const LiveResult result = run_live(experiment, options);
   if (view) view->end(result.ended);

@@ -48,7 +48,7 @@ const Kernels& chosen_kernels() {
 }
 
 // REMOTE_TOUCH_DATA: the folder of recordings and meshes with relative names that do not exist here.
-void take_data_folder() {
+void set_data_folder_from_environment() {
   if (const char* folder = std::getenv("REMOTE_TOUCH_DATA")) set_data_folder(folder);
 }
 
@@ -57,7 +57,7 @@ void complain(const std::string& problem) {
 }
 
 // Runs before the constants of all files are initialised, because that may find no memory.
-[[gnu::constructor(101)]] void take_last_resorts() {
+[[gnu::constructor(101)]] void install_early_last_resorts() {
   install_last_resorts(kBadInput);
 }
 
@@ -68,7 +68,7 @@ int interrupted() {
 
 // Sets the catalog of the program. A program with entries of its own is not the one that the sources
 // describe, so results identify it by the name and the SHA-256 of its file.
-void take_catalog(Catalog catalog, const std::string& called) {
+void set_catalog(Catalog catalog, const std::string& called) {
   if (!own_entries(catalog).is_empty())
     identify_program({std::filesystem::path(called).filename().string(), sha256_of_file("/proc/self/exe")});
   use_catalog(std::move(catalog));
@@ -102,8 +102,8 @@ int run(const std::function<Catalog()>& make_catalog, int argc, char** argv) {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   const CommandLine line = with_signals();
   try {
-    take_catalog(make_catalog(), argc > 0 ? argv[0] : "");
-    take_data_folder();
+    set_catalog(make_catalog(), argc > 0 ? argv[0] : "");
+    set_data_folder_from_environment();
     return flushed(run_command_line(argc, argv, line, chosen_kernels));
   } catch (const Interrupted&) {
     return interrupted();

@@ -32,7 +32,7 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
       std::printf(", has not ended");
     else
       std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
-    if (steps[i].done == StepEnd::reached && !std::isnan(entry.distance_m))
+    if (steps[i].end == StepEnd::reached && !std::isnan(entry.distance_m))
       std::printf(", %.2g m and %.2g deg from the goal", entry.distance_m,
                   entry.angle_rad / kRadiansPerDegree);
     std::puts("");
@@ -64,13 +64,14 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   if (request.strict) refuse_notes(report);
   experiment.add_depth_device(origin);
   add_report(origin, report);
-  const std::string sum = write_trace(request.output, trace, origin, durations);
+  const std::string trace_digest = write_trace(request.output, trace, origin, durations);
   print_replaced(request.overrides);
-  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), trace.length(), sum.c_str());
+  std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), trace.length(),
+              trace_digest.c_str());
   std::fputs(text_of(report).c_str(), stdout);
   for (const Measure& measure : measures())
     if (applies(measure, trace))
-      std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.of(trace), measure.unit.c_str());
+      std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.compute(trace), measure.unit.c_str());
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }

@@ -31,11 +31,11 @@ std::string normalised(const ScorecardRequest& request) {
 std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& plan,
                           const ScorecardReport& report) {
   const std::filesystem::path folder = request.folder;
-  std::string sum = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
-                                 provenance(configuration_of(plan), normalised(request), ""));
+  std::string card_digest = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
+                                         provenance(configuration_of(plan), normalised(request), ""));
   const std::string text = to_json(report);
   write_file_atomically(folder / "scorecard.json", text.data(), text.size());
-  return sum;
+  return card_digest;
 }
 
 // Throws InputError if a method or a scene is one of the files that are written to the folder. It may be any
@@ -81,11 +81,11 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
     });
     after.clear();
     if (request.view) make_failure_pages(line, request.folder, report);
-    const std::string sum = write_results(request, plan, report);
+    const std::string card_digest = write_results(request, plan, report);
     print(report);
     std::printf("%s: %zu scenes, %zu methods, digest %s\n",
                 (std::filesystem::path(request.folder) / kScorecardFile).c_str(), report.card.scenes.size(),
-                report.card.methods.size(), sum.c_str());
+                report.card.methods.size(), card_digest.c_str());
     const int code = report_runs(sweeps);
     std::printf("make the page: scripts/plot %s\n", request.folder.c_str());
     return code;

@@ -53,10 +53,10 @@ int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest
   try {
     const Scorecard card = scored(line, plan);
     const std::string config = configuration_of(plan);
-    const std::string sum =
+    const std::string card_digest =
         write_stored_card(request.file, card, provenance(config, program_text() + " scorecard store", ""));
     std::printf("%s: %zu scenes, %zu methods, digest %s\n", printable(request.file).c_str(),
-                card.scenes.size(), card.methods.size(), sum.c_str());
+                card.scenes.size(), card.methods.size(), card_digest.c_str());
     return kDone;
   } catch (const Interrupted&) {
     return report_interrupted(request.folder);

@@ -221,7 +221,7 @@ void PluginRenderer::prepare(Frame& frame) const {
 }
 
 void PluginRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   remote_touch_frame c = as_c(frame, frame.points->every_point(kernels_, buffer_));
   const auto prepared = std::dynamic_pointer_cast<const Prepared>(frame.prepared);
   if (prepared && &prepared->functions == &functions_) c.prepared = prepared->handle;

@@ -18,7 +18,7 @@ namespace py = pybind11;
 namespace {
 
 template <class Entry>
-void put(std::vector<Entry>& entries, Entry entry) {
+void replace_or_add(std::vector<Entry>& entries, Entry entry) {
   std::erase_if(entries, [&](const Entry& other) { return other.name == entry.name; });
   entries.push_back(std::move(entry));
 }
@@ -65,7 +65,8 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
   for (const py::handle need : type.attr("needs"))
     needs.push_back(choice_of<FrameNeed>(
         need.cast<std::string>(), {"normals", "organised", "regions", "view"}, entry.name + ": needs"));
-  put(all.renderers,
+  replace_or_add(
+      all.renderers,
       renderer_entry_of(std::move(entry), freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three,
                         model, std::move(needs)));
 }
@@ -80,9 +81,9 @@ void register_class(const std::string& kind, const std::string& name, const std:
   if (kind == "renderer")
     add_renderer(std::move(entry), type, changed);
   else if (kind == "scenario")
-    put(changed.scenarios, scenario_entry_of(std::move(entry)));
+    replace_or_add(changed.scenarios, scenario_entry_of(std::move(entry)));
   else
-    put(changed.trajectories, trajectory_entry_of(std::move(entry)));
+    replace_or_add(changed.trajectories, trajectory_entry_of(std::move(entry)));
   use_catalog(changed.with_built_in());
   classes() = std::move(changed);
 }

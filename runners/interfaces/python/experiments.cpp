@@ -51,7 +51,7 @@ std::vector<Column> measures_of(const Trace& trace) {
   for (const Measure& measure : measures())
     if (applies(measure, trace))
       list.push_back(
-          {measure.name, measure.unit, measure.meaning, std::vector<double>{measure.of(trace)}, 1, {}});
+          {measure.name, measure.unit, measure.meaning, std::vector<double>{measure.compute(trace)}, 1, {}});
   return list;
 }
 

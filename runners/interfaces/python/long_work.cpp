@@ -20,9 +20,9 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // time between two checks for signals
+constexpr std::chrono::milliseconds kSignalCheckPeriod{50};  // time between two checks for signals
 
-std::atomic<int> works_going_on{0};
+std::atomic<int> works_in_progress{0};
 
 const Kernels*& kernels_in_use() {
   static const Kernels* kernels = supported_kernels().back();
@@ -67,7 +67,7 @@ void work_in_thread(int threads, const std::function<void()>& work, Ending& endi
 }
 
 // Returns null, or the exception that a signal's handler or the report has raised.
-std::shared_ptr<py::error_already_set> look_for_signals(const py::object& report, double fraction) {
+std::shared_ptr<py::error_already_set> check_signals(const py::object& report, double fraction) {
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!report.is_none()) report(fraction);
@@ -80,10 +80,10 @@ std::shared_ptr<py::error_already_set> look_for_signals(const py::object& report
 std::shared_ptr<py::error_already_set> wait(Ending& ending, const py::object& report,
                                             const std::atomic<double>& fraction, std::atomic<bool>& stop) {
   std::shared_ptr<py::error_already_set> raised;
-  while (!ending.has_come_within(kLook)) {
+  while (!ending.has_come_within(kSignalCheckPeriod)) {
     if (raised) continue;
     const py::gil_scoped_acquire lock;
-    raised = look_for_signals(report, fraction);
+    raised = check_signals(report, fraction);
     if (raised) stop = true;
   }
   return raised;
@@ -97,7 +97,7 @@ void do_long_work(const py::object& report, int threads, const std::function<voi
   Ending ending;
   const LongWork given{chosen_python_kernels(), stop, [&](double done) { fraction = done; }};
   std::shared_ptr<py::error_already_set> raised;
-  ++works_going_on;
+  ++works_in_progress;
   {
     const py::gil_scoped_release without_lock;
     try {
@@ -108,14 +108,14 @@ void do_long_work(const py::object& report, int threads, const std::function<voi
       ending.tell(std::current_exception());
     }
   }
-  --works_going_on;
+  --works_in_progress;
   if (raised) throw py::error_already_set(*raised);
   if (ending.failure()) std::rethrow_exception(ending.failure());
   if (!report.is_none()) report(1.0);
 }
 
 void require_no_long_work(const char* subject) {
-  if (works_going_on > 0)
+  if (works_in_progress > 0)
     throw InputError(subject, "a run or a sweep is in progress: expected the call before or after it");
 }
 

@@ -113,11 +113,11 @@ std::string PythonClass::subject(const char* method) const {
   return kind_ + " " + name_ + ": " + type_name_ + "." + method;
 }
 
-py::object PythonClass::object(const PythonSettings& settings, Made made, const py::dict& given) const {
+py::object PythonClass::object(const PythonSettings& settings, Init init, const py::dict& given) const {
   py::object object = type_.attr("__new__")(type_);
   settings.give_to(object);
   for (const auto& [name, value] : given) py::setattr(object, name, value);
-  if (made == Made::yes) object.attr("__init__")();
+  if (init == Init::called) object.attr("__init__")();
   return object;
 }
 

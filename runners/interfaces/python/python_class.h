@@ -63,10 +63,10 @@ class PythonClass {
   const std::string& name() const { return name_; }
   std::string subject(const char* method) const;  // "renderer mine: Mine.step"
 
-  // Returns a new object. Its attributes are the settings and the members of `given`. made: Made::yes also
+  // Returns a new object. Its attributes are the settings and the members of `given`. init: Init::called also
   // calls __init__. pre: this thread holds the interpreter's lock.
-  enum class Made { settings_only, yes };
-  pybind11::object object(const PythonSettings& settings, Made made, const pybind11::dict& given = {}) const;
+  enum class Init { skipped, called };
+  pybind11::object object(const PythonSettings& settings, Init init, const pybind11::dict& given = {}) const;
 
   // Calls work() with the interpreter's lock. An exception that it raises becomes a PythonProblem of the
   // method.

@@ -37,8 +37,7 @@ class PythonFactory : public Factory<Seam, Arguments...> {
   // valid).
   std::string validate() const override {
     return type_->call("validate", [&]() -> std::string {
-      const pybind11::object said =
-          type_->object(settings_, PythonClass::Made::settings_only).attr("validate")();
+      const pybind11::object said = type_->object(settings_, PythonClass::Init::skipped).attr("validate")();
       return said.is_none() ? std::string() : std::string(pybind11::str(said));
     });
   }
@@ -49,9 +48,7 @@ class PythonFactory : public Factory<Seam, Arguments...> {
  protected:
   double number_of(const char* method) const {
     return type_->call(method, [&] {
-      return type_->object(settings_, PythonClass::Made::settings_only)
-          .attr(method)()
-          .template cast<double>();
+      return type_->object(settings_, PythonClass::Init::skipped).attr(method)().template cast<double>();
     });
   }
   std::shared_ptr<const PythonClass> type_;

@@ -22,7 +22,7 @@ class PythonRenderer final : public Renderer {
     type_->call("__init__", [&] {
       py::dict given;
       given["haptic_rate_hz"] = haptic_rate_hz;
-      object_.hold(type_->object(settings_, PythonClass::Made::yes, given));
+      object_.hold(type_->object(settings_, PythonClass::Init::called, given));
       step_.hold((*object_).attr("step"));
     });
   }

@@ -30,7 +30,7 @@ class PythonScenario final : public Scenario {
     type_->call("__init__", [&] {
       py::dict given;
       given["key"] = key;
-      object_.hold(type_->object(settings, PythonClass::Made::yes, given));
+      object_.hold(type_->object(settings, PythonClass::Init::called, given));
     });
     type_->call("frame_rate_hz", [&] { frame_rate_hz_ = real_of(value_of(*object_, "frame_rate_hz")); });
     type_->call("frame_count", [&] { frame_count_ = integer_of(value_of(*object_, "frame_count")); });
@@ -75,7 +75,7 @@ class PythonTrajectory final : public Trajectory {
     type_->call("__init__", [&] {
       py::dict given;
       given["scene"] = scene_;
-      object_.hold(type_->object(settings, PythonClass::Made::yes, given));
+      object_.hold(type_->object(settings, PythonClass::Init::called, given));
       at_.hold((*object_).attr("at"));
     });
     type_->call("duration_s", [&] { duration_s_ = real_of(value_of(*object_, "duration_s")); });

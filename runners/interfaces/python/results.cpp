@@ -27,7 +27,7 @@ namespace {
 
 std::vector<Column> all_columns(const ColumnSource& source) {
   std::vector<Column> list;
-  for (const std::string& name : source.columns()) {
+  for (const std::string& name : source.column_names()) {
     list.push_back(source.column(name));
     list.back().name = name;  // the name in a figure includes its table
   }

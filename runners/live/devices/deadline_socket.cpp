@@ -21,7 +21,7 @@ namespace remote_touch {
 namespace {
 
 // Returns EAGAIN for every error that means that the call should be tried again later.
-int kind_of(int error) {
+int normalised_error(int error) {
   return error == EWOULDBLOCK || error == EINTR ? EAGAIN : error;
 }
 
@@ -123,7 +123,7 @@ int DeadlineSocket::wait_readable(double deadline_s) noexcept {
 DeadlineSocket::Transfer DeadlineSocket::read_ready(void* data, std::size_t size) noexcept {
   const ssize_t got = ::recv(handle_, data, size, MSG_DONTWAIT);
   if (got > 0) return {static_cast<std::size_t>(got), 0};
-  return {0, got == 0 ? ECONNRESET : kind_of(errno)};
+  return {0, got == 0 ? ECONNRESET : normalised_error(errno)};
 }
 
 DeadlineSocket::Transfer DeadlineSocket::read_some(void* data, std::size_t size, double deadline_s) noexcept {
@@ -139,7 +139,7 @@ DeadlineSocket::Transfer DeadlineSocket::write_some(const void* data, std::size_
   for (;;) {
     const ssize_t put = ::send(handle_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (put >= 0) return {static_cast<std::size_t>(put), 0};
-    if (kind_of(errno) != EAGAIN) return {0, errno};
+    if (normalised_error(errno) != EAGAIN) return {0, errno};
     if (const int error = wait(POLLOUT, deadline_s)) return {0, error};
   }
 }

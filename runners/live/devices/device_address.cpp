@@ -46,8 +46,8 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
 // InputError adds a colon after its subject. The final colon of an address such as "haply:" is removed, so
 // that the message has only one.
 InputError DeviceAddress::refusal(const std::string& problem) const {
-  const bool is_scheme = written_.back() == ':';
-  return InputError(is_scheme ? written_.substr(0, written_.size() - 1) : written_, problem);
+  const bool ends_with_colon = written_.back() == ':';
+  return InputError(ends_with_colon ? written_.substr(0, written_.size() - 1) : written_, problem);
 }
 
 std::string DeviceAddress::word(const std::string& key, const std::string& otherwise) const {

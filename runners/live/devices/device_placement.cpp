@@ -9,12 +9,12 @@ double force_scale(double stiffness_N_per_m, double device_scale, double device_
   return device_limit_N_per_m > 0 && felt > device_limit_N_per_m ? device_limit_N_per_m / felt : 1;
 }
 
-DevicePlacement::DevicePlacement(const LiveSettings& s, double fraction)
+DevicePlacement::DevicePlacement(const LiveSettings& s, double force_scale)
     : q_WD_(rotation(kRadiansPerDegree * s.device_rotation_deg)),
       R_DW_(q_WD_.conjugate().toRotationMatrix()),
       p_W_(s.device_position_m),
       scale_(s.device_scale),
-      force_scale_(fraction) {}
+      force_scale_(force_scale) {}
 
 DeviceState DevicePlacement::in_world(const DeviceReading& reading) const {
   return {p_W_ + scale_ * (R_DW_.transpose() * reading.position_m), q_WD_ * reading.orientation,

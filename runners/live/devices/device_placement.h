@@ -15,14 +15,14 @@ double force_scale(double stiffness_N_per_m, double device_scale, double device_
 
 // Transforms device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and
 // torques are rotated but not divided by `scale`, so the hand feels `scale` times the stiffness. to_device()
-// also multiplies them by `fraction`, see force_scale().
+// also multiplies them by `force_scale`, see force_scale().
 class DevicePlacement {
  public:
-  explicit DevicePlacement(const LiveSettings& s, double fraction = 1);
+  explicit DevicePlacement(const LiveSettings& s, double force_scale = 1);
 
   DeviceState in_world(const DeviceReading& reading) const;
   Wrench to_device(const Wrench& wrench_W) const;
-  // The inverse functions, for simulated devices. in_world(wrench_D) does not undo `fraction`.
+  // The inverse functions, for simulated devices. in_world(wrench_D) does not undo `force_scale`.
   DeviceReading of_device(const DeviceState& state) const;
   Wrench in_world(const Wrench& wrench_D) const;
   double scale() const { return scale_; }

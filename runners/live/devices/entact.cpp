@@ -35,7 +35,7 @@ struct Eapi {
   int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
 };
 
-const SharedLibrary::Place kEapiLibrary{
+const SharedLibrary::Lookup kEapiLibrary{
     {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"};
 
 Eapi::Eapi() : library(kEapiLibrary) {
@@ -71,7 +71,7 @@ class Entact : public GatedDevice {
   void connect(std::string address, const std::string& subject);
   void home(const std::string& subject);
   std::string product() const;
-  int tell(const Wrench& wrench) noexcept;
+  int write_wrench(const Wrench& wrench) noexcept;
 
   Eapi eapi_;
   Eapi::Handle handle_ = nullptr;
@@ -149,7 +149,7 @@ DeviceFault Entact::sense(DeviceReading& reading) noexcept {
   return {};
 }
 
-int Entact::tell(const Wrench& wrench) noexcept {
+int Entact::write_wrench(const Wrench& wrench) noexcept {
   const Vec3 f = to_user_right_up(wrench.force_N), t = to_user_right_up(wrench.torque_Nm) * kNmmPerNm;
   std::array<double, 6> commanded{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
   return eapi_.write_force(handle_, commanded.data(), 6);
@@ -161,19 +161,19 @@ DeviceFault Entact::switch_on() noexcept {
   if (has_motors_on_) return {};
   if (eapi_.set_mode(handle_, Eapi::force_control) != Eapi::kOk)
     return {"Entact: the motors cannot be switched on", -1};
-  if (tell({}) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
+  if (write_wrench({}) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
   has_motors_on_ = true;
   return {};
 }
 
 DeviceFault Entact::exert(const Wrench& wrench) noexcept {
-  if (tell(wrench) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
+  if (write_wrench(wrench) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
   return {};
 }
 
 // No force is written while the motors are off: it is not documented whether such a call returns.
 void Entact::switch_off() noexcept {
-  if (has_motors_on_.exchange(false)) tell({});
+  if (has_motors_on_.exchange(false)) write_wrench({});
   eapi_.set_mode(handle_, Eapi::disabled);
 }
 

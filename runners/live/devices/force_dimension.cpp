@@ -42,7 +42,7 @@ struct Dhd {
   double (*get_max_torque)(char id) = nullptr;
 };
 
-const SharedLibrary::Place kDhdLibrary{
+const SharedLibrary::Lookup kDhdLibrary{
     {"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"};
 
 Dhd::Dhd() : library(kDhdLibrary) {
@@ -89,7 +89,7 @@ class ForceDimension : public GatedDevice {
   void switch_off() noexcept override;
 
   void learn_traits();
-  int tell(const Vec3& force_N, const Vec3& torque_Nm) noexcept;
+  int write_wrench(const Vec3& force_N, const Vec3& torque_Nm) noexcept;
   DeviceFault last_fault(const char* what) const noexcept;
 
   Dhd dhd_;
@@ -155,27 +155,28 @@ DeviceFault ForceDimension::sense(DeviceReading& reading) noexcept {
   return {};
 }
 
-int ForceDimension::tell(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
+int ForceDimension::write_wrench(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
   const Vec3 f = to_user_right_up(force_N), t = to_user_right_up(torque_Nm);
   return dhd_.set_force_and_torque_and_gripper_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0, id_);
 }
 
 // Zero force is written before the motors are switched on, because they first exert the last written force.
 DeviceFault ForceDimension::switch_on() noexcept {
-  if (tell(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
+  if (write_wrench(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
     return last_fault("Force Dimension: the motors cannot be switched on");
   return {};
 }
 
 DeviceFault ForceDimension::exert(const Wrench& wrench) noexcept {
   const Vec3 torque_Nm = traits_.actuated_axes == 6 ? wrench.torque_Nm : Vec3::Zero();
-  if (tell(wrench.force_N, torque_Nm) < 0) return last_fault("Force Dimension: the force cannot be set");
+  if (write_wrench(wrench.force_N, torque_Nm) < 0)
+    return last_fault("Force Dimension: the force cannot be set");
   return {};
 }
 
 // Errors are ignored: there is no caller left to report them to.
 void ForceDimension::switch_off() noexcept {
-  tell(Vec3::Zero(), Vec3::Zero());
+  write_wrench(Vec3::Zero(), Vec3::Zero());
   dhd_.enable_force(0, id_);
   if (dhd_.stop != nullptr) dhd_.stop(id_);
 }

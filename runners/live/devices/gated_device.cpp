@@ -4,7 +4,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::int64_t kPatience_ns = 5'000'000, kNap_ns = 100'000;
+constexpr std::int64_t kMaxCallWait_ns = 5'000'000, kCallPollPeriod_ns = 100'000;
 
 bool is_finite(const DeviceReading& r) {
   return r.position_m.allFinite() && r.orientation.coeffs().allFinite() && r.velocity_m_per_s.allFinite() &&
@@ -16,15 +16,15 @@ bool is_finite(const DeviceReading& r) {
 // If a call and release() overlap, release() sees that a call is in progress and waits for it, or the call
 // sees at its end that it must switch the motors off, or both happen. Every order leaves the motors off,
 // because a force is written only after they are on.
-void GatedDevice::leave_vendor() noexcept {
+void GatedDevice::end_call() noexcept {
   if (released_) switch_off();
-  in_vendor_ = false;
+  is_call_in_progress_ = false;
 }
 
 DeviceFault GatedDevice::read(DeviceReading& reading) noexcept {
-  in_vendor_ = true;
+  is_call_in_progress_ = true;
   DeviceFault fault = sense(reading);
-  leave_vendor();
+  end_call();
   if (!fault && !is_finite(reading)) fault = {"the device reports a state that is not finite", 0};
   return fault;
 }
@@ -32,9 +32,9 @@ DeviceFault GatedDevice::read(DeviceReading& reading) noexcept {
 DeviceFault GatedDevice::write(const Wrench& wrench) noexcept {
   if (!wrench.force_N.allFinite() || !wrench.torque_Nm.allFinite())
     return {"the force or torque for the device is not finite", 0};
-  in_vendor_ = true;
+  is_call_in_progress_ = true;
   const DeviceFault fault = exert_if_on(wrench);
-  leave_vendor();
+  end_call();
   return fault;
 }
 
@@ -43,17 +43,18 @@ DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
   if (!is_on_) {
     if (const DeviceFault fault = switch_on()) return fault;
     is_on_ = true;
-    if (released_) return kReleased;  // release() came during switch_on(); leave_vendor() switches them off
+    if (released_) return kReleased;  // release() came during switch_on(); end_call() switches them off
   }
   return exert(wrench);
 }
 
 // Waits for a call in progress before the motors are switched off, because few vendors' functions allow calls
-// from two threads. It waits at most kPatience_ns, which is longer than a call should take.
+// from two threads. It waits at most kMaxCallWait_ns, which is longer than a call should take.
 void GatedDevice::release() noexcept {
   released_ = true;
-  const std::int64_t until_ns = clock().now_ns() + kPatience_ns;
-  while (in_vendor_ && clock().now_ns() < until_ns) clock().sleep_until_ns(clock().now_ns() + kNap_ns);
+  const std::int64_t until_ns = clock().now_ns() + kMaxCallWait_ns;
+  while (is_call_in_progress_ && clock().now_ns() < until_ns)
+    clock().sleep_until_ns(clock().now_ns() + kCallPollPeriod_ns);
   switch_off();
 }
 

@@ -33,9 +33,9 @@ class GatedDevice : public HapticDevice {
   virtual void switch_off() noexcept = 0;
 
   DeviceFault exert_if_on(const Wrench& wrench) noexcept;
-  void leave_vendor() noexcept;
+  void end_call() noexcept;
 
-  std::atomic<bool> released_{false}, in_vendor_{false};
+  std::atomic<bool> released_{false}, is_call_in_progress_{false};
   bool is_on_ = false;
 };
 

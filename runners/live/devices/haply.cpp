@@ -16,7 +16,7 @@ constexpr double kOpenWithin_s = 1;
 // the rest of a message that has begun.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
 constexpr double kLastAnswerWithin_s = 20e-3;
-constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kTurnNap_ns = 100'000;
+constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kLinkPollPeriod_ns = 100'000;
 constexpr double kStateLasts_s = 20e-3;  // if the last command is older, the state is requested again
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
@@ -144,10 +144,10 @@ class Haply final : public HapticDevice {
  private:
   // Exclusive use of the link during one call. Only release() competes for the link, and keeps it when it has
   // got it, so no tick waits.
-  class TickGuard {
+  class LinkLock {
    public:
-    explicit TickGuard(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
-    ~TickGuard() {
+    explicit LinkLock(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
+    ~LinkLock() {
       if (is_mine_) taken_ = false;
     }
     explicit operator bool() const { return is_mine_; }
@@ -217,14 +217,14 @@ DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
 }
 
 DeviceFault Haply::read(DeviceReading& reading) noexcept {
-  const TickGuard turn(taken_);
-  return turn ? read_within(reading, kReadWithin_s) : kReleased;
+  const LinkLock lock(taken_);
+  return lock ? read_within(reading, kReadWithin_s) : kReleased;
 }
 
 // The motors of an Inverse3 give no torque.
 DeviceFault Haply::write(const Wrench& wrench) noexcept {
-  const TickGuard turn(taken_);
-  if (!turn) return kReleased;
+  const LinkLock lock(taken_);
+  if (!lock) return kReleased;
   const bool is_force = wrench.force_N.allFinite();
   const double deadline_s = clock().now_s() + kWriteWithin_s;
   // The answer that is due is read first: with two commands in progress the answers would stay one behind. If
@@ -240,7 +240,7 @@ void Haply::release() noexcept {
   const std::int64_t until_ns = clock().now_ns() + kTickEndsWithin_ns;
   bool is_mine = false;
   while (!(is_mine = !taken_.exchange(true)) && clock().now_ns() < until_ns)
-    clock().sleep_until_ns(clock().now_ns() + kTurnNap_ns);
+    clock().sleep_until_ns(clock().now_ns() + kLinkPollPeriod_ns);
   if (is_mine) {
     const bool is_older_due = is_answer_due_;
     const double deadline_s = clock().now_s() + kLastAnswerWithin_s;

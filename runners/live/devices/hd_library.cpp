@@ -4,7 +4,7 @@ namespace remote_touch {
 
 namespace {
 
-const SharedLibrary::Place kHdLibrary{
+const SharedLibrary::Lookup kHdLibrary{
     {"libHD.so", "libHD.so.3.5", "libHD.so.3.4"}, "REMOTE_TOUCH_LIBHD", "3D Systems' OpenHaptics"};
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kConnectWithin_s = 0.5;
-constexpr double kHolds_s = 0.5;
+constexpr double kMaxDeflectionAge_s = 0.5;
 constexpr double kMaxStep_s = 0.1;  // longest step of one reading: the pose must not jump after a pause
 constexpr int kMaxFrames = 256;     // most frames in one reading; the daemon sends some hundred a second
 
@@ -69,7 +69,7 @@ class Spacenav final : public HapticDevice {
     const double now_s = clock().now_s();
     if (!fault_) fault_ = take_frames(now_s);
     if (fault_) return fault_;
-    if (now_s - reported_s_ > kHolds_s) counts_.fill(0);
+    if (now_s - reported_s_ > kMaxDeflectionAge_s) counts_.fill(0);
     move(std::min(now_s - moved_s_, kMaxStep_s));
     moved_s_ = now_s;
     reading = pose_;

@@ -21,11 +21,11 @@ using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint
 
 struct CameraCounts {
   int received = 0;
-  int passed_over = 0;  // frame numbers that never came: not sent, or a newer frame came first
-  int reversed = 0;     // not newer than the frame before; dropped
-  int incomplete = 0;   // colours that the sensor's view promises are missing, or the size differs; dropped
-  int overtaken = 0;    // ready, but replaced by a newer one before the servo took them
-  int unrecorded = 0;   // dropped, because the recorder's queue was full
+  int skipped = 0;     // frame numbers that never came: not sent, or a newer frame came first
+  int reversed = 0;    // not newer than the frame before; dropped
+  int incomplete = 0;  // colours that the sensor's view promises are missing, or the size differs; dropped
+  int overtaken = 0;   // ready, but replaced by a newer one before the servo took them
+  int unrecorded = 0;  // dropped, because the recorder's queue was full
   double max_pause_s = 0;
   double processing_s = 0;  // sum over the frames
 };

@@ -40,14 +40,14 @@ std::string LiveControls::change(const ParameterChanges& changes) try {
       return "there is no live parameter " + std::to_string(change.parameter);
     values[static_cast<std::size_t>(change.parameter)] = change.value;
   }
-  ParameterChanges* const slot = asked_.next_slot();
+  ParameterChanges* const slot = requested_.next_slot();
   if (slot == nullptr) return "the haptic loop has not yet applied the earlier changes";
   const Experiment changed = checked(values);
   if (has_stiffness_limit_ && changed.max_stiffness_N_per_m() > max_stiffness_N_per_m_)
     return "this device allows no greater stiffness than at the start of the run";
   if (shown_ && is_of_scenario(changes)) shown_->replace(changed.build_scenario(kernels_));
   *slot = changes;
-  asked_.push();
+  requested_.push();
   values_ = std::move(values);
   return {};
 } catch (const InputError& error) {

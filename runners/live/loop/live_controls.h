@@ -33,7 +33,7 @@ class LiveControls {
   std::string change(const ParameterChanges& changes);
 
   // The run uses the following functions.
-  Ring<ParameterChanges>& asked() { return asked_; }
+  Ring<ParameterChanges>& requested() { return requested_; }
   std::unique_ptr<const Scenario> scenario() const;  // null with another camera
   // Refuses a greater stiffness than at the start from now on. A device with motors needs this limit, because
   // it is not known whether a greater stiffness is stable.
@@ -50,7 +50,7 @@ class LiveControls {
   std::size_t of_renderer_ = 0;
   std::vector<double> values_;  // now
   std::shared_ptr<ShownScenario> shown_;
-  Ring<ParameterChanges> asked_{64};
+  Ring<ParameterChanges> requested_{64};
   std::atomic<bool> has_stiffness_limit_ = false;
 };
 

@@ -108,7 +108,7 @@ void LiveLogger::finish(const std::function<TextAttributes(const LiveLog&)>& clo
   take_all();
   const TextAttributes attributes = closing && !log_failed_ ? closing(log_) : TextAttributes();
   record([&](SessionRecorder& recorder) { recorder.finish(attributes); });
-  if (!why_too_.empty()) why_ += "; " + why_too_;
+  if (!second_failure_.empty()) why_ += "; " + second_failure_;
 }
 
 std::string LiveLogger::keep() {
@@ -119,7 +119,7 @@ std::string LiveLogger::keep() {
 // Writes why_ only once, because other threads may be reading it.
 void LiveLogger::fail(const std::string& why) {
   if (failed_) {
-    why_too_ = why;
+    second_failure_ = why;
     return;
   }
   why_ = why;

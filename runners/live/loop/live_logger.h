@@ -75,7 +75,7 @@ class LiveLogger {
   std::mutex frames_mutex_;
   std::deque<Recorded> frames_;
   std::atomic<bool> failed_ = false, sync_failed_ = false;
-  std::string why_, why_too_;  // the first failure, and the one after it
+  std::string why_, second_failure_;  // the first failure, and the one after it
   std::string why_no_sync_;
 };
 

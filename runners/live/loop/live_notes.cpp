@@ -20,12 +20,12 @@ std::string frames_line(const LiveFacts& facts) {
 
 void add_unused_frames(const CameraCounts& camera, std::vector<Note>& notes) {
   const std::pair<int, const char*> parts[] = {
-      {camera.passed_over, "not sent, or replaced before they were processed"},
+      {camera.skipped, "not sent, or replaced before they were processed"},
       {camera.reversed, "reversed or repeated"},
       {camera.incomplete, "without all pixels or colours"},
       {camera.unrecorded, "dropped for the recorder"},
       {camera.overtaken, "replaced before the haptic loop used them"}};
-  const int all = camera.received + camera.passed_over;
+  const int all = camera.received + camera.skipped;
   int unused = 0;
   std::string reasons;
   for (const auto& [count, reason] : parts) {

@@ -54,8 +54,8 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   const RigidTransform registration = camera_registration(experiment.live());
   FrameProcessing processing =
       experiment.build_processing(*options.kernels, switches_, [this](const std::string& line) {
-        const std::lock_guard lock(told_mutex_);
-        told_.push_back(line);
+        const std::lock_guard lock(pending_lines_mutex_);
+        pending_lines_.push_back(line);
       });
   const auto on_tick = [this](const LiveTick& tick) {
     contact_.add(tick, static_cast<double>(tick.number) / rate_hz_);
@@ -78,7 +78,7 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
       ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_,
-                 &experiment.changes(), options.controls ? &options.controls->asked() : nullptr},
+                 &experiment.changes(), options.controls ? &options.controls->requested() : nullptr},
       DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
       rate_hz_, start_ns, options.stall_s);
   if (options.controls && device_->traits().actuated_axes > 0 && !options.device.starts_with("sim:"))
@@ -127,7 +127,7 @@ LiveResult LiveParts::finish() {
     add_report(attributes, result.report);
     return attributes;
   });
-  report_told();
+  report_pending_lines();
   result.device = device_->traits().name;
   result.force_scale = force_scale_;
   result.ended = logger_->failure().empty() ? ended : logger_->failure();
@@ -203,11 +203,11 @@ void LiveParts::report_line(const std::string& line) const {
   if (options_.report_line) options_.report_line(line);
 }
 
-void LiveParts::report_told() {
+void LiveParts::report_pending_lines() {
   std::vector<std::string> lines;
   {
-    const std::lock_guard lock(told_mutex_);
-    lines.swap(told_);
+    const std::lock_guard lock(pending_lines_mutex_);
+    lines.swap(pending_lines_);
   }
   for (const std::string& line : lines) report_line(line);
 }
@@ -241,7 +241,7 @@ LiveTrouble LiveParts::trouble() const {
 }
 
 void LiveParts::report_changes() {
-  report_told();
+  report_pending_lines();
   if (!heartbeat().is_released())
     hangs_since_ns_ = -1;
   else if (hangs_since_ns_ < 0)

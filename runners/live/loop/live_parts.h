@@ -61,7 +61,7 @@ class LiveParts {
   std::string unusable_frame_of_hand() const;
   std::string changed_input() const;
   void report_line(const std::string& line) const;
-  void report_told();
+  void report_pending_lines();
   void report_force_scale() const;
   LiveTrouble trouble() const;
   std::string camera_trouble() const;
@@ -77,8 +77,8 @@ class LiveParts {
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;
-  std::mutex told_mutex_;
-  std::vector<std::string> told_;  // lines from the camera's thread, for report_changes()
+  std::mutex pending_lines_mutex_;
+  std::vector<std::string> pending_lines_;  // lines from the camera's thread, for report_changes()
   TripleBuffer<LiveFrame> frames_;
   Ring<LiveTick> rows_;
   std::unique_ptr<LiveLogger> logger_;

@@ -12,8 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-LiveReport::Times times_of(const char* name, const char* word, const Samples& samples) {
-  LiveReport::Times times{name, word, samples.kept(), samples.size(), samples.least(), samples.greatest()};
+LiveReport::Times times_of(const char* name, const char* key, const Samples& samples) {
+  LiveReport::Times times{name, key, samples.kept(), samples.size(), samples.least(), samples.greatest()};
   std::sort(times.sorted.begin(), times.sorted.end());
   return times;
 }
@@ -62,7 +62,7 @@ Table longer_than(const LiveReport::Times& times) {
     log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));
     log_fraction.push_back(std::log10((count - static_cast<double>(at)) / count));
   }
-  Table table{times.word, times.name};
+  Table table{times.key, times.name};
   table.add("time", "1", "log10 of the time in us", std::move(log_us));
   table.add("fraction", "1", "log10 of the share that took as long or longer", std::move(log_fraction));
   return table;
@@ -127,7 +127,7 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"frames received", number(camera.received)},
                    {"processing of a frame, mean us", mean_processing_us(camera)},
                    {"longest pause between frames, ms", longest_pause_ms(camera)},
-                   {"frames skipped: not sent, or replaced unprocessed", number(camera.passed_over)},
+                   {"frames skipped: not sent, or replaced unprocessed", number(camera.skipped)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
                    {"frames replaced before the haptic loop used them", number(camera.overtaken)},
@@ -167,7 +167,7 @@ Figure live_figure(const LiveReport& report) {
   for (const auto& times : report.times) {
     if (times.sorted.empty()) continue;
     figure.tables.push_back(longer_than(times));
-    fractions.curves.push_back({times.word, "time", "fraction", CurveStyle::steps, times.name});
+    fractions.curves.push_back({times.key, "time", "fraction", CurveStyle::steps, times.name});
   }
   Table pieces{"late", "Longest time from tick to tick"};
   pieces.add("time", "s", "beginning of the piece of the run", report.piece_s);

@@ -12,7 +12,7 @@ namespace remote_touch {
 struct LiveReport {
   struct Times {
     const char* name;
-    const char* word;            // file-safe
+    const char* key;             // file-safe
     std::vector<double> sorted;  // seconds; only a part of them after a long run, see Samples
     std::size_t count;           // number of all times
     double least, greatest;      // least and greatest of all times

@@ -22,8 +22,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kPatience_s = 0.05;  // the camera's thread notices an end within this time
-constexpr double kLook_s = 0.02;      // the thread that syncs the disk notices an end within this time
+constexpr double kPatience_s = 0.05;         // the camera's thread notices an end within this time
+constexpr double kSyncCheckPeriod_s = 0.02;  // the thread that syncs the disk notices an end within this time
 constexpr auto kMaxStop = std::chrono::seconds(2);
 
 // Returns a thread that calls step every period_s. Its destructor ends it and waits for the end.
@@ -43,11 +43,12 @@ class LiveThreads {
         parts_.heartbeat().check(clock_.now_ns());
     });
     logger_ = repeat(clock, LiveLogger::kPeriod_s, [this] { parts_.logger().step(); });
-    sync_ = repeat(clock, kLook_s, [this, next_s = clock.now_s() + LiveLogger::kSyncPeriod_s]() mutable {
-      if (clock_.now_s() < next_s) return;
-      parts_.logger().sync();
-      next_s = clock_.now_s() + LiveLogger::kSyncPeriod_s;
-    });
+    sync_ = repeat(clock, kSyncCheckPeriod_s,
+                   [this, next_s = clock.now_s() + LiveLogger::kSyncPeriod_s]() mutable {
+                     if (clock_.now_s() < next_s) return;
+                     parts_.logger().sync();
+                     next_s = clock_.now_s() + LiveLogger::kSyncPeriod_s;
+                   });
     camera_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested() && parts_.camera().step(kPatience_s)) continue;
     });

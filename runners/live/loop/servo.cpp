@@ -52,10 +52,10 @@ void Servo::move_on_to(double time_s, LiveTick& row) {
 void Servo::make_changes(LiveTick& row) {
   scripted_.make_until(static_cast<double>(row.number) / rate_hz_);
   row.changed.count = 0;
-  const ParameterChanges* const asked = links_.asked ? links_.asked->oldest() : nullptr;
-  if (asked == nullptr || links_.rows.next_slot() == nullptr) return;
-  row.changed = *asked;
-  links_.asked->pop();
+  const ParameterChanges* const requested = links_.requested ? links_.requested->oldest() : nullptr;
+  if (requested == nullptr || links_.rows.next_slot() == nullptr) return;
+  row.changed = *requested;
+  links_.requested->pop();
   for (const ParameterChange& change : row.changed.all())
     if (static_cast<std::size_t>(change.parameter) < live_.size())
       set_number(live_[static_cast<std::size_t>(change.parameter)], change.value);

@@ -55,7 +55,7 @@ struct ServoLinks {
   std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // time of the clock at which the run ends
   // Changes of the experiment, and changes that the user requests while it runs; null: none.
   const std::vector<RendererChange>* scripted = nullptr;
-  Ring<ParameterChanges>* asked = nullptr;
+  Ring<ParameterChanges>* requested = nullptr;
 };
 
 // The servo allocates nothing, takes no lock, opens no file and reads no clock but the given one, except in

@@ -75,7 +75,7 @@ class K4aCamera final : public DepthSource {
 
  private:
   void open_device(const std::string& camera);
-  k4a::OpenDevice opened(std::uint32_t number) const;
+  k4a::OpenDevice open_by_number(std::uint32_t number) const;
   std::string serial_of(k4a::Device device) const;
   void find_by_serial(const std::string& serial, std::uint32_t count);
   void calibrate();
@@ -104,7 +104,7 @@ class K4aCamera final : public DepthSource {
 
 K4aCamera::K4aCamera(const std::string& address, const Clock& host)
     : host_(host), address_(k4a_address(address)) {
-  k4a_.take_error();
+  k4a_.pop_first_error();
   open_device(address_.camera);
   calibrate();
   start();
@@ -112,7 +112,7 @@ K4aCamera::K4aCamera(const std::string& address, const Clock& host)
 
 // Returns the library's reason, to be appended to a message; empty if it gave none.
 std::string K4aCamera::reason() const {
-  const std::string said = k4a_.take_error();
+  const std::string said = k4a_.pop_first_error();
   return said.empty() ? "" : " (the library says: " + said + ")";
 }
 
@@ -125,13 +125,13 @@ void K4aCamera::open_device(const std::string& camera) {
   if (!number) return find_by_serial(camera, count);
   if (*number >= count)
     refuse("no such camera: expected 0 to " + std::to_string(count - 1) + ", or a serial number");
-  device_ = opened(*number);
+  device_ = open_by_number(*number);
   if (!device_)
     refuse("cannot be opened" + reason() +
            "; another program may hold it: expected a camera that this user may open (udev rules)");
 }
 
-k4a::OpenDevice K4aCamera::opened(std::uint32_t number) const {
+k4a::OpenDevice K4aCamera::open_by_number(std::uint32_t number) const {
   k4a::Device device = nullptr;
   if (k4a_.device_open(number, &device) != k4a::succeeded) device = nullptr;
   return {device, {&k4a_}};
@@ -148,7 +148,7 @@ std::string K4aCamera::serial_of(k4a::Device device) const {
 void K4aCamera::find_by_serial(const std::string& serial, std::uint32_t count) {
   std::string known;
   for (std::uint32_t number = 0; number < count; ++number) {
-    k4a::OpenDevice device = opened(number);
+    k4a::OpenDevice device = open_by_number(number);
     const std::string its = device ? serial_of(device.get()) : "one that cannot be opened" + reason();
     if (device && its == serial) {
       device_ = std::move(device);
@@ -206,9 +206,9 @@ void K4aCamera::start() {
 
 SensorState K4aCamera::next(SensorFrame& frame, double timeout_s) {
   if (!failure_.empty()) return SensorState::failed;
-  const double give_up_s = host_.now_s() + timeout_s;
+  const double deadline_s = host_.now_s() + timeout_s;
   while (true) {
-    const double remaining_s = give_up_s - host_.now_s();
+    const double remaining_s = deadline_s - host_.now_s();
     double arrived_s = 0;
     const k4a::HeldCapture capture = newest(std::max(remaining_s, 0.0), arrived_s);
     if (capture && take(capture.get(), arrived_s, frame)) return SensorState::frame;

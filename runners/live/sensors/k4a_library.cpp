@@ -7,9 +7,10 @@ namespace remote_touch::k4a {
 
 namespace {
 
-const SharedLibrary::Place kK4aLibrary{{"libk4a.so.1.4", "libk4a.so"},
-                                       "REMOTE_TOUCH_LIBK4A",
-                                       "the Azure Kinect Sensor SDK (libk4a1.4), or of Orbbec's K4A wrapper"};
+const SharedLibrary::Lookup kK4aLibrary{
+    {"libk4a.so.1.4", "libk4a.so"},
+    "REMOTE_TOUCH_LIBK4A",
+    "the Azure Kinect Sensor SDK (libk4a1.4), or of Orbbec's K4A wrapper"};
 
 // The log is never freed, because a thread of the library may write to it at any time.
 struct Log {
@@ -55,7 +56,7 @@ K4aLibrary::K4aLibrary() : library(kK4aLibrary) {
   if (set_debug_message_handler != nullptr) set_debug_message_handler(keep_first_error, nullptr, log_error);
 }
 
-std::string K4aLibrary::take_error() const {
+std::string K4aLibrary::pop_first_error() const {
   const std::lock_guard lock(k4a_log().mutex);
   return std::exchange(k4a_log().first_error, {});
 }

@@ -61,7 +61,7 @@ struct K4aLibrary {
 
   // Returns the library's message about its first error since the last call, in one line; empty if there was
   // none. The message may come from any thread and device, because the library has one log.
-  std::string take_error() const;
+  std::string pop_first_error() const;
 
   SharedLibrary library;
   std::uint32_t (*device_get_installed_count)() = nullptr;

@@ -209,10 +209,10 @@ void Openni2Camera::describe(const openni::VideoStream& seen_by) {
 SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
   if (!failure_.empty()) return SensorState::failed;
   if (has_ended_) return SensorState::ended;
-  const double give_up_s = host_.now_s() + timeout_s;
+  const double deadline_s = host_.now_s() + timeout_s;
   while (true) {
     if (loss_->is_lost()) return fail("was disconnected");
-    const double remaining_s = give_up_s - host_.now_s();
+    const double remaining_s = deadline_s - host_.now_s();
     // Waits in parts of at most 50 ms, because the loss of a camera does not end a wait. 0 does not wait.
     const double part_ms = std::clamp(std::ceil(1e3 * remaining_s), 0.0, 50.0);
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));

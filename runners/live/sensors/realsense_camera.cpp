@@ -201,13 +201,13 @@ void RealSenseCamera::describe(const rs2::Intrinsics& intrinsics) {
 
 SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
   if (!failure_.empty()) return SensorState::failed;
-  const double give_up_s = host_.now_s() + timeout_s;
+  const double deadline_s = host_.now_s() + timeout_s;
   while (true) {
     double arrived_s = 0;
     const rs2::Held<rs2::Frame> depth = newest_depth(arrived_s);
     if (depth && take(depth.get(), arrived_s, frame)) return SensorState::frame;
     check_connection();
-    const double remaining_s = give_up_s - host_.now_s();
+    const double remaining_s = deadline_s - host_.now_s();
     if (remaining_s <= 0) return SensorState::waiting;
     host_.sleep_s(std::clamp(remaining_s, 0.1 * kPoll_s, kPoll_s));
   }
@@ -284,8 +284,8 @@ bool RealSenseCamera::take(const rs2::Frame* depth, double arrived_s, SensorFram
   else
     std::swap(seen_, frame.depth);
   frame.colour.clear();
-  const bool goes_on = stamp_s_ && counted > counted_;
-  frame.number = numbers_.next(goes_on ? static_cast<double>(counted - counted_) : 1);
+  const bool is_count_continued = stamp_s_ && counted > counted_;
+  frame.number = numbers_.next(is_count_continued ? static_cast<double>(counted - counted_) : 1);
   frame.captured_s = clock_.captured_s(stamp_s, arrived_s);
   stamp_s_ = stamp_s, counted_ = counted;
   return true;

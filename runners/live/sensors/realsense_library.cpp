@@ -11,12 +11,12 @@ namespace {
 constexpr int kOldestMinor = 50, kNewestMinor = 69;
 constexpr int kMajor = 2;
 
-SharedLibrary::Place realsense_place() {
-  SharedLibrary::Place place{
+SharedLibrary::Lookup realsense_lookup() {
+  SharedLibrary::Lookup lookup{
       {"librealsense2.so"}, "REMOTE_TOUCH_LIBREALSENSE", "the RealSense SDK (librealsense2)"};
   for (int minor = kNewestMinor; minor >= kOldestMinor; --minor)
-    place.names.push_back("librealsense2.so." + std::to_string(kMajor) + "." + std::to_string(minor));
-  return place;
+    lookup.names.push_back("librealsense2.so." + std::to_string(kMajor) + "." + std::to_string(minor));
+  return lookup;
 }
 
 void find_devices(RealSenseLibrary& rs2) {
@@ -83,7 +83,7 @@ void find_frames(RealSenseLibrary& rs2) {
 
 }  // namespace
 
-RealSenseLibrary::RealSenseLibrary() : library(realsense_place()) {
+RealSenseLibrary::RealSenseLibrary() : library(realsense_lookup()) {
   library.find("rs2_get_api_version", get_api_version);
   library.find("rs2_get_error_message", get_error_message);
   library.find("rs2_get_failed_function", get_failed_function);

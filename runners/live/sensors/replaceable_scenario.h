@@ -41,7 +41,9 @@ class ReplaceableScenario final : public Scenario {
   double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
   bool ends() const override { return shown_->now()->ends(); }
   std::optional<RigidTransform> sensor_pose() const override { return shown_->now()->sensor_pose(); }
-  std::optional<double> arrives_s(int frame) const override { return shown_->now()->arrives_s(frame); }
+  std::optional<double> leaves_sensor_s(int frame) const override {
+    return shown_->now()->leaves_sensor_s(frame);
+  }
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
     return shown_->now()->fixtures_off(frame);
   }

@@ -58,11 +58,11 @@ using asio::ip::tcp;
 using Request = http::request<http::empty_body>;
 using Socket = websocket::stream<beast::tcp_stream>;
 
-constexpr auto kPatience = std::chrono::seconds(5);       // longest wait for a request
-constexpr auto kPicture = std::chrono::milliseconds(16);  // period of the checks for messages to send
-constexpr auto kIdle = std::chrono::seconds(20);          // longest time without an answer of the browser
-constexpr auto kAlive = std::chrono::seconds(1);          // longest time between messages
-constexpr auto kFarewell = std::chrono::seconds(1);       // longest wait for pages to close after the run
+constexpr auto kPatience = std::chrono::seconds(5);          // longest wait for a request
+constexpr auto kPollPeriod = std::chrono::milliseconds(16);  // period of the checks for messages to send
+constexpr auto kIdle = std::chrono::seconds(20);             // longest time without an answer of the browser
+constexpr auto kAlive = std::chrono::seconds(1);             // longest time between messages
+constexpr auto kMaxEndWait = std::chrono::seconds(1);        // longest wait for pages to close after the run
 constexpr int kMaxConnections = 16;
 constexpr std::uint32_t kMaxHeader = 8192;
 
@@ -107,8 +107,9 @@ class BeastServer final : public ViewServer {
   std::string address() const override { return "http://" + host_ + path_; }
   void end(const std::string& why) override {
     pages_.end(why);
-    const auto until = std::chrono::steady_clock::now() + kFarewell;
-    while (talks_ > 0 && std::chrono::steady_clock::now() < until) std::this_thread::sleep_for(kPicture);
+    const auto until = std::chrono::steady_clock::now() + kMaxEndWait;
+    while (open_pages_ > 0 && std::chrono::steady_clock::now() < until)
+      std::this_thread::sleep_for(kPollPeriod);
   }
 
  private:
@@ -158,14 +159,14 @@ class BeastServer final : public ViewServer {
     stream.expires_after(kPatience);
     co_await http::async_read(stream, buffer, parser, use_awaitable);
     const Request request = parser.release();
-    const http::status status = judged(request);
+    const http::status status = status_of(request);
     if (status == http::status::switching_protocols)
-      co_await talk(std::move(stream), request);
+      co_await serve_channel(std::move(stream), request);
     else
       co_await send(stream, request, status);
   }
 
-  http::status judged(const Request& request) const {
+  http::status status_of(const Request& request) const {
     const beast::string_view target = request.target();
     const beast::string_view place = target.substr(0, target.find('?'));
     const bool is_channel = same(place, path_ + "channel");
@@ -219,8 +220,8 @@ class BeastServer final : public ViewServer {
     stream.socket().shutdown(tcp::socket::shutdown_send, gone);
   }
 
-  asio::awaitable<void> talk(beast::tcp_stream stream, const Request& request) {
-    ++talks_;
+  asio::awaitable<void> serve_channel(beast::tcp_stream stream, const Request& request) {
+    ++open_pages_;
     LiveChannel* channel = nullptr;
     try {
       const auto socket = std::make_shared<Socket>(std::move(stream));
@@ -238,14 +239,14 @@ class BeastServer final : public ViewServer {
         // Waits for send_all(), because the channel may belong to another page as soon as it is closed.
         asio::steady_timer timer(context_);
         while (is_sending) {  // NOLINT(bugprone-infinite-loop): send_all sets it
-          timer.expires_after(kPicture);
+          timer.expires_after(kPollPeriod);
           co_await timer.async_wait(use_awaitable);
         }
       }
     } catch (const std::exception&) {
     }
     if (channel != nullptr) pages_.close(*channel);
-    --talks_;
+    --open_pages_;
   }
 
   asio::awaitable<void> receive_all(Socket& socket, LiveChannel& channel) {
@@ -287,7 +288,7 @@ class BeastServer final : public ViewServer {
         continue;
       }
       if (channel.is_over()) co_return;
-      timer.expires_after(kPicture);
+      timer.expires_after(kPollPeriod);
       co_await timer.async_wait(use_awaitable);
     }
   }
@@ -298,7 +299,7 @@ class BeastServer final : public ViewServer {
   tcp::acceptor acceptor_;
   std::string host_;
   int connections_ = 0;
-  std::atomic<int> talks_ = 0;  // pages that are connected
+  std::atomic<int> open_pages_ = 0;  // pages that are connected
   std::thread thread_;
 };
 

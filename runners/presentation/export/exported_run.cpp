@@ -104,7 +104,7 @@ ExportedRun exported_run(const ExportJob& job) {
 void for_each_frame(const ExportJob& job, const ExportedRun& run,
                     const std::function<void(const ExportedFrame&)>& use) {
   ExportedFrame now;
-  frames_again(run.experiment, run.time_s, *job.kernels, job.stop, [&](const Frame& frame) {
+  replay_frames(run.experiment, run.time_s, *job.kernels, job.stop, [&](const Frame& frame) {
     job.go_on();
     const auto first = std::lower_bound(run.frame.begin(), run.frame.end(), frame.index);
     if (first == run.frame.end() || *first != frame.index) return;  // no tick used it: it arrived too late

@@ -16,7 +16,7 @@ constexpr const char* kStepDuration = "/timing/step_duration";
 Table table_of_trace(const Hdf5Reader& result) {
   const StoredTrace trace(result);
   Table table{"trace", "one row for each tick"};
-  for (const std::string& name : trace.columns()) table.columns.push_back(trace.column(name));
+  for (const std::string& name : trace.column_names()) table.columns.push_back(trace.column(name));
   if (result.has(kStepDuration)) table.columns.push_back(result.column(kStepDuration));
   return table;
 }
@@ -57,8 +57,9 @@ Table table_of_sweep(const Hdf5Reader& file) {
   const std::size_t runs = result.run_count();
   Table table{"sweep", "one row for each run"};
   for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
-    table.columns.push_back(over_runs(
-        result.axes[axis], runs, [&](std::size_t run) { return result.place(result.cell_of(run))[axis]; }));
+    table.columns.push_back(over_runs(result.axes[axis], runs, [&](std::size_t run) {
+      return result.axis_indices(result.cell_of(run))[axis];
+    }));
   if (result.replicates > 1) {
     std::vector<std::int32_t> numbers;
     for (std::size_t run = 0; run < runs; ++run) numbers.push_back(result.replicate_of(run));
@@ -82,7 +83,7 @@ Table table_of_sweep(const Hdf5Reader& file) {
 std::vector<Table> tables_of_figure(const Hdf5Reader& result) {
   const StoredFigure figure(result);
   std::vector<Table> tables;
-  for (const std::string& path : figure.columns()) {
+  for (const std::string& path : figure.column_names()) {
     const std::string name = path.substr(0, path.find('/'));
     if (tables.empty() || tables.back().name != name) tables.push_back({name, ""});
     tables.back().columns.push_back(figure.column(path));

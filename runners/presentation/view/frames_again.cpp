@@ -44,8 +44,8 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
   return experiment;
 }
 
-void frames_again(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
-                  const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame) {
+void replay_frames(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
+                   const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame) {
   // A task switches fixtures on and off, at times that are known only from the run itself.
   if (!experiment.sequence().empty()) {
     SimulationOptions options;

@@ -21,7 +21,7 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
 // Passes to on_frame the frames that had arrived at one of the times, in order of arrival, as the renderer
 // received them. If the experiment has a task, the whole run is simulated again instead, and time_s is not
 // used. Throws InputError as the run itself would, and Interrupted.
-void frames_again(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
-                  const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame);
+void replay_frames(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
+                   const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame);
 
 }  // namespace remote_touch

@@ -75,7 +75,7 @@ std::string in_script(const std::string& json) {
 
 }  // namespace
 
-std::string compressed(const std::string& bytes) {
+std::string gzip_base64(const std::string& bytes) {
   return base64(gzip(bytes));
 }
 
@@ -90,7 +90,7 @@ std::string page_file(const std::string& title, const std::string& json, const s
   html.append(viewer_style())
       .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
   html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");
-  html.append(compressed(bytes)).append("</script>\n<script type=\"module\">\n");
+  html.append(gzip_base64(bytes)).append("</script>\n<script type=\"module\">\n");
   html.append(viewer_script()).append("</script>\n</body></html>\n");
   return html;
 }

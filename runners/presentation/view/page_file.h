@@ -9,6 +9,6 @@ namespace remote_touch {
 std::string page_file(const std::string& title, const std::string& json, const std::string& bytes);
 
 // Returns the bytes as a page stores them: gzip, then Base64.
-std::string compressed(const std::string& bytes);
+std::string gzip_base64(const std::string& bytes);
 
 }  // namespace remote_touch

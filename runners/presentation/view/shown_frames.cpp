@@ -135,7 +135,7 @@ ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others) {
 ShownFrames shown_frames(const Experiment& experiment, const RunPath& path, const ShownPointsRule& rule,
                          const Kernels& kernels, const std::atomic<bool>* stop) {
   FrameViewer viewer(path, rule, kernels);
-  frames_again(experiment, path.time_s, kernels, stop, [&](const Frame& frame) { viewer.on_frame(frame); });
+  replay_frames(experiment, path.time_s, kernels, stop, [&](const Frame& frame) { viewer.on_frame(frame); });
   return std::move(viewer.shown);
 }
 

@@ -48,7 +48,7 @@ double length_m(const Json& renderer, const char* name) {
 // Returns the columns of numbers. Hashes are left out, because they mean nothing to a reader.
 Json columns_json(const ColumnSource& columns, PackedArrays& numbers) {
   Json list = Json::array();
-  for (const std::string& name : columns.columns()) {
+  for (const std::string& name : columns.column_names()) {
     const Column column = columns.column(name);
     Json entry{{"name", name},
                {"unit", column.units},

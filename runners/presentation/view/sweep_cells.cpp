@@ -33,11 +33,11 @@ class FailedCells {
     return 2 * t.events > t.runs;
   }
   bool passes_next_to(std::size_t cell, std::size_t axis, int way) const {
-    std::vector<std::size_t> place = result_.place(cell);
+    std::vector<std::size_t> indices = result_.axis_indices(cell);
     const std::size_t last = result_.axes[axis].length() - 1;
-    while (way < 0 ? place[axis] > 0 : place[axis] < last) {
-      place[axis] += static_cast<std::size_t>(way);
-      const std::size_t next = result_.cell_at(place);
+    while (way < 0 ? indices[axis] > 0 : indices[axis] < last) {
+      indices[axis] += static_cast<std::size_t>(way);
+      const std::size_t next = result_.cell_at(indices);
       if (tally_of(next).runs > 0) return !mostly_failed(next);
     }
     return false;

@@ -31,7 +31,7 @@ class McapFile final : public BagFile {
   // Lists the messages from the index. Returns false if the index is missing, damaged or incomplete.
   bool index_by_summary();
   bool index_chunk(const McapRecord& chunk_index);
-  bool take_statistics(const std::string& statistics);
+  bool matches_statistics(const std::string& statistics);
   // Lists the messages by reading all records.
   void scan();
   void scan_chunk(const McapRecord& chunk);

@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two positions and a CRC
-constexpr std::uint64_t kNames = 4096;                                  // bytes read of a schema or channel
+constexpr std::uint64_t kMaxNameBytes = 4096;                           // bytes read of a schema or channel
 constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // limit for one record of an index
 
 constexpr const char* kDamagedIndex = "has a damaged index: it was read from end to end";
@@ -70,8 +70,8 @@ bool McapFile::index_by_summary() {
   };
   try {
     for_records([&](const McapRecord& record) {
-      if (record.opcode == McapRecord::schema) add_schema(body_start(record, kNames));
-      if (record.opcode == McapRecord::channel) add_channel(body_start(record, kNames));
+      if (record.opcode == McapRecord::schema) add_schema(body_start(record, kMaxNameBytes));
+      if (record.opcode == McapRecord::channel) add_channel(body_start(record, kMaxNameBytes));
       if (record.opcode == McapRecord::statistics) statistics = whole_body(record);
       return true;
     });
@@ -80,7 +80,7 @@ bool McapFile::index_by_summary() {
       any_chunk |= record.opcode == McapRecord::chunk_index;
       return record.opcode != McapRecord::chunk_index || index_chunk(record);
     });
-    return all_indexed && (statistics.empty() ? any_chunk : take_statistics(statistics));
+    return all_indexed && (statistics.empty() ? any_chunk : matches_statistics(statistics));
   } catch (const InputError&) {  // the cause does not matter, because the file is scanned next
     remark_ = kDamagedIndex;
     return false;
@@ -121,7 +121,7 @@ bool McapFile::index_chunk(const McapRecord& chunk_index) {
 
 // Sets the number of messages of each topic, which for unwanted topics is known only from here. Returns false
 // if the chunks' indexes do not contain all messages: some may be outside of chunks.
-bool McapFile::take_statistics(const std::string& statistics) {
+bool McapFile::matches_statistics(const std::string& statistics) {
   MessageCursor cursor(statistics, WireFormat::ros1, file_.name());
   cursor.view(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // other numbers, and the times of the messages
   MessageCursor entry(cursor.bytes(), WireFormat::ros1, file_.name());
@@ -145,8 +145,8 @@ void McapFile::scan() {
   while (!ended && file_.has(at, McapRecord::kStart)) {
     const McapRecord record = mcap_record(file_.bytes(at, McapRecord::kStart), at);
     if (!file_.has(record.body_at, record.body_size)) break;
-    if (record.opcode == McapRecord::schema) add_schema(body_start(record, kNames));
-    if (record.opcode == McapRecord::channel) add_channel(body_start(record, kNames));
+    if (record.opcode == McapRecord::schema) add_schema(body_start(record, kMaxNameBytes));
+    if (record.opcode == McapRecord::channel) add_channel(body_start(record, kMaxNameBytes));
     if (record.opcode == McapRecord::message)
       add_message(body_start(record, McapRecord::kMessageHeader), 0, at);
     if (record.opcode == McapRecord::chunk) scan_chunk(record), ++chunks;
@@ -166,7 +166,8 @@ void McapFile::scan_chunk(const McapRecord& chunk) {
   records.check();
   for (std::uint64_t at = 0; at < records.size();) {
     const McapRecord record = mcap_record(records.view(at, McapRecord::kStart), at);
-    const std::uint64_t wanted = record.opcode == McapRecord::message ? McapRecord::kMessageHeader : kNames;
+    const std::uint64_t wanted =
+        record.opcode == McapRecord::message ? McapRecord::kMessageHeader : kMaxNameBytes;
     const std::string body(records.view(record.body_at, std::min(record.body_size, wanted)));
     if (record.opcode == McapRecord::schema) add_schema(body);
     if (record.opcode == McapRecord::channel) add_channel(body);

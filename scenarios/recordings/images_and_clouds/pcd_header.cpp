@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 11> kKeywords = {"VERSION",   "FIELDS", "
 constexpr std::array<std::string_view, 6> kVersions = {"0.7", ".7", "0.6", ".6", "0.5", ".5"};
 
 // Limit of width and of height: the image layout counts in int, and width * height fits in 64 bits.
-constexpr std::size_t kMaxPixels = std::numeric_limits<int>::max();
+constexpr std::size_t kMaxSide = std::numeric_limits<int>::max();
 
 // No length in a header may be 0; signs, fractions and trailing letters are refused.
 std::size_t integer_value(const std::string& file, const std::string& keyword, std::string_view word,
@@ -120,8 +120,8 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
   const bool in_no_order = !entries.contains("WIDTH") && !entries.contains("HEIGHT");
   const std::string_view width = in_no_order ? points : entry(file, entries, "WIDTH", 1)[0];
   const std::string_view height = in_no_order ? "1" : entry(file, entries, "HEIGHT", 1)[0];
-  header.width = integer_value(file, "WIDTH", width, kMaxPixels);
-  header.height = integer_value(file, "HEIGHT", height, kMaxPixels);
+  header.width = integer_value(file, "WIDTH", width, kMaxSide);
+  header.height = integer_value(file, "HEIGHT", height, kMaxSide);
   const std::size_t product = header.width * header.height;
   header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;

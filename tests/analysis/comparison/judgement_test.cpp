@@ -14,24 +14,24 @@ const Directions kSmaller = {{"event", Better::smaller}, {"depth", Better::small
 const Directions kLarger = {{"event", Better::larger}, {"depth", Better::larger}};
 
 TEST(Judged, JudgementFollowsTheDirectionOfTheMeasure) {
-  EXPECT_EQ(judged(1, 2, Better::smaller, {}), Judgement::worse);
-  EXPECT_EQ(judged(2, 1, Better::smaller, {}), Judgement::better);
-  EXPECT_EQ(judged(1, 2, Better::larger, {}), Judgement::better);
-  EXPECT_EQ(judged(-3, 2, Better::near_zero, {}), Judgement::better);
-  EXPECT_EQ(judged(1, 2, Better::neither, {}), Judgement::changed);
-  EXPECT_EQ(judged(-1, 1, Better::near_zero, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(1, 2, Better::smaller, {}), Judgement::worse);
+  EXPECT_EQ(judge_value(2, 1, Better::smaller, {}), Judgement::better);
+  EXPECT_EQ(judge_value(1, 2, Better::larger, {}), Judgement::better);
+  EXPECT_EQ(judge_value(-3, 2, Better::near_zero, {}), Judgement::better);
+  EXPECT_EQ(judge_value(1, 2, Better::neither, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(-1, 1, Better::near_zero, {}), Judgement::changed);
   // A renderer that follows the surface more closely has a smaller gap, which is no fault.
-  EXPECT_EQ(judged(0.005, 0.0047, Better::not_negative, {}), Judgement::changed);
-  EXPECT_EQ(judged(0.005, -0.001, Better::not_negative, {}), Judgement::worse);
-  EXPECT_EQ(judged(1, 2, Better::smaller, {1, 0}), Judgement::equal);
-  EXPECT_EQ(judged(1, kInfinity, Better::smaller, {}), Judgement::worse);
+  EXPECT_EQ(judge_value(0.005, 0.0047, Better::not_negative, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(0.005, -0.001, Better::not_negative, {}), Judgement::worse);
+  EXPECT_EQ(judge_value(1, 2, Better::smaller, {1, 0}), Judgement::equal);
+  EXPECT_EQ(judge_value(1, kInfinity, Better::smaller, {}), Judgement::worse);
 }
 
 TEST(Judged, NanIsNeitherBetterNorWorse) {
-  EXPECT_EQ(judged(kNaN, kNaN, Better::smaller, {}), Judgement::equal);
-  EXPECT_EQ(judged(1, kNaN, Better::smaller, {}), Judgement::changed);
-  EXPECT_EQ(judged(kNaN, 1, Better::smaller, {}), Judgement::changed);
-  EXPECT_EQ(judged(-1, kNaN, Better::not_negative, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(kNaN, kNaN, Better::smaller, {}), Judgement::equal);
+  EXPECT_EQ(judge_value(1, kNaN, Better::smaller, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(kNaN, 1, Better::smaller, {}), Judgement::changed);
+  EXPECT_EQ(judge_value(-1, kNaN, Better::not_negative, {}), Judgement::changed);
 }
 
 TEST(JudgedRunByRun, DirectionOfAllChangedRunsDecides) {
@@ -97,8 +97,8 @@ TEST(JudgedInPairs, OnePartThatGotWorseIsWorse) {
   SweepResult a = map(), b = a;
   const Region part = compare(a, a).regions[5];
   for (std::size_t run = 0; run < 5396; ++run)
-    if (part.contains(a.place(run)) ? run % 33 == 0 : run % 20 == 0)
-      flip(a, b, run, part.contains(a.place(run)));
+    if (part.contains(a.axis_indices(run)) ? run % 33 == 0 : run % 20 == 0)
+      flip(a, b, run, part.contains(a.axis_indices(run)));
   const SweepComparison c = compare(a, b, {}, {}, kSmaller);
   EXPECT_EQ(whole(c, 0), Judgement::better);
   EXPECT_EQ(judgement_of(c, 0, true), Judgement::worse);

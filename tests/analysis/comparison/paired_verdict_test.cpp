@@ -81,7 +81,7 @@ TEST(PairedVerdictOf, FindsAChangeOfOnePart) {
   const std::vector<Region> regions = compare(a, a).regions;
   int changed = 0, flipped = 0;
   for (std::size_t run = 0; run < 5396; ++run)
-    if (regions[5].contains(a.place(run))) {
+    if (regions[5].contains(a.axis_indices(run))) {
       if (run % 33 == 0) flip(a, b, run, true), ++changed;
     } else if (run % 15 == 0) {
       flip(a, b, run, flipped++ % 2 == 0);

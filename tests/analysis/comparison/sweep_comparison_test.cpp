@@ -41,7 +41,7 @@ TEST(CompareSweeps, NamesTheFirstDifference) {
   ASSERT_TRUE(c.first);
   EXPECT_EQ(c.first->run, 23u);
   EXPECT_EQ(c.first->cell, 7u);
-  EXPECT_EQ(c.first->place, (std::vector<std::size_t>{3, 1}));
+  EXPECT_EQ(c.first->axis_indices, (std::vector<std::size_t>{3, 1}));
   EXPECT_EQ(c.first->replicate, 2);
   EXPECT_EQ(c.first->measure, "depth");
   EXPECT_EQ(c.first->baseline, 1e-20);
@@ -224,7 +224,7 @@ Texts labels(std::vector<Column> axes) {
   // Every cell is in the whole and, when there are parts, in one of them.
   for (std::size_t cell = 0; cell < a.cell_count(); ++cell) {
     std::size_t count = 0;
-    for (const Region& region : c.regions) count += region.contains(a.place(cell)) ? 1 : 0;
+    for (const Region& region : c.regions) count += region.contains(a.axis_indices(cell)) ? 1 : 0;
     EXPECT_EQ(count, c.regions.size() == 1 ? 1u : 2u);
   }
   return labels;

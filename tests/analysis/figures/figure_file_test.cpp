@@ -34,7 +34,7 @@ Figure small_figure() {
        {},
        std::pair(-1.0, 2.0)},
       {"Right", "x", "x", false, {{"other", "x", "x", CurveStyle::circle, "ball", 0.005}}, {}, {}}};
-  figure.panels[1].place = std::pair(3.0, 7.0);
+  figure.panels[1].grid_position = std::pair(3.0, 7.0);
   figure.claims = {claim_at_most("9.9", "a claim", "-", 1, 2, "m")};
   return figure;
 }

@@ -105,7 +105,7 @@ TEST(ContactMeasures, AreInTheTable) {
     const auto found = std::find_if(built_in_measures().begin(), built_in_measures().end(),
                                     [&name = name](const Measure& m) { return m.name == name; });
     ASSERT_NE(found, built_in_measures().end()) << name;
-    EXPECT_EQ(found->of(trace), of(trace)) << name;
+    EXPECT_EQ(found->compute(trace), of(trace)) << name;
   }
 }
 

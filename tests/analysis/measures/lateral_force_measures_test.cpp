@@ -115,7 +115,7 @@ TEST(LateralForce, IsNanIfTheTrueNormalIsNotKnown) {
     for (const Trace& trace : {not_computed, trace_of({{{1, 2, 0}, kUnknown}})}) {
       EXPECT_FALSE(applies(measure, trace)) << measure.name;
       EXPECT_TRUE(std::isnan(value_of(measure, trace))) << measure.name;
-      EXPECT_TRUE(std::isnan(measure.of(trace))) << measure.name;
+      EXPECT_TRUE(std::isnan(measure.compute(trace))) << measure.name;
     }
   }
   EXPECT_EQ(found, 3);

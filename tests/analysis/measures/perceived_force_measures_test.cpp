@@ -85,7 +85,7 @@ TEST(PerceivedForce, MeasuresAreInTheTableAtThreeFractions) {
   const Trace trace = trace_along(200, [](int i) { return 1 + 0.01 * (i / 10) * (i % 20 < 10 ? 1 : -1); });
   const auto value = [&](const std::string& name) {
     for (const Measure& measure : built_in_measures())
-      if (measure.name == name) return measure.of(trace);
+      if (measure.name == name) return measure.compute(trace);
     return std::nan("");
   };
   for (const int percent : {5, 10, 20}) {

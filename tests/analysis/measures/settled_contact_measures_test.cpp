@@ -93,7 +93,7 @@ TEST(SettledContact, IsNanIfTheContactWasNotComputed) {
     EXPECT_FALSE(applies(measure, trace)) << measure.name;
     EXPECT_TRUE(applies(measure, settled({{0}}))) << measure.name;
     EXPECT_TRUE(std::isnan(value_of(measure, trace))) << measure.name;
-    EXPECT_TRUE(std::isnan(measure.of(trace))) << measure.name;
+    EXPECT_TRUE(std::isnan(measure.compute(trace))) << measure.name;
   }
   EXPECT_EQ(found, 6);
 }

@@ -112,7 +112,7 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
     EXPECT_EQ(applies(each, point), !of_tool && !of_guidance && !of_contact) << each.name;
     EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance && !of_contact) << each.name;
     if (of_tool || of_guidance) {
-      EXPECT_TRUE(std::isnan(each.of(point))) << each.name;
+      EXPECT_TRUE(std::isnan(each.compute(point))) << each.name;
     }
     if (of_proxy) {
       EXPECT_TRUE(std::isnan(value_of(each, tool))) << each.name;

@@ -34,8 +34,8 @@ TEST(CardNumbers, TablesAndBackAreTheSame) {
   const CardNumbers back = numbers_in(counts_table(n), means_table(n));
   ASSERT_EQ(back.counts.size(), 3u);
   EXPECT_EQ(back.counts[1].successes.low, 0.6);
-  EXPECT_EQ(back.counts[1].place.noise_m, 0.003);
-  EXPECT_TRUE(std::isnan(back.counts[2].place.noise_m));
+  EXPECT_EQ(back.counts[1].cell.noise_m, 0.003);
+  EXPECT_TRUE(std::isnan(back.counts[2].cell.noise_m));
   EXPECT_EQ(back.means[1].value.pairs, 9);
   EXPECT_EQ(back.means[1].units, "N");
 }
@@ -95,7 +95,7 @@ TEST(CardNumbers, AMeasureOfAnotherUnitIsADifference) {
 
 TEST(CardNumbers, NewNumbersAreDifferencesAndMissingOnesAreNot) {
   CardNumbers now = numbers();
-  now.counts[1].place.method = "newcomer", now.means[1].place.method = "newcomer";
+  now.counts[1].cell.method = "newcomer", now.means[1].cell.method = "newcomer";
   const auto list = differences(numbers(), now);
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0], "flat, newcomer, noise 3 mm: its successes are not in the stored card");

@@ -23,10 +23,10 @@ TEST(FileDigest, IsTheSha256OfWhatFollows) {
   const TestFolder folder("file_digest_test");
   write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
   const std::string bytes = bytes_of(folder / "trace.h5");
-  EXPECT_NE(bytes.substr(0, kDigestBlockSize).find(sha256_of_file(folder / "trace.h5", kDigestBlockSize)),
+  EXPECT_NE(bytes.substr(0, kSealBlockSize).find(sha256_of_file(folder / "trace.h5", kSealBlockSize)),
             std::string::npos);
-  EXPECT_EQ(bytes.substr(kDigestBlockSize, 4), "\x89HDF");
-  EXPECT_EQ(file_digest_of(folder / "trace.h5"), FileDigest::valid);
+  EXPECT_EQ(bytes.substr(kSealBlockSize, 4), "\x89HDF");
+  EXPECT_EQ(seal_state_of(folder / "trace.h5"), SealState::valid);
 }
 
 // Every byte of the seal and of the file's beginning is changed, and a sample of the others. Each change must
@@ -50,9 +50,9 @@ TEST(FileDigest, NoChangedByteIsReadAsATrace) {
 std::string with_addresses_from_the_start(std::string bytes) {
   for (const std::size_t place : {24u, 40u}) {  // addresses of the base and of the end
     std::uint64_t address = 0;
-    std::memcpy(&address, &bytes[kDigestBlockSize + place], sizeof address);
-    address += kDigestBlockSize;
-    std::memcpy(&bytes[kDigestBlockSize + place], &address, sizeof address);
+    std::memcpy(&address, &bytes[kSealBlockSize + place], sizeof address);
+    address += kSealBlockSize;
+    std::memcpy(&bytes[kSealBlockSize + place], &address, sizeof address);
   }
   return bytes;
 }
@@ -64,7 +64,7 @@ TEST(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
   const std::string opened = with_addresses_from_the_start(bytes_of(folder / "trace.h5"));
   const auto file = folder.write("opened.h5", opened);
   EXPECT_TRUE(was_opened_for_writing(file));
-  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_EQ(seal_state_of(file), SealState::valid);
   EXPECT_TRUE(same_bits(Hdf5Reader(file).column("/trace/force"),
                         Hdf5Reader(folder / "trace.h5").column("/trace/force")));
   for (std::size_t i = 0; i < opened.size(); i += i < 1024 ? 7 : 997) {
@@ -73,7 +73,7 @@ TEST(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
     EXPECT_FALSE(was_opened_for_writing(folder.write("changed.h5", changed))) << i;
   }
   folder.write("changed.h5", opened + "x");
-  EXPECT_EQ(file_digest_of(folder / "changed.h5"), FileDigest::broken);
+  EXPECT_EQ(seal_state_of(folder / "changed.h5"), SealState::broken);
 }
 
 TEST(FileDigest, OtherHdf5FilesHaveNone) {
@@ -84,7 +84,7 @@ TEST(FileDigest, OtherHdf5FilesHaveNone) {
     hdf5.save(folder / name);
   };
   write("of-another/1", "other.h5"), write("remote-touch-trace/2", "ours.h5");
-  EXPECT_EQ(file_digest_of(folder / "other.h5"), FileDigest::absent);
+  EXPECT_EQ(seal_state_of(folder / "other.h5"), SealState::absent);
   const Hdf5Reader reader(folder / "other.h5");
   EXPECT_HAS(refusal([&] { reader.require_kind("trace", "what I write"); }), "of-another/1");
   EXPECT_HAS(refusal([&] { Hdf5Reader{folder / "ours.h5"}; }), "SHA-256 header is missing");

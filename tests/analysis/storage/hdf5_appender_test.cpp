@@ -49,7 +49,7 @@ TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
     EXPECT_FALSE(std::filesystem::exists(file)) << "before it is whole";
     out.finish();
   }
-  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_EQ(seal_state_of(file), SealState::valid);
   EXPECT_EQ(files_in(folder), 1u);
   const Hdf5Reader in(file);
   EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/2");
@@ -114,7 +114,7 @@ TEST(Hdf5Appender, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
   Hdf5Appender out(file);
   out.finish();
-  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_EQ(seal_state_of(file), SealState::valid);
 }
 
 TEST(Hdf5Appender, NamesTheFileThatCannotBeWritten) {

@@ -329,13 +329,13 @@ TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   write_sweep(file, awkward(), kAttributes);
-  const std::string seal = sha256_of_file(file, kDigestBlockSize), value = raw(1.0 / 3);
+  const std::string seal = sha256_of_file(file, kSealBlockSize), value = raw(1.0 / 3);
   std::string bytes = bytes_of(file);
   bytes.replace(bytes.rfind(value), value.size(), raw(0.25));
   folder.write("x.h5", bytes);
-  bytes.replace(bytes.find(seal), seal.size(), sha256_of_file(file, kDigestBlockSize));
+  bytes.replace(bytes.find(seal), seal.size(), sha256_of_file(file, kSealBlockSize));
   folder.write("x.h5", bytes);
-  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_EQ(seal_state_of(file), SealState::valid);
   EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest does not match)");
 }
 

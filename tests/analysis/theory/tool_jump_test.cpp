@@ -70,10 +70,11 @@ double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyP
     double bottom_m = -1;
     bool left = false;
     for (const NoisyPoint& p : points)
-      if (chance(random) < p.under_plate) bottom_m = std::max(bottom_m, p.height_m + noise(random));
+      if (chance(random) < p.under_plate_probability)
+        bottom_m = std::max(bottom_m, p.height_m + noise(random));
     for (const NoisyPoint& p : points) {
       const double place_m = p.height_m + jump_m + noise(random) - bottom_m;
-      left |= chance(random) < p.under_plate && place_m > 0 && place_m < thickness_m;
+      left |= chance(random) < p.under_plate_probability && place_m > 0 && place_m < thickness_m;
     }
     lost += left ? 0 : 1;
   }

@@ -31,15 +31,15 @@ btScalar number(double x) {
   return static_cast<btScalar>(x);
 }
 
-btVector3 place(const Place& p) {
+btVector3 bullet_vector(const Coordinates& p) {
   return kBulletUnits_per_m * btVector3(number(p[0]), number(p[1]), number(p[2]));
 }
 
 // The corners run counter-clockwise seen from the side to which the normal points. The other side is inside
 // for GImpact.
-std::vector<Place> triangle_around(const Place& point, const Place& normal, double side_m) {
+std::vector<Coordinates> triangle_around(const Coordinates& point, const Coordinates& normal, double side_m) {
   const Vector p(point.data()), n(normal.data()), a = n.unitOrthogonal(), b = n.cross(a);
-  std::vector<Place> corners;
+  std::vector<Coordinates> corners;
   for (int i = 0; i < 3; ++i) {
     const double angle = 2 * 3.14159265358979323846 * i / 3;
     const Vector corner = p + side_m / std::sqrt(3.0) * (std::cos(angle) * a + std::sin(angle) * b);
@@ -53,7 +53,9 @@ struct GImpactBody {
   std::unique_ptr<btGImpactMeshShape> shape;
   btCollisionObject object;
 
-  void add(const Place& a, const Place& b, const Place& c) { mesh.addTriangle(place(a), place(b), place(c)); }
+  void add(const Coordinates& a, const Coordinates& b, const Coordinates& c) {
+    mesh.addTriangle(bullet_vector(a), bullet_vector(b), bullet_vector(c));
+  }
   // The margin is 0. A larger margin would also make the tree find triangles that are only near, and take
   // much longer.
   void make_tree() {
@@ -67,7 +69,7 @@ struct GImpactBody {
 // Uses contactPairTest(), which reports every contact; a manifold would keep only four of them.
 class GImpact : btCollisionWorld::ContactResultCallback {
  public:
-  GImpact(const MeshAndPoints& from, const std::vector<std::vector<Place>>& bodies) {
+  GImpact(const MeshAndPoints& from, const std::vector<std::vector<Coordinates>>& bodies) {
     const int type = GIMPACT_SHAPE_PROXYTYPE;
     dispatcher_.registerCollisionCreateFunc(type, type, &algorithm_);
     dispatcher_.registerClosestPointsCreateFunc(type, type, &algorithm_);  // contactPairTest() needs it
@@ -81,7 +83,7 @@ class GImpact : btCollisionWorld::ContactResultCallback {
     const auto& R = pose.R_WT;
     const btMatrix3x3 turn(number(R[0]), number(R[1]), number(R[2]), number(R[3]), number(R[4]), number(R[5]),
                            number(R[6]), number(R[7]), number(R[8]));
-    tool_.object.setWorldTransform(btTransform(turn, place(pose.p_W)));
+    tool_.object.setWorldTransform(btTransform(turn, bullet_vector(pose.p_W)));
     touched_.clear();
     world_.contactPairTest(&tool_.object, &points_.object, *this);
     return touched_.size();
@@ -141,7 +143,7 @@ using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
 
 std::shared_ptr<Mesh> mesh_with_tree(const MeshAndPoints& from) {
   std::vector<Vector> vertices;
-  for (const Place& v : from.vertices) vertices.emplace_back(v.data());
+  for (const Coordinates& v : from.vertices) vertices.emplace_back(v.data());
   std::vector<fcl::Triangle> triangles;
   for (const auto& [a, b, c] : from.triangles) triangles.emplace_back(a, b, c);
   auto mesh = std::make_shared<Mesh>();
@@ -156,19 +158,19 @@ class Octree {
  public:
   explicit Octree(const MeshAndPoints& from)
       : cells_(std::make_shared<octomap::OcTree>(kCell_m)), mesh_(mesh_with_tree(from)) {
-    for (const Place& p : from.points_W) cells_->updateNode(p[0], p[1], p[2], true, true);
+    for (const Coordinates& p : from.points_W) cells_->updateNode(p[0], p[1], p[2], true, true);
     cells_->updateInnerOccupancy();
     for (std::size_t i = 0; i < from.points_W.size(); ++i) {
-      const Place& p = from.points_W[i];
+      const Coordinates& p = from.points_W[i];
       points_in_[cells_->search(p[0], p[1], p[2]) - cells_->getRoot()].push_back(i);
     }
     octree_ = std::make_unique<fcl::OcTreed>(cells_);
     octree_->computeLocalAABB();
   }
 
-  std::vector<Place> cell_of(const Place& p) const {
+  std::vector<Coordinates> cell_of(const Coordinates& p) const {
     const octomap::point3d centre = cells_->keyToCoord(cells_->coordToKey(p[0], p[1], p[2]));
-    std::vector<Place> corners(8);
+    std::vector<Coordinates> corners(8);
     for (int i = 0; i < 8; ++i)
       corners[static_cast<std::size_t>(i)] = {centre.x() + kCell_m * ((i & 1) - 0.5),
                                               centre.y() + kCell_m * ((i >> 1 & 1) - 0.5),
@@ -207,7 +209,7 @@ ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t 
   const auto collision = std::make_shared<Octree>(from);
   const double diagonal = std::sqrt(3.0) * kCell_m;
   ToolPeer peer{name, {}, diagonal, diagonal, max_contacts > 1, {}, {}};
-  for (const Place& p : from.points_W) peer.bodies_W.push_back(collision->cell_of(p));
+  for (const Coordinates& p : from.points_W) peer.bodies_W.push_back(collision->cell_of(p));
   const fcl::CollisionRequestd request(max_contacts, false);
   peer.touch = [=](const Pose& pose) { return collision->touch(pose, request); };
   peer.touched = [=] { return collision->touched(); };

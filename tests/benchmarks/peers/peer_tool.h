@@ -9,23 +9,23 @@
 
 namespace remote_touch::peers {
 
-using Place = std::array<double, 3>;  // metres
+using Coordinates = std::array<double, 3>;  // metres
 
 struct MeshAndPoints {
-  std::vector<Place> vertices;  // tool frame
+  std::vector<Coordinates> vertices;  // tool frame
   std::vector<std::array<int, 3>> triangles;
-  std::vector<Place> points_W, normals_W;
+  std::vector<Coordinates> points_W, normals_W;
 };
 
 struct Pose {
-  Place p_W;                   // origin of the tool frame
+  Coordinates p_W;             // origin of the tool frame
   std::array<double, 9> R_WT;  // row by row
 };
 
 // Other libraries have no points, only bodies, so each point gets a small body around it.
 struct ToolPeer {
   std::string name;
-  std::vector<std::vector<Place>> bodies_W;  // corners of the convex body of every point
+  std::vector<std::vector<Coordinates>> bodies_W;  // corners of the convex body of every point
   // Largest distance from the surface, outside and inside, of a point whose body is found.
   double max_outside_m, max_inside_m;
   bool all;  // false: the search ends at the first contact

@@ -35,21 +35,22 @@ constexpr double kPressed_m = 2e-3;
 constexpr double kSpacing_m = 2e-3, kDiskOfSpacing = 0.75;
 constexpr int kMinCrossing = 100;  // bodies in all poses; the comparison shows too little with fewer
 
-peers::Place place(const Vec3& p) {
+peers::Coordinates coordinates(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
 peers::Pose plain(const ToolPose& pose) {
   const Eigen::Matrix3d R = pose.q_WT.toRotationMatrix();
-  return {place(pose.p_W), {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)}};
+  return {coordinates(pose.p_W),
+          {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)}};
 }
 
 peers::MeshAndPoints plain(const ToolScene& scene) {
   peers::MeshAndPoints all{{}, scene.tool->mesh.triangles, {}, {}};
-  for (const Vec3& v : scene.tool->mesh.vertices) all.vertices.push_back(place(v));
+  for (const Vec3& v : scene.tool->mesh.vertices) all.vertices.push_back(coordinates(v));
   for (std::size_t i = 0; i < scene.cloud.size(); ++i) {
-    all.points_W.push_back(place(scene.cloud.point(i)));
-    all.normals_W.push_back(place(scene.cloud.normal(i)));
+    all.points_W.push_back(coordinates(scene.cloud.point(i)));
+    all.normals_W.push_back(coordinates(scene.cloud.normal(i)));
   }
   return all;
 }
@@ -71,9 +72,9 @@ class Surface {
     const double distance = std::sqrt(tree_.nearest(p_T, 0).squared_m2);
     return tree_.winding_number(p_T) > 0.5 ? -distance : distance;
   }
-  bool crosses(const ToolPose& pose, const std::vector<peers::Place>& corners_W) const {
+  bool crosses(const ToolPose& pose, const std::vector<peers::Coordinates>& corners_W) const {
     bool inside = false, outside = false;
-    for (const peers::Place& corner : corners_W) {
+    for (const peers::Coordinates& corner : corners_W) {
       const double d = signed_m(pose, {corner[0], corner[1], corner[2]});
       inside = inside || d < -kUndecided_m, outside = outside || d > kUndecided_m;
     }

@@ -78,9 +78,9 @@ inline Normal three_filters(const Rows& rows, int u) {
     const float dx = ray_x * dz + i * rows.step * z, dy = rows.ray_y * dz + j * rows.step * z;
     // A neighbour at the same depth gives no estimate of n_z. If all are at the same depth, the plane faces
     // the camera.
-    const bool tells = std::abs(dz) > 1e-7f;
-    nz[k] = tells ? -(nx * dx + ny * dy) / dz : -1e3f;
-    sum += tells ? nz[k] : 0, count += tells ? 1.0f : 0.0f;
+    const bool has_depth_step = std::abs(dz) > 1e-7f;
+    nz[k] = has_depth_step ? -(nx * dx + ny * dy) / dz : -1e3f;
+    sum += has_depth_step ? nz[k] : 0, count += has_depth_step ? 1.0f : 0.0f;
   }
   if constexpr (kMedian) return {nx, ny, median(nz)};
   return {nx, ny, count > 0 ? sum / count : -1e3f};

@@ -107,7 +107,7 @@ struct PlainChoice {
   struct Region {
     double gap;
     Vec3 n;
-    bool gone = false;
+    bool removed = false;
   };
   std::vector<Region> regions;
   std::size_t count = 0;  // number of regions that were not removed
@@ -119,17 +119,17 @@ struct PlainChoice {
   const Region* deepest() const {
     const Region* min = nullptr;
     for (const Region& region : regions)
-      if (!region.gone && (!min || region.gap < min->gap)) min = &region;
+      if (!region.removed && (!min || region.gap < min->gap)) min = &region;
     return min;
   }
   void keep(const Region& kept, double motion, double alike, double max) {
     for (Region& other : regions) {
-      if (other.gone) continue;
+      if (other.removed) continue;
       const double cosine = other.n.x() * kept.n.x() + (other.n.y() * kept.n.y() + other.n.z() * kept.n.z());
       const double rise = other.gap - kept.gap;
-      const bool stands = rise * rise >= motion * motion * (2 - 2 * cosine) && cosine >= alike;
-      other.gone = &other == &kept || stands || other.gap > max;
-      count -= other.gone ? 1 : 0;
+      const bool is_redundant = rise * rise >= motion * motion * (2 - 2 * cosine) && cosine >= alike;
+      other.removed = &other == &kept || is_redundant || other.gap > max;
+      count -= other.removed ? 1 : 0;
     }
   }
 };

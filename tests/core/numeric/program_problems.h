@@ -65,27 +65,27 @@ Problem<N> problem(Kind kind, int count, Random& random) {
   const Vector<N> wall = vector<N>(random).normalized();
   while (p.size() < count) {
     Vector<N> row = vector<N>(random);
-    double buffer = 0;
+    double slack = 0;
     switch (kind) {
       case Kind::fulfillable:
       case Kind::duplicates:
-        buffer = std::abs(normal(random));
+        slack = std::abs(normal(random));
         break;
       case Kind::any:
-        buffer = 1 + normal(random);
+        slack = 1 + normal(random);
         break;
       case Kind::wedge:
         row = (p.size() % 2 == 0 ? 1 : -1) * wall + angle * row;
-        buffer = 0.1 * angle * std::abs(normal(random));
+        slack = 0.1 * angle * std::abs(normal(random));
         break;
       case Kind::patch:
         row = contact<N>(random, curved);
-        buffer = 0.1 * std::abs(normal(random));
+        slack = 0.1 * std::abs(normal(random));
         break;
       default:
         break;
     }
-    p.add(row, row.dot(middle) - buffer);
+    p.add(row, row.dot(middle) - slack);
     if (kind == Kind::duplicates)
       p.add(row, p.bounds.back()), p.add(3 * row, 3 * p.bounds[p.bounds.size() - 2]);
     if (kind == Kind::equalities && p.size() < N) p.add(-row, -p.bounds.back());

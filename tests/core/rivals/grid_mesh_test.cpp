@@ -124,17 +124,17 @@ TEST(GridMesh, HasNoGapBetweenTriangles) {
 
 TEST(PlaneConstraints, AreObeyedForOneTwoAndThreePlanes) {
   PlaneConstraints planes(1e-12);
-  EXPECT_EQ(planes.nearest({1, 2, 3}).place, Vec3(1, 2, 3));
+  EXPECT_EQ(planes.nearest({1, 2, 3}).position, Vec3(1, 2, 3));
   EXPECT_EQ(planes.nearest({1, 2, 3}).active_planes, 0);
   planes.add(Vec3::UnitY(), {5, 1, 5}, 0.5);
-  EXPECT_EQ(planes.nearest({1, -2, 3}).place, Vec3(1, 1.5, 3));
+  EXPECT_EQ(planes.nearest({1, -2, 3}).position, Vec3(1, 1.5, 3));
   const Vec3 tilted = Vec3(-1, 1, 0).normalized();
   planes.add(tilted, {2, 1.5, 0}, 0);
-  EXPECT_NEAR((planes.nearest({2.5, -2, 3}).place - Vec3(2, 1.5, 3)).norm(), 0, 1e-12) << "the valley";
+  EXPECT_NEAR((planes.nearest({2.5, -2, 3}).position - Vec3(2, 1.5, 3)).norm(), 0, 1e-12) << "the valley";
   EXPECT_EQ(planes.nearest({2.5, -2, 3}).active_planes, 2);
   EXPECT_EQ(planes.nearest({0, -2, 3}).active_planes, 1);
   planes.add(Vec3::UnitZ(), {0, 0, 4}, 0);
-  EXPECT_NEAR((planes.nearest({2.5, -2, 3}).place - Vec3(2, 1.5, 4)).norm(), 0, 1e-12) << "the corner";
+  EXPECT_NEAR((planes.nearest({2.5, -2, 3}).position - Vec3(2, 1.5, 4)).norm(), 0, 1e-12) << "the corner";
   EXPECT_EQ(planes.nearest({2.5, -2, 3}).active_planes, 3);
 }
 
@@ -156,10 +156,10 @@ TEST(PlaneConstraints, IsNearestAmongThoseThatObey) {
     const auto obeys = [&](const Vec3& y, double slack) {
       return std::all_of(n.begin(), n.end(), [&](const Vec3& v) { return v.dot(y) >= -0.3 - slack; });
     };
-    EXPECT_TRUE(obeys(nearest.place, 1e-9));
+    EXPECT_TRUE(obeys(nearest.position, 1e-9));
     for (std::size_t i = 0; i < places.size(); ++i)
       if (obeys(places.point(i), 0)) {
-        EXPECT_GE((places.point(i) - goal).norm(), (nearest.place - goal).norm() - 1e-12);
+        EXPECT_GE((places.point(i) - goal).norm(), (nearest.position - goal).norm() - 1e-12);
       }
   }
 }

@@ -43,7 +43,7 @@ TEST(TrueMotion, IsNoneWhereItIsNotKnown) {
 
 // Height of the proxy above the plane at the end. The plane jumps at every frame by more than r_c, which no
 // estimate follows in time: (4.14).
-double end_height(bool tells) {
+double end_height(bool has_truth) {
   const auto height = [](double t) { return 3.0 * t * t; };
   OracleProxyRenderer r({}, 1000, scenes::kernels());
   double y = 0, last_s = 0;
@@ -51,7 +51,7 @@ double end_height(bool tells) {
     if (tick % 33 == 0) {
       last_s = tick / 33 / 30.0;
       Frame frame = scenes::frame(scenes::flat_grid(60, 0.0015, height(last_s)), tick / 33);
-      if (tells) frame.truth = truth([=](const Vec3& p, double t) { return p.y() - height(t); });
+      if (has_truth) frame.truth = truth([=](const Vec3& p, double t) { return p.y() - height(t); });
       r.on_frame(frame);
     }
     y = r.step({Vec3(0, tick < 10 ? 0.02 : height(last_s) - 0.02, 0)}, 0.001 * tick).proxy_W.y();

@@ -30,7 +30,7 @@ std::atomic<int> sent{0};  // the number of the newest frame; 0: none since the 
 std::atomic<bool> is_unplugged{false};
 
 // Returns the number after the word, 1 if the word has no number, and 0 if the word is missing.
-int told(const std::string& word) {
+int option(const std::string& word) {
   const char* variable = std::getenv("VIRTUAL_CAMERA");
   const std::string text = std::string(",") + (variable ? variable : "") + ",";
   const std::size_t at = text.find("," + word);
@@ -123,7 +123,7 @@ class Device : public oni::driver::DeviceBase {
   void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
 
   OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override {
-    return mode == ONI_IMAGE_REGISTRATION_OFF || !told("unregistered");
+    return mode == ONI_IMAGE_REGISTRATION_OFF || !option("unregistered");
   }
   OniBool isPropertySupported(int property) override {
     return property == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION;
@@ -168,7 +168,7 @@ class Device : public oni::driver::DeviceBase {
 // start.
 void Device::run() {
   using Clock = std::chrono::steady_clock;
-  const int stop_after = told("stop_after");
+  const int stop_after = option("stop_after");
   const auto period = std::chrono::nanoseconds(1'000'000'000 / kRate_hz);
   const auto start = Clock::now();
   const auto after = [&](int number) {
@@ -215,7 +215,7 @@ OniStatus Stream::getProperty(int property, void* data, int* size) {
 OniStatus Stream::setProperty(int property, const void* data, int) {
   if (property == ONI_STREAM_PROPERTY_VIDEO_MODE) {
     std::memcpy(&mode_, data, sizeof mode_);
-  } else if (property == ONI_STREAM_PROPERTY_MIRRORING && !told("stays_mirrored")) {
+  } else if (property == ONI_STREAM_PROPERTY_MIRRORING && !option("stays_mirrored")) {
     OniBool wanted = FALSE;
     std::memcpy(&wanted, data, sizeof wanted);
     is_mirrored_ = wanted;
@@ -241,7 +241,7 @@ void Stream::stop() {
 }
 
 void Stream::draw(int number, std::uint8_t* to) const {
-  const int flat = told("flat");
+  const int flat = option("flat");
   for (int v = 0; v < kHeight; ++v)
     for (int u = 0; u < kWidth; ++u, to += pixel_bytes()) {
       const int seen_u = is_mirrored_ ? kWidth - 1 - u : u;
@@ -259,7 +259,7 @@ void Stream::draw(int number, std::uint8_t* to) const {
 OniFrame* Stream::see(int number) {
   OniFrame* frame = getServices().acquireFrame();
   if (frame == nullptr) return nullptr;
-  const int small_after = told("small_after");
+  const int small_after = option("small_after");
   const int height = is_depth_ && small_after > 0 && number > small_after ? kHeight / 2 : kHeight;
   draw(number, static_cast<std::uint8_t*>(frame->data));
   frame->frameIndex = number;
@@ -286,7 +286,7 @@ class Driver : public oni::driver::DriverBase {
                        oni::driver::DeviceDisconnectedCallback disconnected,
                        oni::driver::DeviceStateChangedCallback changed, void* cookie) override {
     DriverBase::initialize(connected, disconnected, changed, cookie);
-    if (!told("absent")) deviceConnected(&info_);
+    if (!option("absent")) deviceConnected(&info_);
     return ONI_STATUS_OK;
   }
   oni::driver::DeviceBase* deviceOpen(const char*, const char*) override {

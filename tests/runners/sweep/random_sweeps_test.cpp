@@ -150,7 +150,7 @@ void expect_true(const RandomSweep& made, const Sweep& sweep) {
     const Plain configuration = Plain::parse(experiment.to_json());
     const Plain run = at_start(configuration, experiment);
     for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-      const Plain stated = stated_by(plan.axes[i], plan.place(cell)[i]);
+      const Plain stated = stated_by(plan.axes[i], plan.axis_indices(cell)[i]);
       EXPECT_TRUE(has(run, plan.axes[i].long_name, stated)) << made.text << " cell " << cell << " axis " << i;
     }
     const auto expect_kept = [&](const Statement& statement, const std::vector<std::string>& later) {

@@ -89,16 +89,16 @@ TEST(SweepRuns, DoNotDependOnThreads) {
 TEST(SweepRuns, OnlyPendingRunsAreDoneAndEachIsReportedOnce) {
   const Sweep sweep = quick();
   SweepResult result = sweep.plan({2, 3});
-  std::vector<int> told(result.run_count(), 0);
+  std::vector<int> reported(result.run_count(), 0);
   SweepRunOptions options;
   options.finished = [&](std::size_t run) {
     EXPECT_EQ(result.state[run], RunState::done);
-    ++told[run];
+    ++reported[run];
   };
   do_pending_runs(sweep, result, options);
-  for (std::size_t run = 0; run < told.size(); ++run) {
+  for (std::size_t run = 0; run < reported.size(); ++run) {
     const bool mine = result.cell_of(run) % 3 == 1;
-    EXPECT_EQ(told[run], mine ? 1 : 0);
+    EXPECT_EQ(reported[run], mine ? 1 : 0);
     EXPECT_EQ(result.state[run], mine ? RunState::done : RunState::elsewhere);
     EXPECT_EQ(std::isnan(result.measure("popped_through")[run]), !mine);
   }
@@ -114,11 +114,11 @@ TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
     omp_set_num_threads(threads);
     SweepResult result = sweep.plan();
     std::atomic<bool> stop{false};
-    std::size_t told = 0;
+    std::size_t reported = 0;
     SweepRunOptions options;
     options.stop = &stop;
     options.finished = [&](std::size_t) {
-      if (++told != 5) return;
+      if (++reported != 5) return;
       if (!by_signal) throw std::out_of_range("a full disk");
       stop = true;
     };
@@ -127,10 +127,10 @@ TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
     } else {
       EXPECT_THROW(do_pending_runs(sweep, result, options), std::out_of_range);
     }
-    EXPECT_GE(told, 5u);
-    EXPECT_LE(told, threads == 1 ? 5u : by_signal ? 6u : 24u);
-    EXPECT_EQ(result.runs_in(RunState::done).size(), told);
-    EXPECT_EQ(result.runs_in(RunState::pending).size(), 24 - told);
+    EXPECT_GE(reported, 5u);
+    EXPECT_LE(reported, threads == 1 ? 5u : by_signal ? 6u : 24u);
+    EXPECT_EQ(result.runs_in(RunState::done).size(), reported);
+    EXPECT_EQ(result.runs_in(RunState::pending).size(), 24 - reported);
   }
 }
 
@@ -198,8 +198,8 @@ TEST(Refinement, KeepsItsBudgetAndNumbersItsRounds) {
     EXPECT_EQ(result.round[run] >= 0, result.state[run] == RunState::done);
     last = std::max(last, result.round[run]);
     // The first round has every fourth value and two replicates.
-    const auto place = result.place(result.cell_of(run));
-    const bool is_first = place[0] % 4 == 0 && place[1] % 4 == 0 && result.replicate_of(run) < 2;
+    const auto indices = result.axis_indices(result.cell_of(run));
+    const bool is_first = indices[0] % 4 == 0 && indices[1] % 4 == 0 && result.replicate_of(run) < 2;
     EXPECT_EQ(result.round[run] == 0, is_first);
   }
   EXPECT_GE(last, 2);
@@ -215,10 +215,10 @@ TEST(Refinement, AnInterruptedRefinementGivesTheSameResult) {
   int ends = 0;
   do {
     while (!result.runs_in(RunState::pending).empty()) {
-      int told = 0;
+      int reported = 0;
       SweepRunOptions options;
       options.finished = [&](std::size_t) {
-        if (++told == 3) throw std::out_of_range("enough");
+        if (++reported == 3) throw std::out_of_range("enough");
       };
       try {
         do_pending_runs(sweep, result, options);

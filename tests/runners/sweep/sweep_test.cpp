@@ -113,7 +113,7 @@ TEST(Sweeps, ACellIsTheExperimentWithItsValues) {
       Json run = Json::parse(sweep.experiment(cell, replicate).to_json());
       run["title"] = plain["title"];  // see Titles
       EXPECT_EQ(run, plain);
-      EXPECT_EQ(sweep.plan().cell_at(sweep.plan().place(cell)), cell);
+      EXPECT_EQ(sweep.plan().cell_at(sweep.plan().axis_indices(cell)), cell);
     }
 }
 
@@ -278,7 +278,7 @@ TEST(Refinement, HasItsRuleAndFirstRound) {
   const SweepResult plan = sweep.plan();
   EXPECT_EQ(plan.run_count(), 9u * 2 * 9);
   for (std::size_t run = 0; run < plan.run_count(); ++run) {
-    const bool is_first = plan.place(plan.cell_of(run))[0] % 4 == 0 && plan.replicate_of(run) < 2;
+    const bool is_first = plan.axis_indices(plan.cell_of(run))[0] % 4 == 0 && plan.replicate_of(run) < 2;
     EXPECT_EQ(plan.state[run], is_first ? RunState::pending : RunState::not_sampled);
     EXPECT_EQ(plan.round[run], is_first ? 0 : -1);
   }

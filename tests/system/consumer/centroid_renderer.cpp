@@ -33,7 +33,7 @@ CentroidRenderer::CentroidRenderer(const Settings& settings, double, const Kerne
     : settings_(settings), kernels_(kernels) {}
 
 void CentroidRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   points_ = frame.points;
   near_.reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
 }

@@ -8,6 +8,6 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   remote_touch::Catalog own;
   lab::add_entries(own);
-  remote_touch::contract_tests(own);
+  remote_touch::register_contract_tests(own);
   return RUN_ALL_TESTS();
 }

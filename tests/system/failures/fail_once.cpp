@@ -95,7 +95,7 @@ bool is_below(int file) {
 }
 }  // namespace
 
-void read_wish(const char* text) {
+void read_failing_call(const char* text) {
   for (int kind = 0; kind < kKindCount; ++kind) {
     const std::size_t size = std::strlen(kKinds[kind]);
     if (std::strncmp(text, kKinds[kind], size) == 0 && text[size] == ':') {
@@ -143,7 +143,12 @@ __attribute__((constructor)) void prepare() {
     const int shared = next<int(const char*, int, ...)>("open")(file, O_RDWR | O_CLOEXEC);
     void* const there =
         shared < 0 ? MAP_FAILED : ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, shared, 0);
-    if (there != MAP_FAILED) this_process.counts = static_cast<Counts*>(there);
+    // Without the shared counts the test would find that no call failed, and pass.
+    if (there == MAP_FAILED) {
+      std::fprintf(stderr, "fail_once: %s cannot be mapped\n", file);
+      ::_exit(125);
+    }
+    this_process.counts = static_cast<Counts*>(there);
   }
   const std::uint64_t process = __atomic_add_fetch(&this_process.counts->processes, 1, __ATOMIC_RELAXED);
   if (const char* only = std::getenv("FAIL_ONCE_PROCESS"))
@@ -159,7 +164,7 @@ __attribute__((constructor)) void prepare() {
     new_sites =
         next<int(const char*, int, ...)>("open")(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   }
-  if (const char* wish = std::getenv("FAIL_ONCE")) read_wish(wish);
+  if (const char* failing_call = std::getenv("FAIL_ONCE")) read_failing_call(failing_call);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct Process {
 extern Process this_process;
 
 // Reads which call is to fail, KIND:N:HOW.
-void read_wish(const char* text);
+void read_failing_call(const char* text);
 // Counts the files below PLACE + below from now on.
 void count_below(const char* place, const char* below);
 

@@ -11,9 +11,9 @@
 
 namespace {
 
-bool read_line(char* line, std::size_t room) {
+bool read_line(char* line, std::size_t capacity) {
   std::size_t size = 0;
-  while (size + 1 < room && ::read(STDIN_FILENO, line + size, 1) == 1 && line[size] != '\n') ++size;
+  while (size + 1 < capacity && ::read(STDIN_FILENO, line + size, 1) == 1 && line[size] != '\n') ++size;
   const bool whole = line[size] == '\n';
   line[size] = '\0';
   return whole;
@@ -33,7 +33,7 @@ void set_below(const char* name, const char* place, const char* below) {
 }
 
 // Runs in the copy of the program.
-void take_request(const char* wish, const char* process, const char* place) {
+void take_request(const char* failing_call, const char* process, const char* place) {
   redirect(STDIN_FILENO, "/dev/null", "", O_RDONLY);
   redirect(STDOUT_FILENO, place, "/out", O_WRONLY | O_CREAT | O_TRUNC);
   redirect(STDERR_FILENO, place, "/err", O_WRONLY | O_CREAT | O_TRUNC);
@@ -41,12 +41,12 @@ void take_request(const char* wish, const char* process, const char* place) {
   set_below("TMPDIR", place, "/made/tmp");
   set_below("REMOTE_TOUCH_CACHE", place, "/made/cache");
   ::unsetenv("FAIL_ONCE_SERVER");
-  ::setenv("FAIL_ONCE", wish, 1);
+  ::setenv("FAIL_ONCE", failing_call, 1);
   if (std::strcmp(process, "0") != 0) ::setenv("FAIL_ONCE_PROCESS", process, 1);
   count_below(place, "/made");
   if (::chdir(std::getenv("FAIL_ONCE_BELOW")) != 0) ::_exit(125);
   this_process.is_chosen = std::strcmp(process, "0") == 0 || std::strcmp(process, "1") == 0;
-  read_wish(wish);
+  read_failing_call(failing_call);
   ::alarm(600);  // it ends a copy that hangs
   this_process.is_running = true;
 }
@@ -61,12 +61,12 @@ int serve(Main* own_main, int argc, char** argv, char** environment) {
   const auto answer = next<ssize_t(int, const void*, std::size_t)>("write");
   answer(STDOUT_FILENO, line, std::strlen(line));
   while (read_line(line, sizeof line)) {
-    char wish[64], process[16], place[4096];
-    if (std::sscanf(line, "%63s %15s %4095s", wish, process, place) != 3) return 125;
+    char failing_call[64], process[16], place[4096];
+    if (std::sscanf(line, "%63s %15s %4095s", failing_call, process, place) != 3) return 125;
     *this_process.counts = begun;
     const pid_t copy = ::fork();
     if (copy == 0) {
-      take_request(wish, process, place);
+      take_request(failing_call, process, place);
       return own_main(argc, argv, environment);
     }
     int status = 0;

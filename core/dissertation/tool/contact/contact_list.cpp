@@ -40,7 +40,7 @@ void ContactList::reserve(std::size_t padded_size) {
   if (p_.contact_rule == TouchRule::continuous) points_.reserve(padded_size);
   contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
   cells_.reserve(padded_size);
-  nearest_.reserve(ContactThinning::kMaxCells);
+  nearest_.reserve(ContactThinning::kSlots);
   chosen_.reserve(padded_size);
 }
 

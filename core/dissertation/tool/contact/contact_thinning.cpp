@@ -32,7 +32,7 @@ std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double c
 // other keys.
 ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   std::size_t at = first_slot(key);
-  for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kMaxCells)
+  for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kSlots)
     if (slots_[at].stamp != stamp_ || slots_[at].key == key) return &slots_[at];
   return nullptr;
 }

@@ -14,10 +14,10 @@ class ContactThinning {
  public:
   // Size of the table of cells: far more cells than a hand-sized tool has within reach of a surface. A cell
   // for which the table has no room has the number kNoCell.
-  static constexpr std::size_t kMaxCells = 4096;  // a power of two
+  static constexpr std::size_t kSlots = 4096;  // a power of two
   static constexpr std::size_t kNoCell = ~std::size_t{0};
 
-  ContactThinning() : slots_(kMaxCells) {}
+  ContactThinning() : slots_(kSlots) {}
 
   void begin();
   // Returns the number of a cell. Cells are numbered 0, 1, 2 ... in the order in which they occur after

@@ -7,26 +7,26 @@ namespace remote_touch {
 
 namespace {
 
-using disk_search::kBlindGradient;
 using disk_search::kCuts;
+using disk_search::kEdgeOnSine;
 using disk_search::kFlatSlope;
-using disk_search::kGrazing;
 using disk_search::kLines;
+using disk_search::kMinGradient;
 using disk_search::kStep_m;
 
 Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
   return at.gradient_T - at.gradient_T.dot(disk.n_T) * disk.n_T;
 }
 
-// Moves `place` down the field in the plane of the disk, to the lowest position on a line that begins there.
-// Returns true if the position moved. The field of a convex tool is convex along a line, and over an edge it
-// is nearly a pair of straight lines. So the intersection of the tangents at the two ends is a better end
-// (Kelley's cutting planes).
-bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
-  const Vec3 along = slope_in_plane(disk, place.at);
+// Moves `position` down the field in the plane of the disk, to the lowest position on a line that begins
+// there. Returns true if the position moved. The field of a convex tool is convex along a line, and over an
+// edge it is nearly a pair of straight lines. So the intersection of the tangents at the two ends is a better
+// end (Kelley's cutting planes).
+bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPosition& position) {
+  const Vec3 along = slope_in_plane(disk, position.at);
   const double steep = along.norm();
   if (is_flat(steep, disk.radius_m, disk.extent_m)) return false;
-  const Vec3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
+  const Vec3 start_T = position.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
   // The rim is at |offset + t direction| = radius.
   const double ahead = offset.dot(direction_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
   struct End {
@@ -38,9 +38,9 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
     const FieldSample at = sample_field(tool, start_T + t * direction_T);
     return End{t, at, at.gradient_T.dot(direction_T)};
   };
-  End low{0, place.at, -steep}, high = end(std::sqrt(std::max(0.0, ahead * ahead + inside)) - ahead);
-  place.at_rim = high.slope < -kFlatSlope && high.at.distance_m < low.at.distance_m;
-  for (int cut = 0; cut < kCuts && !place.at_rim && high.slope - low.slope > kFlatSlope; ++cut) {
+  End low{0, position.at, -steep}, high = end(std::sqrt(std::max(0.0, ahead * ahead + inside)) - ahead);
+  position.at_rim = high.slope < -kFlatSlope && high.at.distance_m < low.at.distance_m;
+  for (int cut = 0; cut < kCuts && !position.at_rim && high.slope - low.slope > kFlatSlope; ++cut) {
     const double meet = (low.at.distance_m - high.at.distance_m + high.slope * high.t - low.slope * low.t) /
                         (high.slope - low.slope);
     if (!(meet > low.t && meet < high.t)) break;
@@ -48,13 +48,13 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
     (between.slope < 0 ? low : high) = between;
   }
   const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
-  place.p_T = start_T + best.t * direction_T;
-  place.at = best.at;
+  position.p_T = start_T + best.t * direction_T;
+  position.at = best.at;
   // The gradients on both sides of an edge are combined into one that has no slope along the line. Only this
   // combination gives the side of a disk that meets the edge at a grazing angle.
-  if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
+  if (!position.at_rim && low.slope < 0 && high.slope > low.slope) {
     const double fraction = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
-    place.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
+    position.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
   }
   return best.t > 0;
 }
@@ -63,12 +63,12 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
 // is not clear. Disks beside such a tool lie in the plane of its face. Their contacts would otherwise act as
 // walls against the tool's sides. If the field rises over a step of kStep_m to one side of the plane, the
 // tool is not on that side.
-double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place) {
-  const auto leaves = [&](double side) {
-    const Vec3 beyond = place.p_T - side * kStep_m * disk.n_T;
-    return sample_field(tool, beyond).distance_m - place.at.distance_m > 0.5 * kStep_m;
+double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPosition& position) {
+  const auto rises_beyond = [&](double side) {
+    const Vec3 beyond = position.p_T - side * kStep_m * disk.n_T;
+    return sample_field(tool, beyond).distance_m - position.at.distance_m > 0.5 * kStep_m;
   };
-  const bool front = leaves(1), back = leaves(-1);
+  const bool front = rises_beyond(1), back = rises_beyond(-1);
   return front == back ? 0 : front ? 1 : -1;
 }
 
@@ -76,20 +76,21 @@ double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskP
 // for the other; 0 if the disk meets the tool edge-on.
 double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
   const double facing = -at.gradient_T.dot(disk.n_T);
-  if (std::abs(facing) <= kGrazing * steep) return 0;
+  if (std::abs(facing) <= kEdgeOnSine * steep) return 0;
   return facing < 0 ? -1 : 1;
 }
 
 // Returns the side of the disk on which the tool is. It is known_side if the position is in the tool and the
 // side is known, else facing_side().
-double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
-  if (place.at.distance_m < 0 && known_side != 0) return known_side;
-  const double steep = place.at.gradient_T.norm();
+double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPosition& position,
+               double known_side) {
+  if (position.at.distance_m < 0 && known_side != 0) return known_side;
+  const double steep = position.at.gradient_T.norm();
   // A short gradient deep inside the tool belongs to a ridge of the field, where the side cannot be
   // determined; +1 is assumed. The depth is checked because the gradient is also short at a corner of the
   // tool.
-  if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
-  return facing_side(disk, place.at, steep);
+  if (position.at.distance_m < -tool.grid.size_m && steep < kMinGradient) return 1;
+  return facing_side(disk, position.at, steep);
 }
 
 // Returns the unit direction in which the tool leaves the position soonest; +y if the field is flat there.
@@ -104,14 +105,14 @@ double lower_bound_m(const SurfaceDisk& disk) {
   return disk.at.distance_m - disk.radius_m * slope_in_plane(disk, disk.at).norm();
 }
 
-DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk) {
-  DiskPlace place{disk.p_T, disk.at};
-  if (!disk.has_normal() || !(disk.radius_m > 0)) return place;
-  for (int line = 0; line < kLines && slide(tool, disk, place) && !place.at_rim; ++line) continue;
-  return place;
+DiskPosition nearest_position(const VoxelTool& tool, const SurfaceDisk& disk) {
+  DiskPosition position{disk.p_T, disk.at};
+  if (!disk.has_normal() || !(disk.radius_m > 0)) return position;
+  for (int line = 0; line < kLines && slide(tool, disk, position) && !position.at_rim; ++line) continue;
+  return position;
 }
 
-ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPosition& nearest,
                          double known_side) {
   double side = disk.has_normal() ? side_of(tool, disk, nearest, known_side) : 0;
   const bool known = nearest.at.distance_m < 0 && known_side != 0;

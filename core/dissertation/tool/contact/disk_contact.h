@@ -28,14 +28,14 @@ inline bool is_flat(double slope, double radius_m, double extent_m) {
 // the centre.
 double lower_bound_m(const SurfaceDisk& disk);
 
-struct DiskPlace {
+struct DiskPosition {
   Vec3 p_T;
   FieldSample at;
   bool at_rim = false;
 };
 
 // Returns the position on the disk that is nearest to the tool, or deepest in it.
-DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
+DiskPosition nearest_position(const VoxelTool& tool, const SurfaceDisk& disk);
 
 // Returns the constraint of a disk at its nearest position; its distance is the field there. If that position
 // lies within the disk, n is the disk's normal, on the side that the field gives. n comes from the tool's
@@ -43,7 +43,7 @@ DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
 // is flush with the disk, n is the disk's normal again. known_side is +1 or -1 of the normal; 0: not known.
 // If the position is inside the tool, known_side overrides the field and the rim, because a frame can put
 // points anywhere in the tool, and the field does not show from which side they came.
-ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPosition& nearest,
                          double known_side);
 // Returns the constraint of a disk that is too far from the tool to be worth a search: at its centre, with
 // its lower bound as distance. pre: the bound is above 0.

@@ -59,9 +59,9 @@ class Cubes {
 
 // Returns the disk in the middle of the points; nullopt if they are not flat, or if their spacing is not
 // known.
-std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
+std::optional<PointOrDisk> flat_disk(std::span<const CloudPoint> points) {
   const double spacing_m = points[0].spacing_m;
-  MergedPoint disk{Vec3::Zero(), Vec3::Zero(), spacing_m, 0};
+  PointOrDisk disk{Vec3::Zero(), Vec3::Zero(), spacing_m, 0};
   for (const CloudPoint& point : points) disk.p_W += point.p_W, disk.n_W += point.n_W;
   const double length = disk.n_W.norm(), count = static_cast<double>(points.size());
   if (points.size() < 2 || !(spacing_m > 0)) return {};  // 0: not known
@@ -75,7 +75,7 @@ std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
   return disk;
 }
 
-bool is_covered(const MergedPoint& disk, const Cubes& cubes) {
+bool is_covered(const PointOrDisk& disk, const Cubes& cubes) {
   const double squares = std::floor(2 * disk.extent_m / (kSquare * disk.spacing_m));
   if (squares > kMaxSquares) return false;
   const int side = std::max(static_cast<int>(squares), 1);
@@ -101,15 +101,15 @@ bool is_covered(const MergedPoint& disk, const Cubes& cubes) {
 
 }  // namespace
 
-std::vector<MergedPoint> merged_points(std::span<const CloudPoint> points, double cube_m) {
+std::vector<PointOrDisk> merged_points(std::span<const CloudPoint> points, double cube_m) {
   std::vector<double> spacing_m;
   for (const CloudPoint& point : points) spacing_m.push_back(point.spacing_m);
   if (spacing_m.empty() || !(median_in_place(spacing_m) <= kMaxMergedSpacing_m)) return {};
   const Cubes cubes(points, cube_m);
-  std::vector<MergedPoint> merged;
+  std::vector<PointOrDisk> merged;
   for (std::size_t first = 0; first < cubes.size();) {
     const std::span<const CloudPoint> cube = cubes.from(first);
-    const std::optional<MergedPoint> disk = flat_disk(cube);
+    const std::optional<PointOrDisk> disk = flat_disk(cube);
     if (disk && is_covered(*disk, cubes))
       merged.push_back(*disk);
     else

@@ -21,7 +21,7 @@ struct CloudPoint {
 // - the cloud covers it: every square of a grid within extent_m of the middle contains a point of this or a
 //   neighbouring cube, so that the disk does not reach beyond an edge or over a hole. The squares are 1.5
 //   spacings wide or somewhat wider. Points that would need more than 32 squares along a side are not merged.
-struct MergedPoint {
+struct PointOrDisk {
   Vec3 p_W, n_W;
   double spacing_m, extent_m;
 };
@@ -31,6 +31,6 @@ inline constexpr double kFlat_m = 5e-6;
 inline constexpr double kMaxMergedSpacing_m = 6e-4;
 
 // Returns an empty list if merging would not save half of the points. pre: cube_m > 0.
-std::vector<MergedPoint> merged_points(std::span<const CloudPoint> points, double cube_m);
+std::vector<PointOrDisk> merged_points(std::span<const CloudPoint> points, double cube_m);
 
 }  // namespace remote_touch

@@ -74,7 +74,8 @@ void NearDisks::append_contacts(std::span<const std::uint32_t> numbers, const To
     const ContactNumbers& made = contacts_[k];
     if (std::isnan(made.depth)) {  // the search has left the grid
       const SurfaceDisk outside = disk(numbers[k]);
-      contacts.push_back(near_contact(finder.tool(), outside, nearest_place(finder.tool(), outside), side));
+      contacts.push_back(
+          near_contact(finder.tool(), outside, nearest_position(finder.tool(), outside), side));
     } else {
       contacts.push_back({Vec3(made.r_T), Vec3(made.n_T), made.depth, made.side});
     }

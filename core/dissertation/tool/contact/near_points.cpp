@@ -7,7 +7,7 @@
 namespace remote_touch {
 
 void NearPoints::reserve(std::size_t padded_size) {
-  groups_.reserve(padded_size), places_.grow(padded_size + kLanes);
+  groups_.reserve(padded_size), points_.grow(padded_size + kLanes);
   count_ = 0;
 }
 
@@ -18,7 +18,7 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
   count_ = kernels.tool.points_in_field(
       finder.cloud().columns(), groups.group, groups.count, posed_field(finder.tool(), pose),
       {reach_m, groups.passed_m}, groups.nearest_m, groups.is_new,
-      {{places_[kX], places_[kY], places_[kZ]}, places_[kDistance], places_[kNumber]}, outside_count);
+      {{points_[kX], points_[kY], points_[kZ]}, points_[kDistance], points_[kNumber]}, outside_count);
   groups_.on_measured();
   if (outside_count > 0) finish_outside(finder.tool(), reach_m);
 }
@@ -28,9 +28,9 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
 void NearPoints::finish_outside(const VoxelTool& tool, double reach_m) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (std::isnan(distance_m(i))) places_[kDistance][i] = sample_field(tool, p_T(i)).distance_m;
+    if (std::isnan(distance_m(i))) points_[kDistance][i] = sample_field(tool, p_T(i)).distance_m;
     if (distance_m(i) > reach_m) continue;
-    for (std::size_t column = 0; column < kColumns; ++column) places_[column][kept] = places_[column][i];
+    for (std::size_t column = 0; column < kColumns; ++column) points_[column][kept] = points_[column][i];
     ++kept;
   }
   count_ = kept;

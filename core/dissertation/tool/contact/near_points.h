@@ -16,16 +16,16 @@ class NearPoints {
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }
-  Vec3 p_T(std::size_t i) const { return {places_[kX][i], places_[kY][i], places_[kZ][i]}; }
-  double distance_m(std::size_t i) const { return places_[kDistance][i]; }  // the field there
-  std::uint32_t number(std::size_t i) const { return static_cast<std::uint32_t>(places_[kNumber][i]); }
+  Vec3 p_T(std::size_t i) const { return {points_[kX][i], points_[kY][i], points_[kZ][i]}; }
+  double distance_m(std::size_t i) const { return points_[kDistance][i]; }  // the field there
+  std::uint32_t number(std::size_t i) const { return static_cast<std::uint32_t>(points_[kNumber][i]); }
 
  private:
   enum Column { kX, kY, kZ, kDistance, kNumber, kColumns };
   void finish_outside(const VoxelTool& tool, double reach_m);
 
   KeptGroups groups_;
-  ColumnBlock<kColumns> places_;
+  ColumnBlock<kColumns> points_;
   std::size_t count_ = 0;
 };
 

@@ -108,7 +108,7 @@ void TiledCloud::change_tile(const TiledCloud& all, const Tile& tile, const Poin
   for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
     if (all.x_[i] == kFarAway) continue;
     PointChange::Point point{all.point(i), all.normal(i), all.spacing_m(i)};
-    if (change.show(point)) add_point(point);
+    if (change.apply(point)) add_point(point);
   }
   finish_tile(first);
 }
@@ -222,21 +222,21 @@ void TiledCloud::merge(double cube_m) {
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});
-  const std::vector<MergedPoint> fewer = merged_points(points, cube_m);
+  const std::vector<PointOrDisk> fewer = merged_points(points, cube_m);
   if (fewer.empty()) return;
   merged_ = std::make_unique<TiledCloud>();
   merged_->assign_merged(fewer);
 }
 
-void TiledCloud::assign_merged(std::span<const MergedPoint> points) {
+void TiledCloud::assign_merged(std::span<const PointOrDisk> points) {
   clear();
   PointCloud cloud;
-  for (const MergedPoint& point : points) cloud.append(point.p_W, point.n_W);
+  for (const PointOrDisk& point : points) cloud.append(point.p_W, point.n_W);
   const std::vector<std::uint32_t> order = morton_order(cloud);
   for (std::size_t i = 0; i < order.size(); i += kTilePoints) {
     const auto first = static_cast<std::uint32_t>(x_.size());
     for (std::size_t k = i; k < std::min<std::size_t>(i + kTilePoints, order.size()); ++k) {
-      const MergedPoint& point = points[order[k]];
+      const PointOrDisk& point = points[order[k]];
       add_point({point.p_W, point.n_W, point.spacing_m});
       extent_m_.push_back(point.extent_m);
     }

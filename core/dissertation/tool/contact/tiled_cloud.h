@@ -46,7 +46,7 @@ class PointChange {
   // Returns true if it can change or remove points in this sphere.
   virtual bool concerns(const BoundingSphere& sphere) const = 0;
   // Changes a point. Returns false if the point is to be left out.
-  virtual bool show(Point& point) const = 0;
+  virtual bool apply(Point& point) const = 0;
 };
 
 class TiledCloud {
@@ -91,7 +91,7 @@ class TiledCloud {
   double max_extent_m() const { return max_extent_m_; }
   // Returns the cloud of fewer points that represent all, merged_points(); null if there is none.
   const TiledCloud* merged() const { return merged_.get(); }
-  int without_normal() const { return without_normal_; }
+  int count_without_normal() const { return without_normal_; }
 
  private:
   void add_tile(const PointCloud& cloud, std::span<const std::uint32_t> points);
@@ -107,7 +107,7 @@ class TiledCloud {
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);
   void merge(double cube_m);
-  void assign_merged(std::span<const MergedPoint> points);
+  void assign_merged(std::span<const PointOrDisk> points);
 
   std::vector<TileBlock> blocks_;
   std::vector<Tile> tiles_;

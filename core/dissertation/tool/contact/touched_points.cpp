@@ -57,7 +57,7 @@ void TouchedPoints::add_unclear(const TouchFinder& finder, const ToolPose& pose,
     all.nearest_distance_m = std::min(all.nearest_distance_m, distance_m);
     const Voxel voxel = distance_m <= limits.voxels ? finder.voxel(p_T) : Voxel::free;
     const bool is_touched =
-        lower_bound_m(disk) <= limits.touch && nearest_place(tool, disk).at.distance_m <= limits.touch;
+        lower_bound_m(disk) <= limits.touch && nearest_position(tool, disk).at.distance_m <= limits.touch;
     if (voxel == Voxel::free && !is_touched) continue;
     all.state =
         std::max(all.state, voxel == Voxel::interior ? ContactState::entrenched : ContactState::contact);

@@ -101,7 +101,7 @@ ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const
     loosened.active[kept] = loosened.active[i], loosened.multiplier[kept++] = loosened.multiplier[i];
   }
   ConstrainedMotion motion = read(loosened.y.head<6>(), kept, loosened.active, loosened.multiplier, contacts);
-  motion.elastic = true;
+  motion.is_relaxed = true;
   const bool has_motion = loosened.status == ProgramStatus::optimal && motion.a_g.allFinite();
   if (!has_motion) motion.a_g.setZero();
   motion.failed = !has_motion || result.status == ProgramStatus::stalled;

@@ -28,7 +28,7 @@ struct ConstrainedMotion {
   int active_count = 0;           // contacts that push: their multipliers are above 0
   Vec3 push_T = Vec3::Zero();     // sum of their multipliers times normals
   double side = 0;                // sum of their multipliers times sides
-  bool elastic = false;           // not all constraints could be met; all were relaxed by the same slack
+  bool is_relaxed = false;        // not all constraints could be met; all were relaxed by the same slack
   bool failed = false;            // a program stopped without a result: a_g may not be the nearest motion
 };
 

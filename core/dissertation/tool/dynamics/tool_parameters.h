@@ -13,7 +13,7 @@ namespace remote_touch {
 enum class TouchRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // torque of (6.9)
 enum class MotionMetric { tool, coupling };           // M of (6.4)
-enum class ToolForce { minus, plus, none };           // sign of the velocity term of (4.15), for a tool
+enum class ToolVelocityForce { minus, plus, none };   // sign of the velocity term of (4.15), for a tool
 enum class ToolCommand { tool, hip };                 // pose that the slave robot follows, 5.2
 
 struct ToolParameters {
@@ -37,7 +37,7 @@ struct ToolParameters {
   MotionMetric motion_metric = MotionMetric::tool;
   bool velocity_estimate = false;  // not in the dissertation
   double max_prediction_s = 0.1;
-  ToolForce velocity_force = ToolForce::minus;
+  ToolVelocityForce velocity_force = ToolVelocityForce::minus;
   ToolCommand slave_command = ToolCommand::tool;
 };
 

@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kNowhere_m = -1;
+constexpr double kNotFound_m = -1;
 
 // Returns the maximum number of steps out. It leaves detections for a check of the other direction, the way
 // back and the motion itself.
@@ -40,8 +40,8 @@ bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& po
                      [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
 }
 
-// Moves the pose out to the first position that is supported. Returns the distance, or kNowhere_m if there is
-// none.
+// Moves the pose out to the first position that is supported. Returns the distance, or kNotFound_m if there
+// is none.
 double ContinuousMotion::leave(ToolPose& pose, int& detections) {
   for (double done_m = 0;;) {
     const NearContacts near = near_.near(pose, 0);
@@ -49,7 +49,7 @@ double ContinuousMotion::leave(ToolPose& pose, int& detections) {
     if (is_supported(near, pose)) return done_m;
     const double step_m = std::min(step_m_, frame_reach_m_ - done_m);
     const Vector6 a_g = translation(step_m * push_W_);
-    if (!(step_m > 0) || near_.fraction_ahead(pose, a_g, motion_.side()) < 1) return kNowhere_m;
+    if (!(step_m > 0) || near_.fraction_ahead(pose, a_g, motion_.side()) < 1) return kNotFound_m;
     pose = moved(pose, a_g);
     done_m += step_m;
   }

@@ -70,7 +70,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   if (touched_.empty()) return a_gu;
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
-  if (motion.elastic) {  // two walls leave no room for the gap; J a >= 0 is always feasible, with a = 0
+  if (motion.is_relaxed) {  // two walls leave no room for the gap; J a >= 0 is always feasible, with a = 0
     for (ToolContact& contact : touched_) contact.depth_m = 0;
     motion = program_.solve(desired_T, touched_);
   }

@@ -33,13 +33,13 @@ Vec3 touched_direction(const NearContacts& near) {
 // also be as long as the deepest position is deep. No position is jumped over: everything within that
 // distance of the deepest position is tool, so this position stays in the tool or comes to its surface. If
 // the step runs into something beyond the look-ahead, the next detection finds it.
-Vector6 LookAheadMotion::step_of(const LookAheadProgram::Look& look, const ToolPose& pose,
+Vector6 LookAheadMotion::step_of(const LookAheadProgram::Detection& detection, const ToolPose& pose,
                                  ToolMotionReport& report) {
-  report.active_count = look.motion.active_count;
-  report.push_W = pose.q_WT * look.motion.push_T;
-  if (look.near.contacts.empty()) return look.a_g;
-  if (!settling_ && look.motion.side != 0) side_ = look.motion.side > 0 ? 1 : -1;
-  return capped(look.a_g, reach_m_, std::max(p_.max_step_m, settling_ ? look.near.deepest_m : 0));
+  report.active_count = detection.motion.active_count;
+  report.push_W = pose.q_WT * detection.motion.push_T;
+  if (detection.near.contacts.empty()) return detection.a_g;
+  if (!settling_ && detection.motion.side != 0) side_ = detection.motion.side > 0 ? 1 : -1;
+  return capped(detection.a_g, reach_m_, std::max(p_.max_step_m, settling_ ? detection.near.deepest_m : 0));
 }
 
 ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, NearContactSource& source,
@@ -54,8 +54,8 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   int stopped = 0;  // successive detections after which the tool could not move
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
-    const LookAheadProgram::Look look = program_.look(pose, a_gu, source, settling_ ? side_ : 0);
-    const NearContacts& near = look.near;
+    const LookAheadProgram::Detection detection = program_.detect(pose, a_gu, source, settling_ ? side_ : 0);
+    const NearContacts& near = detection.near;
     ++report.detections;
     if (near.deepest_m <= kCollision_m) settling_ = false;
     if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
@@ -73,12 +73,12 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
       report.at_rest = true;
       return report;
     }
-    const Vector6 a_g = step_of(look, pose, report);
+    const Vector6 a_g = step_of(detection, pose, report);
     progress.update(remaining_m);
     const bool stops = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
                        (near.deepest_m <= kCollision_m && progress.has_ended()) ||
                        stopped >= kLookAheadPatience;
-    report.at_rest = stops && !look.motion.failed;
+    report.at_rest = stops && !detection.motion.failed;
     if (stops || report.detections >= p_.detections_per_tick) break;
     // Points that a frame put into the tool do not stop it in this tick, because it has to leave them first.
     const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);

@@ -22,7 +22,8 @@ class LookAheadMotion {
   double side() const { return side_; }
 
  private:
-  Vector6 step_of(const LookAheadProgram::Look& look, const ToolPose& pose, ToolMotionReport& report);
+  Vector6 step_of(const LookAheadProgram::Detection& detection, const ToolPose& pose,
+                  ToolMotionReport& report);
 
   const ToolParameters p_;
   const double reach_m_;

@@ -1,4 +1,4 @@
-// One detection of the look-ahead rule, a "look": the contacts of a pose, and the motion that they allow.
+// One detection of the look-ahead rule: the contacts of a pose, and the motion that they allow.
 //
 // A contact cannot limit a motion that moves every point of the tool by less than the distance of the
 // contact. So the nearest contacts are queried first, and farther ones only if the motion is longer. The
@@ -16,7 +16,7 @@ class LookAheadProgram {
   static constexpr double kCollision_m = 1e-4;
   static constexpr double kMinFirst_m = 1.5e-4;  // smallest distance that is queried
 
-  struct Look {
+  struct Detection {
     // All contacts nearer than kMinFirst_m, and farther ones up to the distance that was queried. Empty: no
     // contact is within the look-ahead.
     NearContacts near;
@@ -38,10 +38,10 @@ class LookAheadProgram {
   // motion to the device, world axes. side: as for near(). The list of contacts is valid until the next query
   // of the source. The motion does not depend on earlier calls, up to rounding, unless contacts were left out
   // because there were too many.
-  Look look(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
+  Detection detect(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
 
  private:
-  void solve(const ToolPose& pose, const Vector6& a_gu, Look& look);
+  void solve(const ToolPose& pose, const Vector6& a_gu, Detection& detection);
 
   const double look_ahead_m_, reach_m_, contact_reach_m_;
   MotionProgram program_;

@@ -67,7 +67,7 @@ void ToolRenderer::displace(const Vector6& by) {
 
 void ToolRenderer::on_frame(const Frame& frame, std::shared_ptr<const TiledCloud> points,
                             const ToolSurfaceMotion& motion) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   take_points(std::move(points));
   frame_arrived_s_ = frame.arrives_s;
   displace(motion.displacement);
@@ -76,7 +76,7 @@ void ToolRenderer::on_frame(const Frame& frame, std::shared_ptr<const TiledCloud
 }
 
 void ToolRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
+  if (!order_.accept_if_newer(frame)) return;
   auto prepared = std::dynamic_pointer_cast<const PreparedToolFrame>(frame.prepared);
   if (!prepared) prepared = prepared_tool_frame(frame, *motion_, used_merged_disk_m(p_), kernels_);
   take_points({prepared, &prepared->tiles});
@@ -108,9 +108,9 @@ void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
 ToolPose ToolRenderer::coupled_pose(double time_s) const {
   ToolPose pose = allowed_W_.isZero(0) ? pose_ : moved(pose_, allowed_W_);
   const bool is_known = p_.velocity_estimate || measured_rate_per_s_.has_value();
-  if (!is_known || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
+  if (!is_known || !is_held_ || p_.velocity_force == ToolVelocityForce::none) return pose;
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
-  const double sign = p_.velocity_force == ToolForce::minus ? 1 : -1;  // 1: u_hat = HIP - P - v t
+  const double sign = p_.velocity_force == ToolVelocityForce::minus ? 1 : -1;  // 1: u_hat = HIP - P - v t
   if (measured_rate_per_s_)
     return measured_rate_per_s_->isZero(0) ? pose : moved(pose, sign * since_frame_s * *measured_rate_per_s_);
   pose.p_W += sign * since_frame_s * velocity_.vector();
@@ -161,7 +161,7 @@ void ToolRenderer::measure(RenderOutput& out) {
   out.contact_count = touched_.points;
   out.tool->contact_clusters = touched_.clusters;
   out.tool->tool_penetration_m = std::max(0.0, -touched_.nearest_distance_m);
-  out.tool->disabled_points = contacts_.finder().cloud().without_normal();
+  out.tool->disabled_points = contacts_.finder().cloud().count_without_normal();
 }
 
 }  // namespace remote_touch

@@ -39,7 +39,7 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
     motion = program_.solve(desired_T, here.contacts);
   } else {
     motion = program_.solve(Vector6::Zero(), here.contacts);
-    trapped = motion.elastic;
+    trapped = motion.is_relaxed;
     const double motion_m = max_point_displacement_m(motion.a_g, reach_m_);
     if (trapped)  // a wedge: the tool stays between the points and follows the device
       motion = program_.solve(desired_T, here.contacts);

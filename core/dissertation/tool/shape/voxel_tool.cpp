@@ -118,7 +118,7 @@ void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& re
                      " million or fewer: set renderer.tool_size_m, or a larger renderer.tool_voxel_m");
 }
 
-void take(VoxelTool& tool, const MassProperties& mass, const std::string& name) {
+void centre(VoxelTool& tool, const MassProperties& mass, const std::string& name) {
   if (!(mass.volume_m3 > 0)) refuse(name, "encloses no volume: expected a closed mesh");
   for (Vec3& v : tool.mesh.vertices) v -= mass.centre, tool.reach_m = std::max(tool.reach_m, v.norm());
   tool.volume_m3 = mass.volume_m3;
@@ -134,11 +134,11 @@ std::vector<std::uint8_t> place(VoxelTool& tool, const VoxelToolSettings& settin
     auto inside =
         inside_nodes_of_open(TriangleTree(tool.mesh), tool.grid, crossed_cells(tool.mesh, tool.grid));
     const MassProperties mass = mass_properties(tool.grid, inside);
-    take(tool, mass, name);
+    centre(tool, mass, name);
     tool.grid.origin_T -= mass.centre;
     return inside;
   }
-  take(tool, mass_properties(tool.mesh), name);
+  centre(tool, mass_properties(tool.mesh), name);
   tool.grid = grid_around(tool.mesh, settings.voxel_m);
   InsideNodes nodes = inside_nodes(tool.mesh, tool.grid);
   if (nodes.negative) refuse(name, "a part of the mesh is inside out: expected all faces to point outwards");

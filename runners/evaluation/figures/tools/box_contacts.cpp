@@ -65,7 +65,7 @@ void add_claims(Figure& figure, const Counts& counts) {
 void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row) {
   const auto panel = [&](const char* title, int column) {
     Panel made{title, "spacing of the points (m)", "most at once"};
-    made.place = std::pair(static_cast<double>(row), static_cast<double>(column));
+    made.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
     return made;
   };
   Panel points = panel("Points that touch", 0), others = panel("Counts that depend little on the spacing", 1);

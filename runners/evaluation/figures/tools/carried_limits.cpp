@@ -5,8 +5,8 @@
 namespace remote_touch {
 
 double CarrySweep::value(std::size_t setting, std::size_t axis) const {
-  const std::size_t place = result_.place(cell(setting, 0, Carrier::voxels)).at(axis);
-  return std::get<std::vector<double>>(result_.axes.at(axis).values).at(place);
+  const std::size_t index = result_.axis_indices(cell(setting, 0, Carrier::voxels)).at(axis);
+  return std::get<std::vector<double>>(result_.axes.at(axis).values).at(index);
 }
 
 Tally CarrySweep::lost(std::size_t setting, std::size_t strength, Carrier rule) const {
@@ -17,7 +17,7 @@ CarrySweep::Limit CarrySweep::limit(std::size_t setting, Carrier rule) const {
   Limit limit;
   for (std::size_t i = 0; i < strengths().size(); ++i) {
     const Tally lost_here = lost(setting, i, rule);
-    const bool any = lost_here.events > 0, all = lost_here.events == lost_here.runs;
+    const bool any = lost_here.events > 0, all = lost_here.runs > 0 && lost_here.events == lost_here.runs;
     if (any && limit.lost > strengths()[i]) limit.lost = strengths()[i];
     if (strengths()[i] < limit.lost) limit.carried = strengths()[i];
     if (!all)
@@ -39,7 +39,7 @@ double count_rows_apart(const Table& table, const std::string& carried, const st
 }
 
 Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
-                  std::pair<double, double> place) {
+                  std::pair<double, double> grid_position) {
   Panel panel{table.title, x_label, y_label};
   for (const CarrierName& carrier : kCarriers) {
     const std::string column = carrier.column, x = table.columns[0].name;
@@ -47,7 +47,7 @@ Panel limit_panel(const Table& table, const std::string& x_label, const std::str
         {table.name, x, column + "_bound", CurveStyle::dashed, std::string(carrier.label) + ", derived"});
     panel.curves.push_back({table.name, x, column + "_carried", CurveStyle::dots, carrier.label});
   }
-  panel.place = place;
+  panel.grid_position = grid_position;
   return panel;
 }
 

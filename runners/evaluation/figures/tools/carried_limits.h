@@ -60,6 +60,6 @@ double count_rows_apart(const Table& table, const std::string& carried, const st
 // Panel over the first column of a table: derived limits (columns *_bound) are dashed, and strengths up to
 // which every run is carried (columns *_carried) are dots.
 Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
-                  std::pair<double, double> place);
+                  std::pair<double, double> grid_position);
 
 }  // namespace remote_touch

@@ -116,7 +116,7 @@ std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instan
 
 Panel scene_panel(const std::string& title, int row, int column, Scene scene) {
   Panel panel{title, "", ""};
-  panel.place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   panel.scene = std::move(scene);
   return panel;
 }

@@ -122,14 +122,14 @@ TEST(CarriedMotion, AnyMotionOfABoxIsFound) {
   }
 }
 
-// `sure` is the fraction x^2 / (x^2 + 4 e^2) of a motion x that is measured with the error e.
+// `shrunk` is the fraction x^2 / (x^2 + 4 e^2) of a motion x that is measured with the error e.
 TEST(CarriedMotion, IsLessSureTheMoreNoiseMayExplainIt) {
   for (const double error_m : {0.0, 0.001, 0.01}) {
     CarriedMotion places(kLever_m);
     add_face(places, kAbout_W, Vec3::UnitY(), Vec3::UnitX(), {{0, 0.004, 0}, {0, 0, 0}}, error_m);
     const CarriedMotion::Result result = places.about(kAbout_W);
     EXPECT_NEAR(result.motion[1], 0.004, 1e-12);
-    EXPECT_NEAR(result.sure[1], 0.004 * 16e-6 / (16e-6 + 4 * error_m * error_m), 1e-12) << error_m;
+    EXPECT_NEAR(result.shrunk[1], 0.004 * 16e-6 / (16e-6 + 4 * error_m * error_m), 1e-12) << error_m;
   }
 }
 

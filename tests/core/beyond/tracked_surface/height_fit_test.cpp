@@ -37,7 +37,7 @@ PatchPoints sampled(Surface surface, double sigma, unsigned seed, double spacing
 HeightMap fitted(const PatchPoints& points, double sigma) {
   HeightFit fit;
   HeightMap map;
-  fit.take(points, fit_trend(points, std::max(sigma, 0.01)));
+  fit.set_points(points, fit_trend(points, std::max(sigma, 0.01)));
   fit.fit(sigma, map);
   return map;
 }
@@ -96,11 +96,11 @@ TEST(HeightFit, HasTheErrorOfTheWidestWindowOnAPlane) {
 TEST(HeightFit, DistinguishesNoiseFromEdges) {
   for (const double sigma : {0.02, 0.2, 1.0, 3.0}) {
     HeightFit fit;
-    fit.take(sampled(ridge, sigma, 7));
+    fit.set_points(sampled(ridge, sigma, 7));
     EXPECT_NEAR(fit.noise(), sigma, 0.2 * sigma) << sigma;
   }
   HeightFit clean;
-  clean.take(sampled(ridge, 0, 7));
+  clean.set_points(sampled(ridge, 0, 7));
   EXPECT_LT(clean.noise(), 1e-3);
 }
 

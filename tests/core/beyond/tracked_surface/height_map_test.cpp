@@ -19,21 +19,21 @@ TEST(HeightMap, SteadyKeepsWhatNoiseDoesNotExplain) {
   const double error = 0.1, e = 1.5 * error;
   for (const double x : {0.0, 0.05, 0.3, 3.0}) {
     HeightMap map = plane(1 + x, 0, error);
-    map.steady(plane(1, 0, error));
+    map.shrink_change_since(plane(1, 0, error));
     EXPECT_NEAR(map.height(0.3, -2.1), 1 + x * x * x / (x * x + 4 * e * e), 1e-12) << x;
   }
 }
 
 TEST(HeightMap, SteadyKeepsARotationThatIsLarge) {
   HeightMap map = plane(0, 0.5, 0.01);
-  map.steady(plane(0, 0, 0.01));
+  map.shrink_change_since(plane(0, 0, 0.01));
   EXPECT_NEAR(map.slopes(0.2, 0.3).u, 0.5, 0.01);
 }
 
 TEST(HeightMap, SteadyLeavesNodesThatOneOfTheMapsDoesNotCover) {
   HeightMap map = plane(2, 0, 0.1), earlier = plane(1.9, 0, 0.1);
   earlier.node(8, 8).covered = false;
-  map.steady(earlier);
+  map.shrink_change_since(earlier);
   EXPECT_EQ(map.node(8, 8).height, 2);
   EXPECT_NE(map.node(8, 9).height, 2);
 }

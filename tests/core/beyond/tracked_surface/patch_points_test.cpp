@@ -39,7 +39,7 @@ HeightMap bumpy_map() {
 PatchPoints taken(const Kernels& kernels, const GatheredPoints& gathered) {
   PatchPoints points(kernels);
   points.reserve(gathered.size());
-  points.take(gathered, kRegion);
+  points.set_points(gathered, kRegion);
   for (std::size_t i = 0; i < points.size(); ++i) points.set_member(i, i % 3 != 0);
   points.set_residuals(bumpy_map());
   return points;
@@ -77,7 +77,7 @@ TEST(PatchPoints, TheRimIsOutside) {
   for (const Kernels* kernels : supported_kernels()) {
     PatchPoints points(*kernels);
     points.reserve(gathered.size());
-    points.take(gathered, region);
+    points.set_points(gathered, region);
     ASSERT_EQ(points.size(), 3u) << kernels->isa;
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_TRUE(region.holds(points.place(i)));
   }

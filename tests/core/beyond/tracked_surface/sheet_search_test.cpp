@@ -40,7 +40,7 @@ TEST(SheetSearch, FindsThePointsOfTheFrameIfNoneIsMoved) {
   gathered.finish();
   PatchPoints points(scenes::kernels());
   points.reserve(gathered.size());
-  points.take(gathered, region);
+  points.set_points(gathered, region);
   ASSERT_GT(points.size(), 100u);
   SheetSearch shown;
   shown.reserve(frame->size(), true, true);

@@ -9,9 +9,9 @@
 namespace remote_touch::fixture_sequence_test {
 namespace {
 
-SequenceStep step(StepStart start, StepEnd done, int button = 0) {
+SequenceStep step(StepStart start, StepEnd end, int button = 0) {
   SequenceStep s;
-  s.start = start, s.done = done, s.button = button;
+  s.start = start, s.end = end, s.button = button;
   return s;
 }
 
@@ -184,7 +184,7 @@ TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
   EXPECT_EQ(validate(s), "");
   s.fixture = "valve";
   EXPECT_EQ(validate(s), "fixture = \"valve\": expected none for wait, unless done = reached");
-  s.done = StepEnd::reached;
+  s.end = StepEnd::reached;
   EXPECT_EQ(validate(s), "");
   s.fixture = "";
   EXPECT_EQ(validate(s), "fixture = \"\": expected the label of a fixture");

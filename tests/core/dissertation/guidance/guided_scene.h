@@ -48,7 +48,7 @@ inline SequenceStep step(FixtureAction action, const std::string& label,
   return s;
 }
 inline SequenceStep until_reached(SequenceStep s) {
-  s.done = StepEnd::reached;
+  s.end = StepEnd::reached;
   return s;
 }
 

@@ -51,17 +51,17 @@ std::vector<Vec3> whole_normals(spheres::Draw& draw) {
 // each region and onto the line of each two planes, and no motion.
 double min_change(const std::vector<Vec3>& normals, const Vec3& u) {
   double min = u.norm();  // no motion
-  const auto look = [&](const Vec3& s) {
+  const auto consider = [&](const Vec3& s) {
     for (const Vec3& n : normals)
       if (n.dot(s) < -1e-10 * u.norm()) return;
     min = std::min(min, (s - u).norm());
   };
-  look(u);
+  consider(u);
   for (const Vec3& a : normals) {
-    look(u - u.dot(a) * a);
+    consider(u - u.dot(a) * a);
     for (const Vec3& b : normals) {
       const Vec3 line = a.cross(b);
-      if (line.norm() > 1e-9) look(line * (line.dot(u) / line.squaredNorm()));
+      if (line.norm() > 1e-9) consider(line * (line.dot(u) / line.squaredNorm()));
     }
   }
   return min;

@@ -48,13 +48,13 @@ Rest rest(const ProxyParameters& p, const PointCloud& cloud, const Vec3& hip_W) 
   return found;
 }
 
-template <class Look>  // look(opening_deg, xi, cloud, hip_W)
-void at_every_crease(const Look& look) {
+template <class Visit>  // visit(opening_deg, xi, cloud, hip_W)
+void at_every_crease(const Visit& visit) {
   for (const double opening_deg : kOpenings_deg) {
     const PointCloud cloud = crease(opening_deg);
     for (const double xi : kXi)
       for (const double x : {0.0, 0.002, 0.005, 0.01})
-        for (const double z : {0.0, 0.0031}) look(opening_deg, xi, cloud, Vec3(x, -0.008, z));
+        for (const double z : {0.0, 0.0031}) visit(opening_deg, xi, cloud, Vec3(x, -0.008, z));
   }
 }
 

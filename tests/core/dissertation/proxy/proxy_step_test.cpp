@@ -92,12 +92,12 @@ TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
 
 TEST(FreeStep, HasTheSameBitsFromTheKeptListAndFromHops) {
   const PointCloud cloud = scenes::random_cloud(500, 0.03, 3);
-  const PointCloud from = scenes::random_cloud(400, 0.03, 4), path_length = scenes::random_cloud(400, 1, 5);
+  const PointCloud from = scenes::random_cloud(400, 0.03, 4), directions = scenes::random_cloud(400, 1, 5);
   const auto search = std::make_shared<BruteForceSearch>(cloud);
   Neighbourhood kept = around(cloud);
   int met = 0, missed = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const Vec3 p = from.point(i), u = path_length.point(i).normalized();
+    const Vec3 p = from.point(i), u = directions.point(i).normalized();
     if (nearest(cloud, p) <= kDefault.r2_m) continue;
     Neighbourhood hopping = around(cloud);  // has no list yet
     GatheredPoints all;

@@ -24,25 +24,25 @@ double half_width(unsigned i) {
   return i % 3 == 0 ? 0.05 : i % 3 == 1 ? 0.09 : 0.15;
 }
 
-// Moves a hand through one union and calls look(hip, output) after every tick. The frame comes once or, with
+// Moves a hand through one union and calls visit(hip, output) after every tick. The frame comes once or, with
 // the velocity estimate, at the camera's rate although nothing moves.
-template <class Look>
-void walk(unsigned i, const ProxyParameters& p, const PointCloud& cloud, Look look) {
+template <class Visit>
+void walk(unsigned i, const ProxyParameters& p, const PointCloud& cloud, Visit visit) {
   spheres::HandPath path(500 + i, half_width(i));
   ProxyRenderer renderer = scenes::renderer(p);
   for (int tick = 0; tick <= kTicks; ++tick) {
     if (tick == 0 || (p.velocity_estimate && tick % 33 == 0))
       renderer.on_frame(scenes::frame(cloud, tick / 33));
     const Vec3 hip = path.at(tick);
-    look(hip, renderer.step({hip}, 0.001 * tick));
+    visit(hip, renderer.step({hip}, 0.001 * tick));
   }
 }
 
-template <class Look>
-void walk_all(const ProxyParameters& p, Look look) {
+template <class Visit>
+void walk_all(const ProxyParameters& p, Visit visit) {
   for (unsigned i = 0; i < kUnions; ++i) {
     const PointCloud cloud = spheres::random_union(100 + i, half_width(i));
-    walk(i, p, cloud, [&](const Vec3& hip, const RenderOutput& out) { look(cloud, hip, out); });
+    walk(i, p, cloud, [&](const Vec3& hip, const RenderOutput& out) { visit(cloud, hip, out); });
   }
 }
 

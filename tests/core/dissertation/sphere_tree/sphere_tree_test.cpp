@@ -178,7 +178,8 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
     const ToolPose pose{{0.008 * i - 0.1, 0.004 * i, 0.01}, rotation({0.1 * i, 0.3, -0.05 * i})};
     for (const double margin_m : {-0.001, 0.0, 0.004}) {
       std::vector<LeafPair> expected = every_pair(tool, pose, regions, margin_m);
-      const std::span<const LeafPair> pairs = std::span(buffer).first(collision.near(pose, margin_m, buffer));
+      const std::span<const LeafPair> pairs =
+          std::span(buffer).first(collision.near_pairs(pose, margin_m, buffer));
       ASSERT_EQ(pairs.size(), expected.size());
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         EXPECT_EQ(pairs[k].tool, expected[k].tool);
@@ -199,7 +200,7 @@ TEST(TreeCollision, KeepsTheDeepestPairsIfTheBufferIsFull) {
   TreeCollision collision(tool, scenes::kernels());
   collision.on_frame(regions);
   std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), buffer(100);
-  ASSERT_EQ(collision.near({}, 0.002, buffer), expected.size());
+  ASSERT_EQ(collision.near_pairs({}, 0.002, buffer), expected.size());
   ASSERT_GT(expected.size(), 1000u);
   std::stable_sort(expected.begin(), expected.end(),
                    [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
@@ -209,7 +210,7 @@ TEST(TreeCollision, KeepsTheDeepestPairsIfTheBufferIsFull) {
     EXPECT_EQ(buffer[i].tool, expected[i].tool);
     EXPECT_EQ(buffer[i].region, expected[i].region);
   }
-  EXPECT_EQ(collision.near({}, 0.002, {}), expected.size());
+  EXPECT_EQ(collision.near_pairs({}, 0.002, {}), expected.size());
 }
 
 TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
@@ -218,7 +219,7 @@ TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
   const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
     TreeCollision collision(of, scenes::kernels());
     collision.on_frame(regions);
-    return collision.near(pose, 1, buffer);
+    return collision.near_pairs(pose, 1, buffer);
   };
   EXPECT_GT(count(tool, tool, {}), 100u);
   EXPECT_EQ(count(tool, nothing, {}), 0u);

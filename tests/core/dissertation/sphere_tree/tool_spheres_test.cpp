@@ -70,7 +70,7 @@ TEST(SphereCover, TakesFewPointsFarApartWithoutACellForEveryMillimetre) {
     const SphereCover cover({middle - far, middle + far}, there, 0.001);
     const SphereCover::Result result = cover.cover(0, 10);
     EXPECT_EQ(result.spheres.size(), 2u);
-    EXPECT_EQ(result.left, 0u);
+    EXPECT_EQ(result.uncovered_count, 0u);
   }
 }
 
@@ -104,11 +104,11 @@ TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
       outside_m = std::max(
           outside_m,
           scenes::box_distance(half_m, leaf.centre + leaf.radius_m * directions.point(i).normalized()));
-    const Vec3 path_length =
+    const Vec3 on_cube =
         directions.point(i) / directions.point(i).cwiseAbs().maxCoeff();  // a point on a side of the box
     double min_m = 1;
     for (const Sphere& leaf : made.spheres.leaves())
-      min_m = std::min(min_m, (half_m.cwiseProduct(path_length) - leaf.centre).norm() - leaf.radius_m);
+      min_m = std::min(min_m, (half_m.cwiseProduct(on_cube) - leaf.centre).norm() - leaf.radius_m);
     surface_outside_m = std::max(surface_outside_m, min_m);
   }
   EXPECT_GT(made.inflation_m, 1e-3);  // otherwise there would be no error to compare

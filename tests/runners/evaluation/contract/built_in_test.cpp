@@ -60,7 +60,7 @@ void name_a_file(const std::string& name, const Parameters& settings) {
     if (p.name == "path") *std::get<std::string*>(p.value) = files.of(name);
 }
 
-const bool kRegistered = (contract_tests(built_in_catalog(), name_a_file), true);
+const bool kRegistered = (register_contract_tests(built_in_catalog(), name_a_file), true);
 
 TEST(BuiltIn, ContractsAreRegistered) {
   EXPECT_TRUE(kRegistered);

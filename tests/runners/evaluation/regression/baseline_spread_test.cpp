@@ -165,9 +165,9 @@ cp "$made" "$2"
     trace("gcc/plain.h5", build("GNU 12")), trace("clang/plain.h5", build("Clang 14"));
     return {program("gcc"), program("clang")};
   }
-  Measured measure(const std::vector<std::string>& programs,
-                   const Baseline& baseline = {"x", "run", "fig4.11"},
-                   const std::atomic<bool>* stop = nullptr) const {
+  MeasuredSpread measure(const std::vector<std::string>& programs,
+                         const Baseline& baseline = {"x", "run", "fig4.11"},
+                         const std::atomic<bool>* stop = nullptr) const {
     return measure_spread(folder_.path(), baseline, programs, scratch(), stop);
   }
   std::string refused(const std::vector<std::string>& programs) const {
@@ -184,7 +184,7 @@ int lines(const std::string& text) {
 
 TEST_F(MeasureSpread, RunsEveryProgramAtEveryLevelAndNumberOfThreads) {
   const auto programs = two_programs();
-  const Measured measured = measure(programs, {"x", "run", "my.json", {"seed=2", "title=two words"}});
+  const MeasuredSpread measured = measure(programs, {"x", "run", "my.json", {"seed=2", "title=two words"}});
   EXPECT_TRUE(measured.spread.empty());
   EXPECT_EQ(measured.compilers, (std::set<std::string>{"GNU 12", "Clang 14"}));
   EXPECT_EQ(bytes_of(measured.reference), bytes_of(folder_ / "gcc/plain.h5"));
@@ -207,7 +207,7 @@ TEST_F(MeasureSpread, ReportsTheLargestDeviationOfEachColumn) {
     made.force_N[5].y() -= 0x1p-20, made.force_N[6].x() += 0x1p-25, made.proxy_steps[3] += 2;
   });
   trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) { made.force_N[5].y() += 0x1p-22; });
-  const Measured measured = measure(programs);
+  const MeasuredSpread measured = measure(programs);
   EXPECT_EQ(measured.spread, (Tolerances{{"force", {0x1p-20}}, {"proxy_steps", {2}}}));
   EXPECT_EQ(bytes_of(measured.reference), bytes_of(folder_ / "gcc/plain.h5"));
 }
@@ -289,7 +289,7 @@ TEST_F(MeasureSpread, MeasuresSweepsToo) {
   write_sweep(folder_ / "clang/plain.h5", result, build("Clang 14"));
   std::get<std::vector<double>>(result.measures[1].values)[1] += 0x1p-20;
   write_sweep(folder_ / "clang/x86-64-8.h5", result, build("Clang 14"));
-  const Measured measured = measure(programs, {"x", "sweep", "fig4.13"});
+  const MeasuredSpread measured = measure(programs, {"x", "sweep", "fig4.13"});
   EXPECT_EQ(measured.spread, (Tolerances{{"max_penetration", {0x1p-20}}}));
   EXPECT_HAS(bytes_of(folder_ / "gcc/calls"), "x86-64-8: sweep fig4.13 --quiet -o ");
   EXPECT_HAS(bytes_of(folder_ / "gcc/calls"), " --threads 8\n");

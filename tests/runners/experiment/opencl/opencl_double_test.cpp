@@ -47,10 +47,10 @@ class OpenClDoubleTest : public testing::Test {
   }
   // A busy machine may stop a test for seconds, so that only the test of a limit has one.
   static constexpr std::chrono::minutes kNoLimit{10};
-  std::unique_ptr<DevicePipeline> opened(std::chrono::milliseconds frame_limit = kNoLimit) {
+  std::unique_ptr<DevicePipeline> open_pipeline(std::chrono::milliseconds frame_limit = kNoLimit) {
     return std::make_unique<DevicePipeline>(
         opencl_devices(opencl_library()).at(0), Settings{}, best(),
-        [this](const std::string& line) { told_.push_back(line); }, frame_limit);
+        [this](const std::string& line) { reported_.push_back(line); }, frame_limit);
   }
   std::string refusal(const std::string& device, bool exact = true) {
     DepthDeviceSettings settings;
@@ -67,14 +67,14 @@ class OpenClDoubleTest : public testing::Test {
   }
   const scenes::DepthScene scene_ = noisy_waves(70, 30);
   const PointCloud expected_ = processed(scene_, {}, some_pose());
-  std::vector<std::string> told_;
+  std::vector<std::string> reported_;
 };
 
 TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpu) {
-  const auto pipeline = opened();
+  const auto pipeline = open_pipeline();
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   EXPECT_TRUE(pipeline->uses_device());
-  EXPECT_TRUE(told_.empty());
+  EXPECT_TRUE(reported_.empty());
 }
 
 // The double compiles the source of the device's kernels as C++.
@@ -99,18 +99,18 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
   for (const char* function : functions)
     for (const int call : {1, 3}) {
       SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
-      begin_anew(), told_.clear();
-      const auto pipeline = opened();
+      begin_anew(), reported_.clear();
+      const auto pipeline = open_pipeline();
       library().failing = function, library().failing_call = call, library().code = CL_OUT_OF_RESOURCES;
       for (int frame = 0; frame < 4; ++frame) EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
       EXPECT_FALSE(pipeline->uses_device());
-      ASSERT_EQ(told_.size(), 1u);
-      EXPECT_EQ(told_[0], std::string(function) + ": CL_OUT_OF_RESOURCES (-5)");
+      ASSERT_EQ(reported_.size(), 1u);
+      EXPECT_EQ(reported_[0], std::string(function) + ": CL_OUT_OF_RESOURCES (-5)");
     }
 }
 
 TEST_F(OpenClDoubleTest, CloudsThatCannotBeProcessedAtOnceAreUnchanged) {
-  const auto pipeline = opened();
+  const auto pipeline = open_pipeline();
   const FixtureAssignment fixtures = coloured_frames::rules_by_hue();
   const HueSteps steps = fixtures.hue_steps(0, 0).value();
   const PointCloud measured = cloud_from_depth(scene_.depth, scene_.camera, some_pose());
@@ -129,33 +129,33 @@ TEST_F(OpenClDoubleTest, CloudsThatCannotBeProcessedAtOnceAreUnchanged) {
   EXPECT_TRUE(pipeline->uses_device());
   library().failing = "clEnqueueMapBuffer", library().failing_call = 1;
   expect_left(coloured);
-  EXPECT_EQ(told_.size(), 1u);
+  EXPECT_EQ(reported_.size(), 1u);
   expect_left(coloured);
 }
 
 TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
-  auto pipeline = opened(DevicePipeline::kFrameLimit);
+  auto pipeline = open_pipeline(DevicePipeline::kFrameLimit);
   library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
   const double begin_s = steady_clock().now_s();
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));  // while the driver hangs
   EXPECT_GE(steady_clock().now_s() - begin_s, 2);
   EXPECT_TRUE(DevicePipeline::kFrameLimit == std::chrono::seconds(2));
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_NE(told_[0].find("no answer within 2 s"), std::string::npos) << told_[0];
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_NE(reported_[0].find("no answer within 2 s"), std::string::npos) << reported_[0];
   pipeline.reset();  // does not wait for the driver
-  library().let_go = true;
+  library().is_released = true;
   EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver returns
 }
 
 TEST_F(OpenClDoubleTest, AShortLimitIsReportedInFractionsOfASecond) {
-  auto pipeline = opened(std::chrono::milliseconds(50));
+  auto pipeline = open_pipeline(std::chrono::milliseconds(50));
   library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_NE(told_[0].find("no answer within 0.05 s"), std::string::npos) << told_[0];
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_NE(reported_[0].find("no answer within 0.05 s"), std::string::npos) << reported_[0];
   pipeline.reset();
-  library().let_go = true;
+  library().is_released = true;
   EXPECT_TRUE(everything_is_released());
 }
 
@@ -179,12 +179,12 @@ TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
 
 // Kernels that were built for a lost device are of no use when it is there again.
 TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedAnewAfterAFailure) {
-  const auto pipeline = opened();
+  const auto pipeline = open_pipeline();
   library().failing = "clFinish", library().failing_call = 1;
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   EXPECT_TRUE(everything_is_released());
   library().failing = "clBuildProgram", library().failing_call = 1000, library().calls = 0;
-  EXPECT_TRUE(same_bits(processed_by(*opened()), expected_));
+  EXPECT_TRUE(same_bits(processed_by(*open_pipeline()), expected_));
   EXPECT_EQ(library().calls, 1);
 }
 
@@ -209,7 +209,7 @@ TEST_F(OpenClDoubleTest, ListingOfDevicesTimesOutIfDriversHang) {
   EXPECT_THROW(listed_devices(std::chrono::hours(10)), OpenClTimeout);
   EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
   EXPECT_TRUE(refusal("auto").empty());
-  library().let_go = true;
+  library().is_released = true;
   std::vector<OpenClDevice> again;
   EXPECT_TRUE(wait_until([&] {
     library().failing = "";

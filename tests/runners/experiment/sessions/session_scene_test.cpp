@@ -43,9 +43,9 @@ class SessionSceneTest : public testing::Test {
 
 TEST_F(SessionSceneTest, AFrameArrivesWhenTheRendererTookIt) {
   const SessionScene scene = this->scene();
-  EXPECT_EQ(scene.arrives_s(0), 4 / 500.0);
-  EXPECT_EQ(scene.arrives_s(1), std::numeric_limits<double>::infinity()) << "the renderer never got it";
-  EXPECT_EQ(scene.arrives_s(2), 9 / 500.0);
+  EXPECT_EQ(scene.leaves_sensor_s(0), 4 / 500.0);
+  EXPECT_EQ(scene.leaves_sensor_s(1), std::numeric_limits<double>::infinity()) << "the renderer never got it";
+  EXPECT_EQ(scene.leaves_sensor_s(2), 9 / 500.0);
 }
 
 TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {

@@ -73,7 +73,7 @@ double ToolAuditor::depth_on(const Way& way, double from, double until, double m
   return before > 0 ? before : depth_on(way, middle, until, max_m, face);
 }
 
-void ToolAuditor::look(Point& point, const Way& way, double max_m) {
+void ToolAuditor::check(Point& point, const Way& way, double max_m) {
   if (!point.is_known) {
     point.is_inside = signed_distance_m(way.at(0), point.face) < -tolerance_m_;
     point.is_known = true;
@@ -103,7 +103,7 @@ void ToolAuditor::tick(Group& group, const ToolPose& from, const Vec3& shift_W, 
     if (point.clear_m > 0)
       point.is_known = true, point.is_inside = false;
     else
-      look(point, {from, shift_W, turn_W, point.p_W}, max_m);
+      check(point, {from, shift_W, turn_W, point.p_W}, max_m);
   }
   group.was_far = is_far;
 }
@@ -119,8 +119,8 @@ void ToolAuditor::tick_with_frame(const PointCloud& cloud, const ToolPose& from,
     const double relative_m = (shift_W - point_shift_W).norm();
     point.is_known = false;
     ++audit_.point_ticks;
-    look(point, {from, shift_W, turn_W, point.p_W, point_shift_W},
-         relative_m + turn_W.norm() * ((point.p_W - from.p_W).norm() + relative_m));
+    check(point, {from, shift_W, turn_W, point.p_W, point_shift_W},
+          relative_m + turn_W.norm() * ((point.p_W - from.p_W).norm() + relative_m));
     point.p_W = cloud.point(i), point.clear_m = 0;
   }
   gather_groups();

@@ -60,7 +60,7 @@ class ToolAuditor {
   struct Way;
   void gather_groups();
   void tick(Group& group, const ToolPose& from, const Vec3& shift_W, const Vec3& turn_W);
-  void look(Point& point, const Way& way, double max_m);
+  void check(Point& point, const Way& way, double max_m);
   double depth_on(const Way& way, double from, double until, double max_m, int& face);
   double signed_distance_m(const Vec3& p_T, int& face) const;
 

@@ -84,7 +84,7 @@ TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
 }
 
 // A plane rises at this speed under a slab that is held. Returns true if the slab is carried.
-bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string& rule) {
+bool is_carried(int thickness_mm, double speed_m_per_s, const std::string& rule) {
   const double rise = 0.08 + 0.006 * thickness_mm;
   const Trace trace =
       run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_height_m": -0.03, "wait_s": 0.1})",
@@ -98,16 +98,16 @@ bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string&
 TEST(ToolContact, SlabsAreLiftedUpToTheBoundByVoxels) {
   for (const int h : {5, 10, 20, 40}) {
     const double bound = 30 * (0.001 * h - 0.001);
-    EXPECT_TRUE(frame_correction(h, 0.98 * bound, "voxels")) << h;
-    EXPECT_FALSE(frame_correction(h, 1.02 * bound, "voxels")) << h;
+    EXPECT_TRUE(is_carried(h, 0.98 * bound, "voxels")) << h;
+    EXPECT_FALSE(is_carried(h, 1.02 * bound, "voxels")) << h;
   }
 }
 
 // The rule that remembers its side loses nothing to a shell: v < f_c h.
 TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
   for (const int h : {5, 10, 20, 40}) {
-    EXPECT_TRUE(frame_correction(h, 0.97 * 30 * 0.001 * h, "look-ahead")) << h;
-    EXPECT_FALSE(frame_correction(h, 1.03 * 30 * 0.001 * h, "look-ahead")) << h;
+    EXPECT_TRUE(is_carried(h, 0.97 * 30 * 0.001 * h, "look-ahead")) << h;
+    EXPECT_FALSE(is_carried(h, 1.03 * 30 * 0.001 * h, "look-ahead")) << h;
   }
 }
 

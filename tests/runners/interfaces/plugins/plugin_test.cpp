@@ -27,7 +27,7 @@ Catalog good_renderer() {
   own.add(load_plugin(PLUGIN_RENDERERS).front());
   return own;
 }
-const bool kRegistered = (contract_tests(good_renderer()), true);
+const bool kRegistered = (register_contract_tests(good_renderer()), true);
 
 const RendererEntry& entry_of(const std::string& name) {
   static const std::vector<RendererEntry> all = load_plugin(PLUGIN_RENDERERS);

@@ -29,7 +29,7 @@ TEST_F(EntactTest, ConvertsMillimetresAndRows) {
   EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.02, 0.03, 0.01), 1e-12));
   EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
   run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
-  EXPECT_EQ(double_->now().told, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
+  EXPECT_EQ(double_->now().sent, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
 }
 
 TEST_F(EntactTest, DevicesHaveAddresses) {

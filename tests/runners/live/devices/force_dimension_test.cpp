@@ -28,7 +28,7 @@ TEST_F(ForceDimensionTest, ConvertsTheAxes) {
   EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
   run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(4, 5, 6)}); });
   const auto events = double_->events();
-  EXPECT_EQ(events.back().told, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
+  EXPECT_EQ(events.back().sent, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
 }
 
 TEST_F(ForceDimensionTest, DevicesAreNumbered) {

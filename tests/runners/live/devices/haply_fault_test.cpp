@@ -36,8 +36,8 @@ TEST_F(HaplyFault, ClosedConnectionStaysAFault) {
   ASSERT_EQ(tick(*device), "");
   service_.die();
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(told(device->read(reading_)), "the Haply service closed the connection");
-    EXPECT_EQ(told(device->write({})), "the Haply service closed the connection");
+    EXPECT_EQ(fault_text(device->read(reading_)), "the Haply service closed the connection");
+    EXPECT_EQ(fault_text(device->write({})), "the Haply service closed the connection");
   }
 }
 
@@ -46,14 +46,14 @@ TEST_F(HaplyFault, WaitsForAHangingServiceForABoundedTime) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device), "");
   service_.hang();
-  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->read(reading_)), kLate); }), 6000);
-  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->write({})), kLate); }), 1500);
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->read(reading_)), kLate); }), 6000);
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->write({})), kLate); }), 1500);
 }
 
 TEST_F(HaplyFault, AnAnswerThatIsLateIsWaitedFor) {
   const auto device = service_.open();
   service_.answers_after_ns = 5'900'000;
-  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->read(reading_)), ""); }), 5900);
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->read(reading_)), ""); }), 5900);
 }
 
 // Every tick has a fault while the service hangs, and no command queues up. Then the service is back.
@@ -63,13 +63,13 @@ TEST_F(HaplyFault, AServiceThatHangsAndReturnsSendsItsLatestState) {
   service_.hang();
   const std::size_t before = service_.sent().size();
   for (int i = 0; i < 10; ++i) {
-    EXPECT_EQ(told(device->read(reading_)), kLate);
-    EXPECT_EQ(told(device->write(force({1, 0, 0}))), kLate);
+    EXPECT_EQ(fault_text(device->read(reading_)), kLate);
+    EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), kLate);
   }
   EXPECT_EQ(service_.sent().size(), before);
   service_.world.position_m = Vec3(0.5, 0, 0);
   service_.resume();
-  ASSERT_EQ(told(device->read(reading_)), "");
+  ASSERT_EQ(fault_text(device->read(reading_)), "");
   EXPECT_EQ(reading_.position_m, Vec3(0.5, 0, 0)) << "the state from before it hung";
   EXPECT_EQ(newest_force_N(), 0);
 }
@@ -138,7 +138,7 @@ class HaplyRelease : public HaplyFault {
  protected:
   // Releases the device at that moment, as another thread would. Stores the duration in took_us_, in
   // microseconds.
-  void let_go_at(HapticDevice& device, double moment_s) {
+  void release_at(HapticDevice& device, double moment_s) {
     clock_.at(moment_s, [&] { took_us_ = takes_us([&] { device.release(); }); });
   }
   std::int64_t took_us_ = -1;
@@ -156,7 +156,7 @@ TEST_F(HaplyRelease, TheLastCommandIsNoForce) {
 
 TEST_F(HaplyRelease, ReleaseBetweenTwoTicksSendsZeroForceAtOnce) {
   const auto device = service_.open();
-  let_go_at(*device, 0.0207);
+  release_at(*device, 0.0207);
   std::string last;
   for (int i = 0; i < 40; ++i) last = tick(*device, {1, 0, 0});
   EXPECT_EQ(took_us_, 200);  // it waits for the service's answer
@@ -171,10 +171,10 @@ TEST_F(HaplyRelease, ReleaseBetweenTwoTicksSendsZeroForceAtOnce) {
 TEST_F(HaplyRelease, SendsZeroForceWhileATickHangs) {
   const auto device = service_.open();
   for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(*device, {1, 0, 0}), "");
-  ASSERT_EQ(told(device->read(reading_)), "");
-  let_go_at(*device, 0.02);
+  ASSERT_EQ(fault_text(device->read(reading_)), "");
+  release_at(*device, 0.02);
   clock_.sleep_s(0.1);
-  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was released");
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the device was released");
   EXPECT_EQ(service_.sent().back().at_ns, ms(20));
   EXPECT_EQ(newest_force_N(), 0);
 }
@@ -184,11 +184,11 @@ TEST_F(HaplyRelease, SendsZeroForceWhileAReadWaits) {
   const auto device = service_.open();
   ASSERT_EQ(tick(*device, {1, 0, 0}), "");
   service_.hang();
-  let_go_at(*device, clock_.now_s() + 0.001);
+  release_at(*device, clock_.now_s() + 0.001);
   EXPECT_TRUE(device->read(reading_));
   EXPECT_EQ(took_us_, 5000);
   EXPECT_TRUE(service_.is_cut());
-  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the Haply service closed the connection");
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the Haply service closed the connection");
 }
 
 TEST_F(HaplyRelease, CutsTheConnectionAfter20MsIfTheServiceHangs) {
@@ -198,7 +198,7 @@ TEST_F(HaplyRelease, CutsTheConnectionAfter20MsIfTheServiceHangs) {
   EXPECT_EQ(takes_us([&] { device->release(); }), 20'000);
   EXPECT_EQ(newest_force_N(), 0);
   EXPECT_TRUE(service_.is_cut());
-  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was released");
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the device was released");
 }
 
 }  // namespace

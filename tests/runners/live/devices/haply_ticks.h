@@ -15,7 +15,7 @@ inline Wrench force(const Vec3& force_N) {
 }
 
 // Text of the fault, or nothing.
-inline std::string told(const DeviceFault& fault) {
+inline std::string fault_text(const DeviceFault& fault) {
   return fault ? fault.what : "";
 }
 
@@ -27,7 +27,8 @@ class SimulatedHaplyTest : public testing::Test {
   // Runs a tick of one millisecond. Returns its first fault; empty if there was none.
   std::string tick(HapticDevice& device, const Vec3& force_N = Vec3::Zero()) {
     const std::int64_t end_ns = clock_.now_ns() + ms(1);
-    const std::string read = told(device.read(reading_)), written = told(device.write(force(force_N)));
+    const std::string read = fault_text(device.read(reading_)),
+                      written = fault_text(device.write(force(force_N)));
     clock_.sleep_until_ns(end_ns);
     return read.empty() ? written : read;
   }

@@ -11,12 +11,12 @@ namespace {
 class CountingDevice final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;
-  int times_let_go = 0;
+  int release_count = 0;
 
   const DeviceTraits& traits() const override { return traits_; }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
-  void release() noexcept override { ++times_let_go; }
+  void release() noexcept override { ++release_count; }
 
  private:
   DeviceTraits traits_;
@@ -31,26 +31,26 @@ class HeartbeatTest : public testing::Test {
 
 TEST_F(HeartbeatTest, ExpectsNoBeatBeforeTheFirst) {
   heartbeat_.check(ms(1000));
-  EXPECT_EQ(device_.times_let_go, 0);
+  EXPECT_EQ(device_.release_count, 0);
 }
 
 TEST_F(HeartbeatTest, ReleasesTheDeviceAfterMoreThanItsTime) {
   EXPECT_TRUE(heartbeat_.beat(ms(5)));
   heartbeat_.check(ms(15));
-  EXPECT_EQ(device_.times_let_go, 0);
+  EXPECT_EQ(device_.release_count, 0);
   heartbeat_.check(ms(15) + 1);
-  EXPECT_EQ(device_.times_let_go, 1);
+  EXPECT_EQ(device_.release_count, 1);
   EXPECT_EQ(heartbeat_.stalls(), 1);
 }
 
 TEST_F(HeartbeatTest, ReleasesOnceAStallAndSaysSoAtTheNextBeat) {
   heartbeat_.beat(0);
   for (int i = 1; i < 100; ++i) heartbeat_.check(ms(i));
-  EXPECT_EQ(device_.times_let_go, 1);
+  EXPECT_EQ(device_.release_count, 1);
   EXPECT_FALSE(heartbeat_.beat(ms(100)));
   EXPECT_TRUE(heartbeat_.beat(ms(101)));
   for (int i = 102; i < 200; ++i) heartbeat_.check(ms(i));
-  EXPECT_EQ(device_.times_let_go, 2);
+  EXPECT_EQ(device_.release_count, 2);
   EXPECT_EQ(heartbeat_.stalls(), 2);
 }
 
@@ -58,7 +58,7 @@ TEST_F(HeartbeatTest, ExpectsNoBeatAfterTheLast) {
   heartbeat_.beat(0);
   heartbeat_.rest();
   heartbeat_.check(ms(1000));
-  EXPECT_EQ(device_.times_let_go, 0);
+  EXPECT_EQ(device_.release_count, 0);
 }
 
 TEST_F(HeartbeatTest, IsCheckedFiveTimesInItsTime) {

@@ -27,18 +27,18 @@ class Release : public Vendors {
   }
   // Releases the device at that moment, beside the ticks, and stores the time when the release is done. No
   // force may follow.
-  void let_go_at(HapticDevice& device, double moment_s) {
+  void release_at(HapticDevice& device, double moment_s) {
     clock_.at(moment_s, [&] {
       EXPECT_GT(double_->now().force(), 0);
       device.release();
       EXPECT_EQ(double_->now().force(), 0);
-      gone_ns_ = clock_.now_ns();
+      released_ns_ = clock_.now_ns();
     });
   }
 
   SimulatedClock clock_;
   DoubleInstalled double_{vendor(), &clock_};
-  std::int64_t gone_ns_ = 0;
+  std::int64_t released_ns_ = 0;
 };
 
 TEST_P(Release, ThereIsNoForceBeforeTheFirstWrite) {
@@ -71,7 +71,7 @@ TEST_P(Release, MotorsThatDoNotSwitchOnAreAFault) {
 // A tick that hangs between two calls of the vendor's library does not delay the release.
 TEST_P(Release, IsImmediateWhileATickHangs) {
   const auto device = open();
-  let_go_at(*device, 0.0205);
+  release_at(*device, 0.0205);
   DeviceFault last;
   run_ticks(*device, 40, [&](int i) {
     DeviceReading reading;
@@ -79,8 +79,8 @@ TEST_P(Release, IsImmediateWhileATickHangs) {
     if (i == 20) clock_.sleep_s(0.1);
     last = device->write(kPush);
   });
-  EXPECT_EQ(gone_ns_, ms(20.5));
-  EXPECT_EQ(max_force_from(gone_ns_), 0);
+  EXPECT_EQ(released_ns_, ms(20.5));
+  EXPECT_EQ(max_force_from(released_ns_), 0);
   EXPECT_TRUE(last) << "a write after letting go";
 }
 
@@ -89,23 +89,23 @@ TEST_P(Release, IsImmediateWhileATickHangs) {
 // tick, so the release does not wait.
 TEST_P(Release, NeedsFiveMillisecondsWhileTheVendorsCallHangs) {
   const auto device = open();
-  let_go_at(*device, 0.0205);
+  release_at(*device, 0.0205);
   clock_.at(0.1, [&] { double_->release(); });
   DeviceFault last;
   run_ticks(*device, 40, [&](int i) {
     DeviceReading reading;
     device->read(reading);
-    if (i == 20) double_->hang_next(DeviceDouble::reports_force);
+    if (i == 20) double_->hang_next(DeviceDouble::write_force);
     last = device->write(kPush);
   });
-  EXPECT_EQ(gone_ns_, ms(vendor().drives_itself ? 20.5 : 25.5));
-  EXPECT_EQ(max_force_from(gone_ns_), 0);
+  EXPECT_EQ(released_ns_, ms(vendor().drives_itself ? 20.5 : 25.5));
+  EXPECT_EQ(max_force_from(released_ns_), 0);
   EXPECT_TRUE(last) << "a write after letting go";
 }
 
 // The call that hangs switches the motors on in the end, after they were switched off.
 TEST_P(Release, LeavesTheMotorsOffIfTheyWereBeingSwitchedOn) {
-  double_->hang_next(DeviceDouble::switches_on);
+  double_->hang_next(DeviceDouble::switch_on);
   const auto device = open();
   clock_.at(0.005, [&] { device->release(); });
   clock_.at(0.1, [&] { double_->release(); });
@@ -155,7 +155,7 @@ TEST_P(Release, ClosesWithoutForce) {
     EXPECT_TRUE(double_->now().has_motors_on);
   }
   EXPECT_FALSE(double_->now().has_motors_on);
-  EXPECT_EQ(double_->now().told, (std::array<double, 6>{}));
+  EXPECT_EQ(double_->now().sent, (std::array<double, 6>{}));
   EXPECT_FALSE(double_->is_open());
 }
 

@@ -96,7 +96,7 @@ TEST(CameraFeed, CountsGapsAndDropsWhatIsNotNewer) {
                                                        frame(4, 4), frame(6, 2.5), frame(7, 5)},
                                            SensorState::waiting));
   const CameraCounts counts = loop.step(7);
-  EXPECT_EQ(counts.passed_over, 2 + 1);  // 3 and 4; and 6, whose stamp went back
+  EXPECT_EQ(counts.skipped, 2 + 1);  // 3 and 4; and 6, whose stamp went back
   EXPECT_EQ(counts.reversed, 3);
   EXPECT_EQ(loop.recorded, 4);
   EXPECT_EQ(counts.max_pause_s, 2);

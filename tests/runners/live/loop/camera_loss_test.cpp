@@ -50,7 +50,7 @@ class CameraLoss : public testing::Test {
     run.options.duration_s = 2;
     run.options.on_trouble = [this](const LiveTrouble& trouble) { troubles_.push_back(trouble); };
     LiveResult result = run.run();
-    told_ = run.told();
+    reported_ = run.reported();
     return result;
   }
   void hold(double above_m) {
@@ -73,7 +73,7 @@ class CameraLoss : public testing::Test {
   SimulatedClock clock_;
   DoubleInstalled double_{kForceDimension, &clock_};
   const double height_m_ = table_height_m();
-  std::vector<SimulatedRun::Told> told_;
+  std::vector<SimulatedRun::ReportedLine> reported_;
   std::vector<LiveTrouble> troubles_;
 };
 
@@ -81,36 +81,36 @@ class CameraLoss : public testing::Test {
 // 1170 ms.
 TEST_F(CameraLoss, ACameraThatStopsSendingLeavesItsLastCloud) {
   const LiveResult result = run_with_loss(SensorState::waiting);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no frame for 0.2 s: the last cloud is still rendered");
-  EXPECT_EQ(told_[0].at_ns, ms(1170));
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no frame for 0.2 s: the last cloud is still rendered");
+  EXPECT_EQ(reported_[0].at_ns, ms(1170));
   expect_the_last_cloud_to_hold();
   EXPECT_FALSE(result.failed) << result.ended;
   EXPECT_EQ(result.counts.camera.received, 30);
   EXPECT_EQ(result.log.stale_ticks, 2000 - 1168);
   ASSERT_EQ(troubles_.size(), 1u) << "a page gets what the terminal gets";
-  EXPECT_EQ(troubles_[0].camera, told_[0].line);
+  EXPECT_EQ(troubles_[0].camera, reported_[0].line);
   EXPECT_EQ(troubles_[0].force, "");
 }
 
 // There is no last cloud that could stay.
 TEST_F(CameraLoss, ACameraThatNeverSendsLeavesNothingToTouch) {
   run_with_loss(SensorState::waiting, 0);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no frame has arrived yet: there is nothing to touch");
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no frame has arrived yet: there is nothing to touch");
 }
 
 TEST_F(CameraLoss, AFailureBeforeTheFirstFrameLeavesNothingToTouch) {
   run_with_loss(SensorState::failed, 0);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): there is nothing to touch");
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no more frames (it was pulled out): there is nothing to touch");
 }
 
 TEST_F(CameraLoss, AnUnpluggedCameraLeavesItsLastCloudAndAFailure) {
   const LiveResult result = run_with_loss(SensorState::failed);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): the last cloud is still rendered");
-  EXPECT_EQ(told_[0].at_ns, ms(970));
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no more frames (it was pulled out): the last cloud is still rendered");
+  EXPECT_EQ(reported_[0].at_ns, ms(970));
   expect_the_last_cloud_to_hold();
   EXPECT_TRUE(result.failed);
   EXPECT_EQ(result.ended, "its duration has elapsed");
@@ -119,8 +119,8 @@ TEST_F(CameraLoss, AnUnpluggedCameraLeavesItsLastCloudAndAFailure) {
 TEST_F(CameraLoss, TheEndOfARecordingIsNoFailure) {
   const LiveResult result = run_with_loss(SensorState::ended);
   EXPECT_FALSE(result.failed);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no more frames (the recording has ended): the last cloud is still rendered");
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no more frames (the recording has ended): the last cloud is still rendered");
   expect_the_last_cloud_to_hold();
 }
 

@@ -60,7 +60,7 @@ class DepthDeviceLoss : public testing::Test {
     };
     clock.at(kFails_s, fail);
     LiveResult result = run.run();
-    told_ = run.told();
+    reported_ = run.reported();
     return result;
   }
   static int kernel_runs() { return library().kernel_runs; }
@@ -73,7 +73,7 @@ class DepthDeviceLoss : public testing::Test {
     int index, kernel_runs;
   };
   const TestFolder folder_{"depth_device_loss"};
-  std::vector<SimulatedRun::Told> told_;
+  std::vector<SimulatedRun::ReportedLine> reported_;
   std::vector<SeenFrame> frames_;
 };
 
@@ -81,7 +81,7 @@ class DepthDeviceLoss : public testing::Test {
 // difference.
 TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
   const LiveResult on_cpu = run("cpu");
-  EXPECT_TRUE(told_.empty());
+  EXPECT_TRUE(reported_.empty());
   const std::size_t frames = frames_.size();
   const std::string expected = digest(on_cpu.log.trace.columns());
   for (const char* function : kFrameFunctions) {
@@ -93,13 +93,13 @@ TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
     EXPECT_EQ(result.log.missed_ticks, 0);
     EXPECT_FALSE(result.failed) << result.ended;
     ASSERT_EQ(frames_.size(), frames);
-    ASSERT_EQ(told_.size(), 1u);
-    EXPECT_EQ(told_[0].line, "depth_pipeline.device = opencl:0:0 (double, double) failed: " +
-                                 std::string(function) + ": CL_OUT_OF_RESOURCES (-5)" + kTakeover);
+    ASSERT_EQ(reported_.size(), 1u);
+    EXPECT_EQ(reported_[0].line, "depth_pipeline.device = opencl:0:0 (double, double) failed: " +
+                                     std::string(function) + ": CL_OUT_OF_RESOURCES (-5)" + kTakeover);
     // The first frame after the failure is that of 0.5 s, and the next check for messages is 10 ms later at
     // most.
-    EXPECT_GE(told_[0].at_ns, ms(500));
-    EXPECT_LE(told_[0].at_ns, ms(550));
+    EXPECT_GE(reported_[0].at_ns, ms(500));
+    EXPECT_LE(reported_[0].at_ns, ms(550));
     // The device did all the work before: from the sensor's numbers to the columns of fixtures.
     EXPECT_EQ(frames_[1].kernel_runs, frames_[0].kernel_runs + 6);
     EXPECT_EQ(frames_[frames - 1].kernel_runs, frames_[frames - 2].kernel_runs);
@@ -108,7 +108,7 @@ TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
 
 TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
   const LiveResult live = run("opencl");
-  EXPECT_TRUE(told_.empty());
+  EXPECT_TRUE(reported_.empty());
   // Frames from the disk come as clouds. They go another way through the device, and have the same bits.
   SimulationOptions offline;
   offline.kernels = &scenes::kernels(), offline.hash_frames = true;
@@ -127,13 +127,13 @@ TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
 // twelfth.
 TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   const Experiment experiment = at_the_valves("opencl");
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   std::vector<double> captured_s;
   std::atomic<bool> stop = false;
   LiveOptions options;
   options.kernels = &scenes::kernels();
   options.stop = &stop;
-  options.report_line = [&](const std::string& line) { told.push_back(line); };
+  options.report_line = [&](const std::string& line) { reported.push_back(line); };
   options.on_frame = [&](const Frame& frame) {
     captured_s.push_back(frame.captured_s);
     if (captured_s.size() == 10) library().hangs = true, fail_in("clFinish");
@@ -143,7 +143,7 @@ TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   EXPECT_FALSE(result.failed) << result.ended;
   ASSERT_GE(captured_s.size(), 12u);
   EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // the time for which the hand had no frames
-  const auto takeovers = std::count_if(told.begin(), told.end(), [](const std::string& line) {
+  const auto takeovers = std::count_if(reported.begin(), reported.end(), [](const std::string& line) {
     return line.find(kTakeover) != std::string::npos;
   });
   EXPECT_EQ(takeovers, 1);
@@ -153,7 +153,7 @@ TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
       result.log.trace.time_s.begin(), result.log.trace.time_s.end(),
       [&](double time_s) { return time_s > captured_s[10] + 0.1 && time_s < captured_s[11] - 0.1; });
   EXPECT_GT(ticks, 20);
-  library().let_go = true;
+  library().is_released = true;
   EXPECT_TRUE(wait_until([] { return library().objects == 0; }));
 }
 

@@ -39,7 +39,7 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
         });
     run.options.duration_s = duration_s;
     LiveResult result = run.run();
-    told_ = run.told();
+    reported_ = run.reported();
     return result;
   }
   void hold(double above_m) {
@@ -56,16 +56,16 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
   SimulatedClock clock_;
   CameraInstalled camera_{*GetParam(), &clock_};
   DoubleInstalled device_{kForceDimension, &clock_};
-  std::vector<SimulatedRun::Told> told_;
+  std::vector<SimulatedRun::ReportedLine> reported_;
 };
 
 // There is no force in front of the wall. The spring pushes the hand out behind it.
 TEST_P(DepthLibraryRun, TheHandFeelsWhatTheCameraSees) {
   const LiveResult result = run(0.79);
   EXPECT_FALSE(result.failed) << result.ended;
-  EXPECT_TRUE(told_.empty()) << told_[0].line;
+  EXPECT_TRUE(reported_.empty()) << reported_[0].line;
   EXPECT_EQ(result.counts.camera.received, 23);  // 30 a second
-  EXPECT_EQ(result.counts.camera.passed_over, 0);
+  EXPECT_EQ(result.counts.camera.skipped, 0);
   EXPECT_EQ(result.counts.camera.reversed, 0);
   EXPECT_EQ(result.counts.camera.incomplete, 0);
   EXPECT_EQ(force().at(ms(190)), 0);
@@ -77,11 +77,11 @@ TEST_P(DepthLibraryRun, UnpluggedCameraLeavesItsLastCloudAndAFailure) {
   const LiveResult result = run(1.2);
   EXPECT_TRUE(result.failed);
   EXPECT_EQ(result.counts.camera.received, 15);
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_HAS(told_[0].line, "no more frames (" + std::string(GetParam()->name));
-  EXPECT_HAS(told_[0].line, "was disconnected");
-  EXPECT_HAS(told_[0].line, ": the last cloud is still rendered");
-  EXPECT_LE(told_[0].at_ns, ms(700));  // the frame that did not come was due at 533 ms
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_HAS(reported_[0].line, "no more frames (" + std::string(GetParam()->name));
+  EXPECT_HAS(reported_[0].line, "was disconnected");
+  EXPECT_HAS(reported_[0].line, ": the last cloud is still rendered");
+  EXPECT_LE(reported_[0].at_ns, ms(700));  // the frame that did not come was due at 533 ms
   EXPECT_NEAR(force().at(ms(1150)), force().at(ms(520)), 0.02 * force().at(ms(520)));
 }
 
@@ -89,8 +89,8 @@ TEST_P(DepthLibraryRun, SilentCameraLeavesItsLastCloud) {
   camera_->state.silent_after = 15;
   const LiveResult result = run(1.2);
   EXPECT_FALSE(result.failed) << result.ended;
-  ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].line, "no frame for 0.2 s: the last cloud is still rendered");
+  ASSERT_EQ(reported_.size(), 1u);
+  EXPECT_EQ(reported_[0].line, "no frame for 0.2 s: the last cloud is still rendered");
   EXPECT_GT(force().at(ms(1150)), 1);
 }
 

@@ -41,7 +41,7 @@ class LiveCamera : public testing::Test {
     options.stop = &stop;
     options.report_line = [&](const std::string& line) {
       const std::lock_guard lock(mutex_);
-      if (line.find("frame") != std::string::npos) told_ = line;
+      if (line.find("frame") != std::string::npos) reported_ = line;
     };
     options.on_frame = [&](const Frame&) { has_frame_ = true; };
     options.on_tick = [&](const LiveTick&) {
@@ -50,13 +50,13 @@ class LiveCamera : public testing::Test {
     return run_live(press_experiment(), options);
   }
   // Returns the last message about frames. A busy machine may cause more messages about the loop.
-  std::string told() {
+  std::string reported() {
     const std::lock_guard lock(mutex_);
-    return told_;
+    return reported_;
   }
 
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   std::atomic<bool> has_frame_ = false;
 };
 
@@ -64,10 +64,10 @@ TEST_F(LiveCamera, RunContinuesIfTheCameraStopsSending) {
   const std::string expected = "no frame for 0.2 s: the last cloud is still rendered";
   int ticks_without = 0;
   const LiveResult result = run("flat=500,stop_after=10", [&] {
-    if (has_frame_ && sent_frames() == 10 && told() == expected) ++ticks_without;
+    if (has_frame_ && sent_frames() == 10 && reported() == expected) ++ticks_without;
     return ticks_without > 300;
   });
-  EXPECT_EQ(told(), expected);
+  EXPECT_EQ(reported(), expected);
   EXPECT_FALSE(result.failed) << result.ended;
   EXPECT_EQ(result.ended, "stopped by a signal");
   EXPECT_GT(result.counts.camera.received, 0);
@@ -79,9 +79,9 @@ TEST_F(LiveCamera, RunContinuesAndFailsIfTheCameraIsUnplugged) {
   const std::string expected = "no more frames (openni2: was disconnected): the last cloud is still rendered";
   const LiveResult result = run("flat=500", [&] {
     if (has_frame_) unplug();
-    return told() == expected;
+    return reported() == expected;
   });
-  EXPECT_EQ(told(), expected);
+  EXPECT_EQ(reported(), expected);
   EXPECT_EQ(result.ended, "stopped by a signal");
   EXPECT_TRUE(result.failed);
 }

@@ -59,13 +59,13 @@ TEST_F(LiveControlsTest, ScenarioIsNotShownIfThereIsAnotherCamera) {
 }
 
 TEST_F(LiveControlsTest, AllowedChangesAreHandedToTheLoop) {
-  EXPECT_EQ(controls_.asked().oldest(), nullptr);
+  EXPECT_EQ(controls_.requested().oldest(), nullptr);
   EXPECT_EQ(change({{"renderer.r1_m", 0.00699}, {"renderer.r2_m", 0.00701}}), "");
-  const ParameterChanges* const asked = controls_.asked().oldest();
-  ASSERT_NE(asked, nullptr);
-  ASSERT_EQ(asked->count, 2u);
-  EXPECT_EQ(asked->list[1].parameter, 1);
-  EXPECT_EQ(asked->list[1].value, 0.00701);
+  const ParameterChanges* const requested = controls_.requested().oldest();
+  ASSERT_NE(requested, nullptr);
+  ASSERT_EQ(requested->count, 2u);
+  EXPECT_EQ(requested->list[1].parameter, 1);
+  EXPECT_EQ(requested->list[1].value, 0.00701);
   EXPECT_EQ(value("renderer.r1_m"), 0.00699);
 }
 
@@ -80,7 +80,7 @@ TEST_F(LiveControlsTest, OtherChangesAreRefusedWithTheReasonAndChangeNothing) {
   EXPECT_EQ(controls_.change(none), "there is no live parameter 6");
   none.list[0].parameter = -1;
   EXPECT_EQ(controls_.change(none), "there is no live parameter -1");
-  EXPECT_EQ(controls_.asked().oldest(), nullptr);
+  EXPECT_EQ(controls_.requested().oldest(), nullptr);
 }
 
 // Each change is checked together with those before it.

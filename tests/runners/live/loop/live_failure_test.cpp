@@ -42,7 +42,7 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
   }
   // Checks that the hand is pressed until then, and that there is no force from then on.
   void expect_gone_at(std::int64_t moment_ns) const {
-    EXPECT_EQ(force().gone_ns(), moment_ns);
+    EXPECT_EQ(force().force_end_ns(), moment_ns);
     EXPECT_GT(force().at(moment_ns - 1), 1);
   }
 
@@ -110,7 +110,7 @@ TEST_P(PressedDevice, TheEndOfItsDurationEndsTheForceInTheNextTick) {
 // Then the motors are off. The call that hung continues at 380 ms. The force then begins as at the start: it
 // waits while the hand is pressed in.
 TEST_P(PressedDevice, AHangingLoopIsReleasedAndTheForceBeginsGently) {
-  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
+  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::write_force); });
   at(0.38, [](DeviceDouble& device) { device.release(); });
   clock_.at(0.5, [&] { hold(kAbove_m); });
   clock_.at(0.6, [&] { hold(kBelow_m); });
@@ -126,13 +126,13 @@ TEST_P(PressedDevice, AHangingLoopIsReleasedAndTheForceBeginsGently) {
 // The watch releases the device by 317 ms. The user's part sees this at 320 ms and reports it when it has
 // lasted for more than 0.2 s.
 TEST_P(PressedDevice, ALongHangIsReportedWhileItLasts) {
-  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
+  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::write_force); });
   at(0.7, [](DeviceDouble& device) { device.release(); });
   run(0.8);
-  ASSERT_EQ(run_.told().size(), 2u);
-  EXPECT_EQ(run_.told()[0].line, "force is off: the haptic loop hangs, and the device was released");
-  EXPECT_EQ(run_.told()[0].at_ns, ms(530));
-  EXPECT_EQ(run_.told()[1].line, "re-armed: the force starts again when the hand is in free space");
+  ASSERT_EQ(run_.reported().size(), 2u);
+  EXPECT_EQ(run_.reported()[0].line, "force is off: the haptic loop hangs, and the device was released");
+  EXPECT_EQ(run_.reported()[0].at_ns, ms(530));
+  EXPECT_EQ(run_.reported()[1].line, "re-armed: the force starts again when the hand is in free space");
 }
 
 TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
@@ -169,7 +169,7 @@ class StiffnessOfADevice : public PressedDevice {
 TEST_P(StiffnessOfADevice, LeavesTheForceAsItIsIfUnknown) {
   const LiveResult result = run();
   EXPECT_EQ(result.force_scale, 1);
-  EXPECT_TRUE(run_.told().empty());
+  EXPECT_TRUE(run_.reported().empty());
   EXPECT_NEAR(force().at(ms(499)), rendered_at_last_N(result), 1e-12);
 }
 
@@ -178,8 +178,8 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
   double_->set([](DeviceDouble::State& state) { state.max_stiffness = kLimit_N_per_m / 1000; });  // N/mm
   const LiveResult result = run();
   EXPECT_EQ(result.force_scale, kLimit_N_per_m / kRendered_N_per_m);
-  ASSERT_EQ(run_.told().size(), 1u);
-  EXPECT_HAS(run_.told()[0].line,
+  ASSERT_EQ(run_.reported().size(), 1u);
+  EXPECT_HAS(run_.reported()[0].line,
              "the maximum stiffness of the device is 300 N/m: forces and torques are scaled by 0.5");
   EXPECT_NEAR(force().at(ms(499)), 0.5 * rendered_at_last_N(result), 1e-12);
   EXPECT_LT(result.log.max_force_N, 0.5 * max_rendered_N(result) * (1 + 1e-9));

@@ -109,9 +109,9 @@ RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_tick
 
 TEST(LiveNotes, ReportFramesThatWereNotUsed) {
   CameraCounts camera;
-  camera.received = 95, camera.passed_over = 5, camera.overtaken = 3, camera.incomplete = 2;
+  camera.received = 95, camera.skipped = 5, camera.overtaken = 3, camera.incomplete = 2;
   EXPECT_EQ(kinds_of(report_of_counts(camera)), Kinds{}) << "10 of 100: single frames";
-  camera.received = 94, camera.passed_over = 6;
+  camera.received = 94, camera.skipped = 6;
   const RunReport report = report_of_counts(camera);
   ASSERT_EQ(kinds_of(report), Kinds{"frames unused"});
   EXPECT_EQ(report.notes[0].text,

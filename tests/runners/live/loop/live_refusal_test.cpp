@@ -63,7 +63,7 @@ class RefusedRun : public testing::Test {
     run.options.provenance = {{"config", press_experiment().to_json()}};
     run.options.check_inputs = check_inputs_;
     LiveResult result = run.run();
-    told_ = run.told();
+    reported_ = run.reported();
     return result;
   }
   std::filesystem::path session() const { return folder_ / "session.h5"; }
@@ -71,7 +71,7 @@ class RefusedRun : public testing::Test {
   const TestFolder folder_{"live_refusal"};
   SimulatedClock clock_;
   std::function<void()> check_inputs_;
-  std::vector<SimulatedRun::Told> told_;
+  std::vector<SimulatedRun::ReportedLine> reported_;
 };
 
 // The user's part checks every 10 ms.
@@ -80,7 +80,7 @@ TEST_F(RefusedRun, AFrameFromAnotherPlaceEndsTheRun) {
   EXPECT_HAS(result.refused, "./scene: frame 6 was captured from another pose (0.2 m and 0 deg");
   EXPECT_EQ(result.ended, result.refused);
   EXPECT_LE(clock_.now_ns(), 211'000'000);
-  EXPECT_TRUE(told_.empty()) << told_[0].line;
+  EXPECT_TRUE(reported_.empty()) << reported_[0].line;
   EXPECT_EQ(result.counts.camera.received, kMoved);
   const SessionReader recorded(session());
   EXPECT_EQ(recorded.frame_count(), static_cast<std::size_t>(kMoved)) << "the hand is kept until then";

@@ -110,7 +110,7 @@ TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
   record(run, folder / "session.h5");
   run.options.controls =
       std::make_shared<LiveControls>(experiment(), scenes::kernels(), LiveControls::Camera::simulated);
-  std::size_t asked = 0;
+  std::size_t requested = 0;
   // Changes the wanted parameters together. A switch gets the other value. Parameters that the renderer does
   // not have are left out.
   const auto change = [&](const std::vector<std::pair<std::string, double>>& wanted) {
@@ -126,7 +126,7 @@ TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
     if (changes.count > 0) {
       EXPECT_EQ(run.options.controls->change(changes), "");
     }
-    asked += changes.count;
+    requested += changes.count;
   };
   clock.at(0.7005, [&] {
     change({{"renderer.stiffness_N_per_m", 1.5}});
@@ -140,13 +140,13 @@ TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
   const LiveResult result = run.run();
   expect_the_same_offline(run.options.record, result);
   const SessionReader session(run.options.record);
-  ASSERT_GE(asked, 3u);
-  ASSERT_EQ(session.changes().size(), asked);
+  ASSERT_GE(requested, 3u);
+  ASSERT_EQ(session.changes().size(), requested);
   EXPECT_GE(session.changes()[0].tick, 701u);
   EXPECT_LE(session.changes()[0].tick, 706u);
   // The changes matter: the forces differ without them.
   nlohmann::json without = nlohmann::json::parse(Experiment::load(run.options.record.string()).to_json());
-  ASSERT_EQ(without["changes"].size(), asked - 1) << "the noise is in the frames";
+  ASSERT_EQ(without["changes"].size(), requested - 1) << "the noise is in the frames";
   without.erase("changes");
   const Trace unchanged = simulate(Experiment::from_json(without.dump(), "without"));
   EXPECT_NE(unchanged.force_N, result.log.trace.force_N);

@@ -29,7 +29,7 @@ class BackgroundRun {
     options_.on_report = [this](const LiveReport&) { ++reports_; };
     options_.report_line = [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
-      told_ += line + "\n";
+      reported_ += line + "\n";
     };
     thread_ = std::thread([this] { run(); });
   }
@@ -45,9 +45,9 @@ class BackgroundRun {
     stop_ = true;
     return ended();
   }
-  std::string told() {
+  std::string reported() {
     const std::lock_guard lock(mutex_);
-    return told_;
+    return reported_;
   }
   void rearm() { rearm_ = true; }
   void ask_for_a_report() { report_ = true; }
@@ -61,7 +61,7 @@ class BackgroundRun {
   std::atomic<bool> stop_ = false, rearm_ = false, report_ = false;
   std::atomic<int> reports_ = 0;
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   LiveOptions options_;
   LiveResult result_;
   std::thread thread_;
@@ -70,7 +70,7 @@ class BackgroundRun {
 class LiveThreads : public testing::TestWithParam<const VendorDevice*> {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(wait_until([&] { return double_->now().has_motors_on; })) << "no tick: " << run_.told();
+    ASSERT_TRUE(wait_until([&] { return double_->now().has_motors_on; })) << "no tick: " << run_.reported();
   }
 
   DoubleInstalled double_{*GetParam()};
@@ -94,7 +94,7 @@ TEST_P(LiveThreads, ADeviceThatFailsEndsThem) {
 }
 
 TEST_P(LiveThreads, AnotherThreadReleasesAHangingLoopAndTheRunContinues) {
-  double_->hang_next(DeviceDouble::reports_force);
+  double_->hang_next(DeviceDouble::write_force);
   ASSERT_TRUE(wait_until([&] { return double_->is_hanging(); }));
   EXPECT_TRUE(wait_until([&] { return !double_->now().has_motors_on; }));
   double_->release();
@@ -109,11 +109,12 @@ TEST_P(LiveThreads, ALatchIsReportedAndRearmed) {
     double_->set([&](DeviceDouble::State& state) { state.turning = {rad_per_s, 0, 0}; });
   };
   turn(100);
-  EXPECT_TRUE(wait_until([&] { return run_.told().find("the handle turns too fast") != std::string::npos; }));
+  EXPECT_TRUE(
+      wait_until([&] { return run_.reported().find("the handle turns too fast") != std::string::npos; }));
   turn(0);
   EXPECT_TRUE(wait_until([&] {
     run_.rearm();
-    return run_.told().find("re-armed: ") != std::string::npos;
+    return run_.reported().find("re-armed: ") != std::string::npos;
   }));
   EXPECT_FALSE(run_.ended_by_stop().failed);
 }

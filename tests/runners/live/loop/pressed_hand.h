@@ -51,14 +51,14 @@ struct ForceOverTime {
   }
   // Returns the moment from which on there is no force any more. Returns -1 if there was no force, or if it
   // has not ended.
-  std::int64_t gone_ns() const {
-    std::int64_t gone_ns = -1;
+  std::int64_t force_end_ns() const {
+    std::int64_t force_end_ns = -1;
     bool has_force = false;
     for (const Piece& piece : pieces) {
-      if (has_force && piece.force_N == 0) gone_ns = piece.from_ns;
+      if (has_force && piece.force_N == 0) force_end_ns = piece.from_ns;
       has_force = piece.force_N > 0;
     }
-    return has_force ? -1 : gone_ns;
+    return has_force ? -1 : force_end_ns;
   }
 };
 

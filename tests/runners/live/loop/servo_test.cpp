@@ -259,12 +259,12 @@ TEST_F(ServoTest, KeepsTheStartOfALongReasonAndNoOtherOne) {
     throw std::runtime_error(std::string(10'000, ++calls == 1 ? 'x' : 'y'));
   };
   run();
-  const std::string told = servo_->trouble();
-  EXPECT_EQ(told.find("an exception in the haptic loop: xxx"), 0u) << told;
-  EXPECT_GT(told.size(), 200u);
-  EXPECT_LT(told.size(), 10'000u);
+  const std::string trouble = servo_->trouble();
+  EXPECT_EQ(trouble.find("an exception in the haptic loop: xxx"), 0u) << trouble;
+  EXPECT_GT(trouble.size(), 200u);
+  EXPECT_LT(trouble.size(), 10'000u);
   EXPECT_FALSE(servo_->tick()) << "an adapter that calls once more";
-  EXPECT_EQ(servo_->trouble(), told);
+  EXPECT_EQ(servo_->trouble(), trouble);
 }
 
 TEST_F(ServoTest, AnExceptionWithoutATextLetsTheDeviceGo) {

@@ -18,7 +18,7 @@ class SimulatedRun {
  public:
   using DeviceOpener = std::function<std::unique_ptr<HapticDevice>(const Experiment&, Clock&)>;
   using SourceOpener = std::function<std::unique_ptr<DepthSource>(const Experiment&, Clock&)>;
-  struct Told {
+  struct ReportedLine {
     std::int64_t at_ns;
     std::string line;
   };
@@ -31,7 +31,7 @@ class SimulatedRun {
         open_device_(std::move(open_device)),
         open_source_(std::move(open_source)) {
     options.kernels = &scenes::kernels();
-    options.report_line = [this](const std::string& line) { told_.push_back({clock_.now_ns(), line}); };
+    options.report_line = [this](const std::string& line) { reported_.push_back({clock_.now_ns(), line}); };
   }
 
   static std::unique_ptr<DepthSource> scenario_camera(const Experiment& experiment, Clock& clock) {
@@ -39,7 +39,7 @@ class SimulatedRun {
   }
 
   LiveOptions options;
-  const std::vector<Told>& told() const { return told_; }
+  const std::vector<ReportedLine>& reported() const { return reported_; }
 
   // Runs until its duration, its stop or a failure ends it. The sleeps of the loop do the work that other
   // threads do in run_live(), before a tick of the same moment.
@@ -69,7 +69,7 @@ class SimulatedRun {
   const Experiment experiment_;
   const DeviceOpener open_device_;
   const SourceOpener open_source_;
-  std::vector<Told> told_;
+  std::vector<ReportedLine> reported_;
 };
 
 }  // namespace remote_touch

@@ -249,8 +249,8 @@ TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
   nlohmann::json now = answer();
   EXPECT_EQ(now["values"][3], 450);
   EXPECT_EQ(now["refused"], "");
-  ASSERT_NE(controls_->asked().oldest(), nullptr);
-  EXPECT_EQ(controls_->asked().oldest()->list[0].value, 450);
+  ASSERT_NE(controls_->requested().oldest(), nullptr);
+  EXPECT_EQ(controls_->requested().oldest()->list[0].value, 450);
   EXPECT_TRUE(change(-1));
   now = answer();
   EXPECT_EQ(now["values"][3], 450);

@@ -186,7 +186,7 @@ TEST(PageFile, NumbersComeBackFromTheirCompressedForm) {
   std::string bytes;
   for (int i = 0; i < 100000; ++i) bytes += static_cast<char>(i % 251 * (i % 251) % 251);
   for (const std::size_t length : {0u, 1u, 2u, 3u, 1000u, 100000u})
-    EXPECT_EQ(decompressed(compressed(bytes.substr(0, length)), 200000), bytes.substr(0, length));
+    EXPECT_EQ(decompressed(gzip_base64(bytes.substr(0, length)), 200000), bytes.substr(0, length));
 }
 
 // Bytes that cannot be made shorter, so that both are done in several pieces.
@@ -194,7 +194,7 @@ TEST(PageFile, NumbersOfSeveralPiecesComeBack) {
   std::mt19937 random(1);
   std::string bytes;
   for (int i = 0; i < 7'000'001; ++i) bytes += static_cast<char>(random() & 0xff);
-  EXPECT_TRUE(decompressed(compressed(bytes), bytes.size() + 1) == bytes);
+  EXPECT_TRUE(decompressed(gzip_base64(bytes), bytes.size() + 1) == bytes);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p
     const double lower_m = lower_bound_m(disk);
     if (lower_m > p.look_ahead_m || disk.at.distance_m > kFieldMargin_m - 2e-4) continue;
     all.push_back({cell_and_octant(p_T, -disk.at.gradient_T, kCellsPer_m),
-                   lower_m <= kTouched_m ? near_contact(*kTool, disk, nearest_place(*kTool, disk), side)
+                   lower_m <= kTouched_m ? near_contact(*kTool, disk, nearest_position(*kTool, disk), side)
                                          : far_contact(disk, lower_m)});
   }
   return all;

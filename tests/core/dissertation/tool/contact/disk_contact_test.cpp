@@ -20,7 +20,7 @@ SurfaceDisk disk_at(const Vec3& p_T, const Vec3& n_T, double radius_m = 1e-3) {
 
 TEST(DiskContact, ADiskBelowAFaceIsMetInItsPlane) {
   const SurfaceDisk disk = disk_at({0.001, -0.00485, 0.002}, Vec3::UnitY());
-  const ToolContact contact = near_contact(*kPlate, disk, nearest_place(*kPlate, disk), 0);
+  const ToolContact contact = near_contact(*kPlate, disk, nearest_position(*kPlate, disk), 0);
   EXPECT_EQ(contact.n_T, Vec3(0, 1, 0));
   EXPECT_EQ(contact.side, 1);
   EXPECT_NEAR(contact.depth_m, -1e-4, 1e-9);
@@ -29,7 +29,7 @@ TEST(DiskContact, ADiskBelowAFaceIsMetInItsPlane) {
 // The same disk faces away from the tool, so the tool is behind the surface.
 TEST(DiskContact, TurnsThePlaneIfTheDiskFacesAway) {
   const SurfaceDisk disk = disk_at({0.001, -0.00485, 0.002}, -Vec3::UnitY());
-  const ToolContact contact = near_contact(*kPlate, disk, nearest_place(*kPlate, disk), 0);
+  const ToolContact contact = near_contact(*kPlate, disk, nearest_position(*kPlate, disk), 0);
   EXPECT_EQ(contact.n_T, Vec3(0, 1, 0));
   EXPECT_EQ(contact.side, -1);
 }
@@ -40,7 +40,7 @@ TEST(DiskContact, TheNormalDecidesAtTheRidgeOfTheField) {
   for (const double up : {1.0, -1.0}) {
     const SurfaceDisk disk = disk_at({0.001, 0, 0.002}, {0, up, 0});
     ASSERT_LT(disk.at.gradient_T.norm(), 0.1);
-    const ToolContact contact = near_contact(*kPlate, disk, nearest_place(*kPlate, disk), 0);
+    const ToolContact contact = near_contact(*kPlate, disk, nearest_position(*kPlate, disk), 0);
     EXPECT_EQ(contact.n_T, Vec3(0, up, 0));
     EXPECT_EQ(contact.side, 1);
   }
@@ -50,14 +50,14 @@ TEST(DiskContact, TheNormalDecidesAtTheRidgeOfTheField) {
 TEST(DiskContact, AKnownSideCountsInside) {
   const SurfaceDisk inside = disk_at({0.001, -0.00425, 0.002}, Vec3::UnitY()),
                     outside = disk_at({0.001, -0.00485, 0.002}, Vec3::UnitY());
-  EXPECT_EQ(near_contact(*kPlate, inside, nearest_place(*kPlate, inside), -1).n_T, Vec3(0, -1, 0));
-  EXPECT_EQ(near_contact(*kPlate, outside, nearest_place(*kPlate, outside), -1).n_T, Vec3(0, 1, 0));
+  EXPECT_EQ(near_contact(*kPlate, inside, nearest_position(*kPlate, inside), -1).n_T, Vec3(0, -1, 0));
+  EXPECT_EQ(near_contact(*kPlate, outside, nearest_position(*kPlate, outside), -1).n_T, Vec3(0, 1, 0));
 }
 
 // The disk lies beside the plate, edge-on and within reach of its rim: it touches the tool at the rim.
 TEST(DiskContact, ADiskSeenEdgeOnIsMetAtItsRim) {
   const SurfaceDisk disk = disk_at({0.0112, 0.001, 0.002}, Vec3::UnitZ());
-  const DiskPlace nearest = nearest_place(*kPlate, disk);
+  const DiskPosition nearest = nearest_position(*kPlate, disk);
   EXPECT_TRUE(nearest.at_rim);
   EXPECT_NEAR((nearest.p_T - disk.p_T).norm(), disk.radius_m, 1e-12);
   const ToolContact contact = near_contact(*kPlate, disk, nearest, 0);
@@ -79,7 +79,7 @@ TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
         if (i * i + j * j <= 2500)
           min_m = std::min(min_m,
                            sample_field(*kPlate, disk.p_T + disk.radius_m / 50 * (i * u + j * v)).distance_m);
-    const DiskPlace nearest = nearest_place(*kPlate, disk);
+    const DiskPosition nearest = nearest_position(*kPlate, disk);
     EXPECT_LE(nearest.at.distance_m, disk.at.distance_m);
     EXPECT_NEAR(nearest.at.distance_m, min_m, kMissed_m) << off_m;
     EXPECT_LE(lower_bound_m(disk), min_m);

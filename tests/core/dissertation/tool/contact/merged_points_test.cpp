@@ -45,9 +45,9 @@ double distance_to_nearest_m(const std::vector<CloudPoint>& points, const Vec3& 
 
 // No position on a disk is far from the cloud: a square of 1.5 spacings has a diagonal of 2.1 spacings.
 void expect_no_more_than_the_cloud(const std::vector<CloudPoint>& points) {
-  const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
+  const std::vector<PointOrDisk> merged = merged_points(points, kCube_m);
   int disks = 0;
-  for (const MergedPoint& disk : merged) {
+  for (const PointOrDisk& disk : merged) {
     if (disk.extent_m == 0 || disk.p_W.norm() > 0.006) continue;
     ++disks;
     const Vec3 u = disk.n_W.unitOrthogonal(), v = disk.n_W.cross(u);
@@ -66,16 +66,16 @@ TEST(MergedPoints, EveryPointIsInADiskOrIsKept) {
   // A gently curved surface with a step. No disk may reach across the step.
   const std::vector<CloudPoint> points =
       surface([](double x, double z) { return 0.5 * x * x + (z > 0.01 ? 2e-4 : 0); });
-  const std::vector<MergedPoint> merged = merged_points(points, kCube_m);
+  const std::vector<PointOrDisk> merged = merged_points(points, kCube_m);
   ASSERT_FALSE(merged.empty());
   EXPECT_LT(2 * merged.size(), points.size());
   double step_m = 0;
-  for (const MergedPoint& disk : merged)
+  for (const PointOrDisk& disk : merged)
     if (disk.extent_m > 0)
       step_m = std::max(step_m, std::abs(disk.p_W.z() - 0.01) < 2e-4 ? disk.extent_m : 0);
   EXPECT_EQ(step_m, 0);
   for (const CloudPoint& point : points) {
-    const bool is_there = std::any_of(merged.begin(), merged.end(), [&](const MergedPoint& disk) {
+    const bool is_there = std::any_of(merged.begin(), merged.end(), [&](const PointOrDisk& disk) {
       const Vec3 offset = point.p_W - disk.p_W;
       return offset.norm() <= disk.extent_m + 1e-12 && std::abs(offset.dot(disk.n_W)) <= kFlat_m;
     });
@@ -88,7 +88,7 @@ TEST(MergedPoints, AFullPlaneKeepsATwentiethOfItsPoints) {
   std::size_t inside = 0, merged_inside = 0;  // away from the rim
   const auto is_inside = [](const Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() < 0.024; };
   for (const CloudPoint& point : points) inside += is_inside(point.p_W) ? 1 : 0;
-  for (const MergedPoint& disk : merged_points(points, kCube_m)) merged_inside += is_inside(disk.p_W) ? 1 : 0;
+  for (const PointOrDisk& disk : merged_points(points, kCube_m)) merged_inside += is_inside(disk.p_W) ? 1 : 0;
   EXPECT_LT(20 * merged_inside, inside);
 }
 
@@ -125,7 +125,7 @@ TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
 
 // The disks of a cloud of points one step apart: a circle of `half` steps in one cube. Points around it,
 // which have no normals and lie in another cube, cover the squares at its rim.
-std::vector<MergedPoint> disks_of_circle(int half) {
+std::vector<PointOrDisk> disks_of_circle(int half) {
   constexpr double kStep_m = 1.0 / (1 << 16), kCircleCube_m = 1.0 / 128;
   const Vec3 no_normal = Vec3::Constant(std::nan(""));
   std::vector<CloudPoint> points;
@@ -141,8 +141,8 @@ std::vector<MergedPoint> disks_of_circle(int half) {
                         kStep_m});
       points.back().p_W.y() += kCircleCube_m;
     }
-  std::vector<MergedPoint> merged = merged_points(points, kCircleCube_m);
-  std::erase_if(merged, [](const MergedPoint& point) { return point.extent_m == 0; });
+  std::vector<PointOrDisk> merged = merged_points(points, kCircleCube_m);
+  std::erase_if(merged, [](const PointOrDisk& point) { return point.extent_m == 0; });
   return merged;
 }
 
@@ -150,7 +150,7 @@ std::vector<MergedPoint> disks_of_circle(int half) {
 // The last square ends there.
 TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
   constexpr int kHalf = 24;  // 32 squares of 1.5 steps
-  const std::vector<MergedPoint> disks = disks_of_circle(kHalf);
+  const std::vector<PointOrDisk> disks = disks_of_circle(kHalf);
   ASSERT_EQ(disks.size(), 1u);
   EXPECT_EQ(disks[0].extent_m, kHalf * (1.0 / (1 << 16)));
 }

@@ -31,11 +31,11 @@ PointCloud cloud_with_normals() {
   return cloud;
 }
 
-struct Look {
+struct Query {
   TouchFinder finder;
   NearDisks disks{kFraction, kCell_m};
 
-  Look(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
+  Query(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
     finder.on_frame(formatted<TiledCloud>(cloud));
     disks.on_frame(finder.cloud());
     disks.query(finder, kernels, kPose, kReach_m);
@@ -87,7 +87,7 @@ bool bound_is_distance(const SurfaceDisk& disk) {
 TEST(NearDisks, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
   const PointCloud cloud = cloud_with_normals();
   for (const Kernels* kernels : supported_kernels()) {
-    Look query(cloud, *kernels);
+    Query query(cloud, *kernels);
     const TiledCloud& tiled = query.finder.cloud();
     for (const double max_lower_m : {std::numeric_limits<double>::infinity(), 0.002, 0.0002}) {
       query.disks.query(query.finder, *kernels, kPose, kReach_m, max_lower_m);
@@ -126,7 +126,7 @@ std::size_t within(const NearDisks& disks, double distance_m) {
 TEST(NearDisks, AResultIsKeptForItsOwnQueryOnly) {
   const PointCloud cloud = cloud_with_normals();
   const Kernels& kernels = scenes::kernels();
-  Look query(cloud, kernels);
+  Query query(cloud, kernels);
   const std::size_t all = within(query.disks, kReach_m), some = within(query.disks, 0.001);
   EXPECT_LT(some, all);
   query.disks.query(query.finder, kernels, kPose, 0.001);
@@ -152,7 +152,7 @@ TEST(NearDisks, AResultIsKeptForItsOwnQueryOnly) {
 TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
   constexpr double kShort_m = 2e-5;
   for (const Kernels* kernels : supported_kernels()) {
-    Look query(cloud_with_normals(), *kernels);
+    Query query(cloud_with_normals(), *kernels);
     ToolPose pose = kPose;
     int kept = 0;
     for (int step = 0; step < 60; ++step) {

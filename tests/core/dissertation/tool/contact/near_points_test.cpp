@@ -46,12 +46,12 @@ std::vector<Place> found_places(const NearPoints& points) {
   return places;
 }
 
-struct Look {
+struct Query {
   TouchFinder finder;
   NearPoints points;
   const Kernels& kernels;
 
-  Look(const PointCloud& cloud, const Kernels& kernels_) : finder(kTool, kernels_), kernels(kernels_) {
+  Query(const PointCloud& cloud, const Kernels& kernels_) : finder(kTool, kernels_), kernels(kernels_) {
     show(cloud);
   }
   void show(const PointCloud& cloud) {
@@ -72,10 +72,10 @@ TEST(NearPoints, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
   const PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
   std::size_t count = 0;
   for (const Kernels* kernels : supported_kernels()) {
-    Look look(cloud, *kernels);
+    Query query(cloud, *kernels);
     std::size_t before = 0;
     for (const double reach_m : {1e-4, 1e-3, 2e-3, 5e-3}) {
-      EXPECT_TRUE(look.is_right(kPose, reach_m, count)) << kernels->isa << " " << reach_m;
+      EXPECT_TRUE(query.is_right(kPose, reach_m, count)) << kernels->isa << " " << reach_m;
       EXPECT_GT(count, before);
       before = count;
     }
@@ -85,42 +85,42 @@ TEST(NearPoints, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
 // Small motions, for which the groups are kept, and large ones. The reach rises and falls.
 TEST(NearPoints, AreFoundAtEveryPoseOfAMotion) {
   const PointCloud cloud = scenes::random_cloud(20000, 0.03, 22);
-  Look look(cloud, scenes::kernels());
+  Query query(cloud, scenes::kernels());
   std::size_t count = 0, most = 0;
   for (int i = 0; i < 200; ++i) {
     const double step_m = i % 50 == 49 ? 5e-3 : 3e-5;
     ToolPose pose = kPose;
     pose.p_W += Vec3(i * 3e-5, i % 50 == 49 ? step_m : 0, -i * 2e-5);
     pose.q_WT = rotation({1 + i * 1e-3, 2, -0.5});
-    ASSERT_TRUE(look.is_right(pose, i % 7 == 0 ? 2e-3 : 3e-4, count)) << i;
+    ASSERT_TRUE(query.is_right(pose, i % 7 == 0 ? 2e-3 : 3e-4, count)) << i;
     most = std::max(most, count);
   }
   EXPECT_GT(most, 100u);
 }
 
 TEST(NearPoints, ANewCloudReplacesTheOldOne) {
-  Look look(scenes::random_cloud(20000, 0.03, 23), scenes::kernels());
+  Query query(scenes::random_cloud(20000, 0.03, 23), scenes::kernels());
   std::size_t count = 0;
-  ASSERT_TRUE(look.is_right(kPose, 1e-3, count));
-  look.show(scenes::random_cloud(5000, 0.03, 24));
-  EXPECT_TRUE(look.is_right(kPose, 1e-3, count));
+  ASSERT_TRUE(query.is_right(kPose, 1e-3, count));
+  query.show(scenes::random_cloud(5000, 0.03, 24));
+  EXPECT_TRUE(query.is_right(kPose, 1e-3, count));
   EXPECT_GT(count, 0u);
 }
 
 TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
   const PointCloud cloud = scenes::points_outside(grid);
-  Look look(cloud, scenes::kernels());
+  Query query(cloud, scenes::kernels());
   const ToolPose at_home{Vec3::Zero(), Eigen::Quaterniond::Identity()};
   std::size_t count = 0;
-  EXPECT_TRUE(look.is_right(at_home, kFieldMargin_m + 3 * grid.size_m, count));
+  EXPECT_TRUE(query.is_right(at_home, kFieldMargin_m + 3 * grid.size_m, count));
   EXPECT_EQ(count, cloud.size());
 }
 
 TEST(NearPoints, NoneAreFoundForAToolFarAway) {
-  Look look(scenes::random_cloud(2000, 0.03, 25), scenes::kernels());
+  Query query(scenes::random_cloud(2000, 0.03, 25), scenes::kernels());
   std::size_t count = 1;
-  EXPECT_TRUE(look.is_right({{0.5, 0, 0}, Eigen::Quaterniond::Identity()}, 1e-3, count));
+  EXPECT_TRUE(query.is_right({{0.5, 0, 0}, Eigen::Quaterniond::Identity()}, 1e-3, count));
   EXPECT_EQ(count, 0u);
 }
 

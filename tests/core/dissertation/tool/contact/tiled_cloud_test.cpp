@@ -85,7 +85,7 @@ TEST(TiledCloud, NormalsFollowTheirPoints) {
   cloud.nx[9] = cloud.ny[9] = cloud.nz[9] = kNaN;
   TiledCloud tiled;
   tiled.assign(cloud);
-  EXPECT_EQ(tiled.without_normal(), 1);
+  EXPECT_EQ(tiled.count_without_normal(), 1);
   for (std::size_t i = 0; i < cloud.size(); ++i)
     for (std::uint32_t j = 0; j < tiled.padded_size(); ++j)
       if (i != 9 && tiled.point(j) == cloud.point(i)) {
@@ -119,7 +119,7 @@ class Lifted final : public PointChange {
   bool concerns(const BoundingSphere& sphere) const override {
     return (sphere.centre_W - ball_.centre_W).norm() <= sphere.radius_m + ball_.radius_m;
   }
-  bool show(Point& point) const override {
+  bool apply(Point& point) const override {
     if ((point.p_W - ball_.centre_W).norm() > ball_.radius_m) return true;
     if (point.p_W.x() < ball_.centre_W.x()) return false;
     point.p_W.y() += 0.01, point.n_W = Vec3::UnitX(), point.spacing_m = 0.003;
@@ -147,12 +147,12 @@ TEST(TiledCloud, PointsKeepTheirOrderInEveryForm) {
   std::vector<Vec3> expected;
   for (const Vec3& p : points_of(all)) {
     PointChange::Point point{p, Vec3::Zero(), 0};
-    if (change.show(point)) expected.push_back(point.p_W);
+    if (change.apply(point)) expected.push_back(point.p_W);
   }
   EXPECT_LT(expected.size(), flat.size());
   EXPECT_EQ(points_of(shown), expected);
   EXPECT_EQ(shown.max_spacing_m(), 0.003);
-  EXPECT_LT(shown.without_normal(), all.without_normal());
+  EXPECT_LT(shown.count_without_normal(), all.count_without_normal());
   for (const TileBlock& block : shown.blocks())
     for (const Tile& tile : shown.tiles(block))
       for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
@@ -193,7 +193,7 @@ TEST(TiledCloud, AMergedCloudIsMadeOnRequestAndHasWhatMergedPointsFinds) {
     if (tiled.x()[i] != kFarAway) points.push_back({tiled.point(i), tiled.normal(i), tiled.spacing_m(i)});
   std::vector<Vec3> expected, found = points_of(merged);
   double max_extent_m = 0;
-  for (const MergedPoint& point : merged_points(points, 0.002)) {
+  for (const PointOrDisk& point : merged_points(points, 0.002)) {
     expected.push_back(point.p_W);
     max_extent_m = std::max(max_extent_m, point.extent_m);
   }

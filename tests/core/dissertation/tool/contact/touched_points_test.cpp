@@ -50,7 +50,7 @@ Touched plain_touched(const TouchFinder& finder, const ToolPose& pose, double re
     all.nearest_distance_m = std::min(all.nearest_distance_m, disk.at.distance_m);
     const Voxel voxel = disk.at.distance_m <= voxels_m ? finder.voxel(p_T) : Voxel::free;
     const bool is_touched = with_disks && lower_bound_m(disk) <= TouchedPoints::kTouch_m &&
-                            nearest_place(*kTool, disk).at.distance_m <= TouchedPoints::kTouch_m;
+                            nearest_position(*kTool, disk).at.distance_m <= TouchedPoints::kTouch_m;
     if (voxel == Voxel::free && !is_touched) continue;
     ++all.points;
     clusters.insert(cell_number(p_T, 100));

@@ -60,7 +60,7 @@ TEST(MotionProgram, PenetrationIsResolvedByItsDepth) {
                                              {{0, 0.005, 0}, -Vec3::UnitY(), -1e-3, 1}};
   const ConstrainedMotion motion = program.solve(Vector6::Zero(), contacts);
   EXPECT_LT((motion.a_g - desired({0, 3e-4, 0})).norm(), 1e-12);
-  EXPECT_FALSE(motion.elastic);
+  EXPECT_FALSE(motion.is_relaxed);
 }
 
 // Two walls close in by 0.4 mm each. No motion resolves both, so each is loosened by as much, and the tool
@@ -72,7 +72,7 @@ TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
                                              {{0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1},
                                              {{-0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1}};
   const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 5e-4}), contacts);
-  EXPECT_TRUE(motion.elastic);
+  EXPECT_TRUE(motion.is_relaxed);
   EXPECT_FALSE(motion.failed);
   EXPECT_NEAR(motion.a_g[0], 1e-3, 1e-9);
   EXPECT_NEAR(motion.a_g[2], 5e-4, 1e-9);

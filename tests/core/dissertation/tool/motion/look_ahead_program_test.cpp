@@ -77,13 +77,13 @@ ConstrainedMotion allowed_by_all(const VoxelTool& tool, NearContactSource& sourc
   const Vector6 desired_T = rotated(kPose.q_WT.conjugate(), a_gu);
   const bool collides = near.deepest_m > LookAheadProgram::kCollision_m;
   ConstrainedMotion motion = program.solve(collides ? Vector6(Vector6::Zero()) : desired_T, near.contacts);
-  if (collides && motion.elastic) motion = program.solve(desired_T, near.contacts);
+  if (collides && motion.is_relaxed) motion = program.solve(desired_T, near.contacts);
   return motion;
 }
 
 TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
   std::mt19937 random(7);
-  int in_part = 0, elastic = 0, held = 0;
+  int in_part = 0, relaxed = 0, held = 0;
   for (const double depth_m : {-5e-5, 5e-5, 5e-4})
     for (int scene = 0; scene < 200; ++scene) {
       Planes planes(planes_around(random, 1 + scene % 40, depth_m, scene % 4 == 0));
@@ -92,19 +92,19 @@ TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
         const Vector6 a_gu = random_motion(random, size_m);
         const ConstrainedMotion expected = allowed_by_all(*kTool, planes, a_gu);
         planes.asked_m.clear();
-        const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
-        if (look.near.contacts.empty()) continue;
-        const double error_m = max_point_displacement_m(look.motion.a_g - expected.a_g, kTool->reach_m);
+        const LookAheadProgram::Detection detection = program.detect(kPose, a_gu, planes, 0);
+        if (detection.near.contacts.empty()) continue;
+        const double error_m = max_point_displacement_m(detection.motion.a_g - expected.a_g, kTool->reach_m);
         EXPECT_LE(error_m, kSame_m) << scene << " " << size_m;
-        EXPECT_EQ(look.motion.elastic, expected.elastic);
-        EXPECT_LE((look.motion.push_T - expected.push_T).norm(), kSame_m);
-        EXPECT_EQ(rotated(kPose.q_WT, look.motion.a_g), look.a_g);
-        in_part += std::isfinite(look.near.within_m) ? 1 : 0;
-        elastic += expected.elastic ? 1 : 0, held += expected.active_count > 0 ? 1 : 0;
+        EXPECT_EQ(detection.motion.is_relaxed, expected.is_relaxed);
+        EXPECT_LE((detection.motion.push_T - expected.push_T).norm(), kSame_m);
+        EXPECT_EQ(rotated(kPose.q_WT, detection.motion.a_g), detection.a_g);
+        in_part += std::isfinite(detection.near.within_m) ? 1 : 0;
+        relaxed += expected.is_relaxed ? 1 : 0, held += expected.active_count > 0 ? 1 : 0;
       }
     }
   EXPECT_GT(in_part, 300);
-  EXPECT_GT(elastic, 10);
+  EXPECT_GT(relaxed, 10);
   EXPECT_GT(held, 300);
 }
 
@@ -114,8 +114,8 @@ TEST(LookAheadProgram, QueriesOnlyNearPointsWhileTheToolMovesLittle) {
   LookAheadProgram program({}, *kTool, kTool->reach_m);
   Vector6 a_gu = Vector6::Zero();
   a_gu.head<3>() = kPose.q_WT * Vec3(5e-5, -0.01, 0);  // along the plane, and pressed against it
-  const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
-  EXPECT_EQ(look.near.contacts.size(), 1u);
+  const LookAheadProgram::Detection detection = program.detect(kPose, a_gu, planes, 0);
+  EXPECT_EQ(detection.near.contacts.size(), 1u);
   EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
 }
 
@@ -124,11 +124,11 @@ TEST(LookAheadProgram, QueriesAllPointsBeforeItReportsThatNoneIsNear) {
   LookAheadProgram program({}, *kTool, kTool->reach_m);
   Vector6 a_gu = Vector6::Zero();
   a_gu[0] = 1e-5;
-  EXPECT_EQ(program.look(kPose, a_gu, planes, 0).near.contacts.size(), 1u);
+  EXPECT_EQ(program.detect(kPose, a_gu, planes, 0).near.contacts.size(), 1u);
 
   Planes none({});
   a_gu[0] = 1;
-  const LookAheadProgram::Look free = program.look(kPose, a_gu, none, 0);
+  const LookAheadProgram::Detection free = program.detect(kPose, a_gu, none, 0);
   EXPECT_TRUE(free.near.contacts.empty());
   EXPECT_NEAR(free.a_g.head<3>().norm(), ToolParameters().look_ahead_m, 1e-15);
   EXPECT_FALSE(std::isfinite(none.asked_m.back()));
@@ -178,9 +178,9 @@ TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
       const Vector6 a_gu = random_motion(random, i % 2 == 0 ? 1e-4 : 1e-3);
       const Vector6 expected = allowed_by_all(*tool, list, a_gu).a_g;
       EXPECT_LT(list.near(kPose, 0).contacts.size(), 256u);
-      const LookAheadProgram::Look look = program.look(kPose, a_gu, list, 0);
-      EXPECT_LE(max_point_displacement_m(look.motion.a_g - expected, tool->reach_m), kSame_m) << i;
-      in_part += std::isfinite(look.near.within_m) ? 1 : 0;
+      const LookAheadProgram::Detection detection = program.detect(kPose, a_gu, list, 0);
+      EXPECT_LE(max_point_displacement_m(detection.motion.a_g - expected, tool->reach_m), kSame_m) << i;
+      in_part += std::isfinite(detection.near.within_m) ? 1 : 0;
     }
     EXPECT_GT(in_part, 20) << count;
   }

@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 // The positions are in the tool frame. Nothing is allocated after construction.
-class ToolPlaces {
+class ToolPositions {
  public:
   struct Group {
     Vec3 middle_T = Vec3::Zero();
@@ -23,16 +23,16 @@ class ToolPlaces {
   // selected one. Then it divides them into the smallest number of groups with radii up to group_radius_m,
   // but at most max_groups groups. pre: the mesh has a vertex; group_radius_m and max_groups are positive.
   static constexpr std::size_t kMax = 256;
-  ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups);
+  ToolPositions(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups);
 
-  std::span<const Vec3> all() const { return places_T_; }
+  std::span<const Vec3> all() const { return positions_T_; }
   std::span<const Group> groups() const { return groups_; }
   std::span<const Vec3> of(const Group& group) const { return all().subspan(group.first, group.count); }
 
  private:
   void divide(std::size_t groups);
 
-  std::vector<Vec3> places_T_;  // group by group
+  std::vector<Vec3> positions_T_;  // group by group
   std::vector<Group> groups_;
 };
 

@@ -1,4 +1,4 @@
-#include "core/beyond/tracked_surface/tool_places.h"
+#include "core/beyond/tracked_surface/tool_positions.h"
 
 #include <algorithm>
 #include <limits>
@@ -57,12 +57,12 @@ class FarthestPoints {
 
 }  // namespace
 
-ToolPlaces::ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups) {
+ToolPositions::ToolPositions(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups) {
   const double spacing_m = 0.125 * group_radius_m;
   const std::vector<Vec3> points = surface_points(mesh, spacing_m);
   FarthestPoints spread(points);
-  for (std::size_t next = 0; places_T_.size() < kMax; next = spread.farthest()) {
-    places_T_.push_back(points[next]);
+  for (std::size_t next = 0; positions_T_.size() < kMax; next = spread.farthest()) {
+    positions_T_.push_back(points[next]);
     spread.choose(next);
     if (spread.squared_distance(spread.farthest()) <= spacing_m * spacing_m) break;
   }
@@ -75,8 +75,8 @@ ToolPlaces::ToolPlaces(const TriangleMesh& mesh, double group_radius_m, std::siz
 }
 
 // Divides the positions into groups around positions that are far from each other.
-void ToolPlaces::divide(std::size_t groups) {
-  FarthestPoints seeds(places_T_);
+void ToolPositions::divide(std::size_t groups) {
+  FarthestPoints seeds(positions_T_);
   std::size_t seed = 0;
   for (std::size_t g = 0; g < groups; ++g, seed = seeds.farthest()) seeds.choose(seed);
   std::vector<Vec3> sorted;
@@ -85,8 +85,8 @@ void ToolPlaces::divide(std::size_t groups) {
     Group group;
     group.first = sorted.size();
     BoundingBox box;
-    for (std::size_t i = 0; i < places_T_.size(); ++i)
-      if (seeds.chosen_for(i) == g) sorted.push_back(places_T_[i]), box.extend(places_T_[i]);
+    for (std::size_t i = 0; i < positions_T_.size(); ++i)
+      if (seeds.chosen_for(i) == g) sorted.push_back(positions_T_[i]), box.extend(positions_T_[i]);
     group.count = sorted.size() - group.first;
     if (group.count == 0) continue;
     group.middle_T = 0.5 * (box.min() + box.max());
@@ -94,7 +94,7 @@ void ToolPlaces::divide(std::size_t groups) {
       group.radius_m = std::max(group.radius_m, (sorted[i] - group.middle_T).norm());
     groups_.push_back(group);
   }
-  places_T_ = std::move(sorted);
+  positions_T_ = std::move(sorted);
 }
 
 }  // namespace remote_touch
