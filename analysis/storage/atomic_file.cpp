@@ -124,7 +124,10 @@ class Replacement {
     }
     copied_ = false;  // the copy is moved, or it stays
     if (::rename(old_.c_str(), place_.c_str()) == 0) return {};
-    return "; the old " + place_.string() + " is now " + old_.string();
+    // Under its present name the next writer of the file would remove it.
+    const std::string kept = place_.string() + ".old-" + std::to_string(::getpid());
+    const bool is_moved = ::rename(old_.c_str(), kept.c_str()) == 0;
+    return "; the old " + place_.string() + " is now " + (is_moved ? kept : old_.string());
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "runners/evaluation/figures/bound_agreement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 
@@ -84,7 +85,7 @@ Agreement agreement_of(const AccelerationBound& bound, const Table& map, double 
   for (const double x : noise) limit.try_emplace(x, bound.at(x * kContactRadius_m) / kContactRadius_m);
   int cells = 0, safe = 0, safe_popped = 0, unsafe_survived = 0;
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    if (noise[i] > max_noise) continue;
+    if (noise[i] > max_noise || std::isnan(limit[noise[i]])) continue;
     const bool is_safe = acceleration[i] < limit[noise[i]];
     const bool stays = survived[i] > 0.5;
     ++cells;
@@ -130,6 +131,7 @@ Table calibration_table(const MeasuredNoise& noise, const Table& map) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double p =
         survival_probability(kLift, noise.at(x[i] * kContactRadius_m), acceleration[i] * kContactRadius_m);
+    if (std::isnan(p)) continue;
     const int range = std::min(kRanges - 1, static_cast<int>(x[i])),
               bin = std::min(kBins - 1, static_cast<int>(kBins * p));
     const auto slot = static_cast<std::size_t>(range * kBins + bin);

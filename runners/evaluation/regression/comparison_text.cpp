@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 #include "analysis/trace/trace.h"
@@ -55,7 +56,8 @@ std::string row_text(const Column& column, std::size_t row) {
 }
 
 void print_divergence(const Divergence& found, std::FILE* out) {
-  std::fprintf(out, "first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
+  const std::string time = std::isnan(found.time_s) ? "" : text(" (%.6g s)", found.time_s);
+  std::fprintf(out, "first divergent tick %zu%s: %s, by %.4g\n", found.tick, time.c_str(),
                found.quantity.c_str(), found.deviation);
   if (found.first_difference != found.tick)
     std::fprintf(

@@ -193,7 +193,6 @@ SessionReader::SessionReader(Hdf5Reader file) : file_(std::move(file)) {
       taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
     file_.damaged("its columns differ in length");
   require_order();
-  require_finite("/ticks/position", position_), require_finite("/ticks/orientation", orientation_);
   if (file_.has("/changes/tick")) read_changes();  // older recordings have none
 }
 
@@ -232,12 +231,6 @@ void SessionReader::require_order() const {
     if (!std::isfinite(captured_s_[i]) ||
         (i > 0 && (captured_s_[i] <= captured_s_[i - 1] || frame_number_[i] <= frame_number_[i - 1])))
       file_.damaged("its frames are out of order");
-}
-
-// The live loop stops before a state that is not finite reaches a recording.
-void SessionReader::require_finite(const char* dataset, const std::vector<double>& values) const {
-  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
-    file_.damaged(std::string(dataset) + " has values that are not finite");
 }
 
 void SessionReader::read_view() try {

@@ -135,7 +135,6 @@ class SessionReader {
   void read_view();
   void read_changes();
   void require_order() const;
-  void require_finite(const char* dataset, const std::vector<double>& values) const;
   void read_point_counts();
   void read_points(std::size_t i, SensorFrame& frame) const;
   struct Rows {

@@ -85,10 +85,6 @@ struct TickBlock {
   std::vector<SessionChange> changes;
 };
 
-bool is_finite(const DeviceState& device) {
-  return device.position_W.allFinite() && device.orientation_W.coeffs().allFinite();
-}
-
 std::optional<TickBlock> unpacked_ticks(const std::string& content) {
   Unpacker unpacker(content);
   TickBlock block;
@@ -197,14 +193,13 @@ class SessionBlocks {
     return true;
   }
 
-  // True if the tick numbers increase, if the states of the device are finite, and if each tick that received
-  // a frame names an earlier frame of the journal, newer than the one before. SessionReader requires the
-  // same.
+  // True if the tick numbers increase, and if each tick that received a frame names an earlier frame of the
+  // journal, newer than the one before. SessionReader requires the same. The state of a device that failed
+  // is NaN.
   bool are_possible(const std::vector<SessionTick>& ticks) const {
     std::int64_t number = found_.last_tick, taken = last_taken_;
     for (const SessionTick& tick : ticks) {
       if (tick.number <= number || tick.number > kMaxTickNumber) return false;
-      if (!is_finite(tick.device)) return false;
       number = tick.number;
       if (tick.taken == -1) continue;
       if (tick.taken <= taken || tick.taken >= static_cast<std::int64_t>(found_.frames)) return false;

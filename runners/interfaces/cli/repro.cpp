@@ -231,7 +231,7 @@ class Repro {
               columns.push_back(std::move(column));
             }
         },
-        [&](const FigureProgress& made) { progress.update(words(runs, made)); });
+        [&](const FigureProgress& made) { progress.update(progress_text(runs, made)); });
     return compare_figure(StoredFigure(Hdf5Reader(file_)), ColumnsInMemory(std::move(columns)), {});
   }
 

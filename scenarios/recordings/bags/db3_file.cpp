@@ -136,6 +136,8 @@ void Db3File::list_topics(const WantedTopic& wanted) {
     BagTopic topic;
     topic.name = text_in(query.get(), 1), topic.type = ros1_type(text_in(query.get(), 2));
     topic.encoding = text_in(query.get(), 3);
+    if (topic_of_id_.size() == kMaxTopics)
+      throw InputError(name_, "has more than " + std::to_string(kMaxTopics) + " topics");
     const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
       return other.name == topic.name && other.type == topic.type && other.encoding == topic.encoding;
     });

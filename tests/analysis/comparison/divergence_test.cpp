@@ -88,13 +88,13 @@ TEST(Causes, EveryInput) {
   const Divergence all = divergence(after([&](Columns& c) {
     for (const auto& [name, change] : inputs) change(c);
   }));
-  EXPECT_HAS(all.explanation, "time, hip_position, frame_hash differs");
+  EXPECT_HAS(all.explanation, "inputs of the renderers: time, hip_position, frame_hash");
   // The orientation of the device is an input too.
   Columns turning = lift(), turned;
   turning.push_back({"hip_orientation", "1", "", std::vector<double>(4 * length(), 0.5), 4, {}});
   turned = turning;
   numbers(turned, "hip_orientation")[4 * tick] = -0.5;
-  EXPECT_HAS(divergence(compare(turning, turned)).explanation, "hip_orientation differs");
+  EXPECT_HAS(divergence(compare(turning, turned)).explanation, "inputs of the renderers: hip_orientation");
 }
 
 // The frame in use is the renderer's own choice if both renderers were given the same frames.
@@ -117,7 +117,7 @@ TEST(Causes, TheTruthAloneIsAnInput) {
   const Change truth = [&](Columns& c) { numbers(c, "signed_distance")[tick] += 1e-3; };
   const Divergence alone = divergence(after(truth));
   EXPECT_EQ(alone.cause, Cause::input);
-  EXPECT_HAS(alone.explanation, "signed_distance (the true surface) differs");
+  EXPECT_HAS(alone.explanation, "inputs of the renderers: signed_distance (the true surface)");
   const Divergence follows = divergence(after([&](Columns& c) {
     truth(c);
     proxy_x(c, tick) += 1e-3;

@@ -167,13 +167,14 @@ TEST(WriteFilesTogether, ReplacesAllOrNone) {
 TEST(WriteFilesTogether, KeepsAnOldFileThatCannotBePutBack) {
   const TestFolder folder("atomic_file_test");
   folder.write("a", "old a"), folder.write("b", "old b");
-  const std::string kept = temporary_of(folder / "a").string() + "-old";
+  const std::string kept = (folder / "a").string() + ".old-" + std::to_string(::getpid());
   const FailedRename failed(1, EDQUOT, 2);
   const std::string why = refusal([&] {
     write_files_together({{folder / "a", "new a"}, {folder / "b", "new b"}});
   });
   EXPECT_HAS(why, "b: cannot be written (Disk quota exceeded)");
   EXPECT_HAS(why, "; the old " + (folder / "a").string() + " is now " + kept);
+  remove_leftovers(folder / "a");
   EXPECT_EQ(bytes_of(kept), "old a");
   EXPECT_EQ(bytes_of(folder / "b"), "old b");
   EXPECT_EQ(files_in(folder.path()).size(), 3u);

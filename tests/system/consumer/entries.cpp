@@ -1,5 +1,7 @@
 #include "entries.h"
 
+#include <analysis/trace/trace.h>
+
 #include "centroid_renderer.h"
 #include "dome.h"
 #include "tap.h"

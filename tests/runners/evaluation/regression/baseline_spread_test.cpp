@@ -225,7 +225,7 @@ TEST_F(MeasureSpread, ADifferenceThatNoToleranceCoversIsRefused) {
     const std::string message = refused(programs);
     EXPECT_EQ(message.find(name), 0u) << message;
     EXPECT_HAS(message, "Clang 14, x86-64, 8 threads");
-    EXPECT_HAS(message, "(row 11)");
+    EXPECT_HAS(message, "in row 11, ");
   }
   trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) {
     made.append(1, {}, {}, {});  // one row more

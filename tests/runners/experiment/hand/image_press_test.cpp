@@ -65,7 +65,8 @@ TEST(ImagePress, ChoosesATouchablePixelOnlyWhereNoneIsGiven) {
   const Views scene({photographed(ring, everywhere)});
   ImagePress::Settings s;
   s.row = 240, s.column = 320;
-  EXPECT_HAS(refusal([&] { ImagePress(s, scene); }), "trajectory.row = 240, column = 320: no surface");
+  EXPECT_HAS(refusal([&] { ImagePress(s, scene); }),
+             "trajectory.row = 240, column = 320: the first frame has no surface");
   s.column = -1;
   const ImagePress hand(s, scene);
   EXPECT_EQ(hand.row(), 240);

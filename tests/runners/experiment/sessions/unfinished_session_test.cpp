@@ -100,19 +100,23 @@ TEST_F(UnfinishedSessionFile, LeavesOutBlocksThatNoRecordingHas) {
   expect_left_out(block(SessionBlock::frame, packed_frame(stored)));
 }
 
-// SessionReader refuses such changes and ticks, so that a recording with them could not be read.
-TEST_F(UnfinishedSessionFile, LeavesOutChangesAndStatesThatNoRecordingHas) {
+// SessionReader refuses such changes, so that a recording with them could not be read.
+TEST_F(UnfinishedSessionFile, LeavesOutChangesThatNoRecordingHas) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   expect_left_out(changes({{5, 0, 0.1}, {4, 0, 0.1}}));
   expect_left_out(changes({{std::uint64_t{1} << 31, 0, 0.1}}));
   expect_left_out(changes({{4, 1, 0.1}}));
   expect_left_out(changes({{4, -1, 0.1}}));
   expect_left_out(changes({{4, 0, kInfinity}}));
-  SessionTick nowhere = tick(4), unturned = tick(4);
-  nowhere.device.position_W.y() = std::nan("");
-  unturned.device.orientation_W.x() = kInfinity;
-  expect_left_out(ticks({nowhere}));
-  expect_left_out(ticks({unturned}));
+}
+
+TEST_F(UnfinishedSessionFile, KeepsTheTickInWhichTheDeviceFailed) {
+  SessionTick failed = tick(4);
+  failed.device.position_W.setConstant(std::nan(""));
+  const std::vector<JournalBlock> all{start(), ticks({failed})};
+  recover_session(folder_.write("x", block_bytes(folder_, all)), folder_ / "r.h5");
+  ASSERT_EQ(SessionReader(folder_ / "r.h5").tick_count(), 1u);
+  EXPECT_TRUE(std::isnan(SessionReader(folder_ / "r.h5").device(0).position_W.x()));
 }
 
 TEST_F(UnfinishedSessionFile, KeepsPossibleChanges) {

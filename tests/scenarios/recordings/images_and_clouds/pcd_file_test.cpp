@@ -229,7 +229,7 @@ TEST_F(PcdFile, RefusesSizesThatDoNotAgree) {
 
 TEST_F(PcdFile, RefusesANumberWithTwoSigns) {
   const std::string text = xyz_header("1", "ascii");
-  EXPECT_EQ(error(text + "+1 -2 3\n"), "no InputError");
+  EXPECT_EQ(refusal([&] { read(text + "+1 -2 3\n"); }), "no InputError");
   EXPECT_HAS(error(text + "1 +-2 3\n"), ":12: '+-2': expected a number");
 }
 

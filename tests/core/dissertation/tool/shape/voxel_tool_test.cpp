@@ -130,7 +130,7 @@ TEST(VoxelTool, RefusesAMeshThatIsNoBody) {
   EXPECT_HAS(refusal([&] { make(box, {.voxel_m = 0.05}); }), "no voxel of 0.050000 m lies inside");
   TriangleMesh bad = box;
   bad.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 vertices that are not finite");
+  EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 vertex that is not finite");
   bad = box, bad.triangles[0][0] = 99;
   EXPECT_HAS(refusal([&] { make(bad, {.repair = true}); }), "1 triangle with a corner that is not a vertex");
   EXPECT_HAS(refusal([] { make(box_mesh({0.03, 0.02, 0})); }), "encloses no volume");
