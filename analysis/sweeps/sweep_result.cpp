@@ -1,7 +1,6 @@
 #include "analysis/sweeps/sweep_result.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -64,7 +63,7 @@ Tally tally(const SweepResult& result, const std::vector<double>& measure, std::
   Tally tally;
   for (int replicate = 0; replicate < result.replicates; ++replicate) {
     const std::size_t run = result.run(cell, replicate);
-    if (result.state[run] != RunState::done || std::isnan(measure[run])) continue;
+    if (result.state[run] != RunState::done) continue;
     ++tally.runs;
     tally.events += measure[run] > above ? 1 : 0;
   }

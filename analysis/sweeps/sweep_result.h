@@ -62,12 +62,12 @@ struct NoteCount {
 // Returns the counts in the order of note_kinds, without kinds that no finished run has.
 std::vector<NoteCount> note_counts(const SweepResult& result);
 
-// Count of an event in the finished runs of a cell that tell whether it happened.
+// Count of an event in the finished runs of a cell.
 struct Tally {
   int events = 0, runs = 0;
 };
-// The event happens if the measure is above the threshold. A run whose measure is NaN is not counted, because
-// it is not known whether the event happened.
+// The event happens if the measure is above the threshold. A run whose measure is NaN counts as a run without
+// the event.
 Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
             double above = 0.5);
 

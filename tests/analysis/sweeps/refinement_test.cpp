@@ -50,15 +50,6 @@ Runs all_of(const SweepResult& result, std::initializer_list<std::size_t> cells,
   return runs;
 }
 
-TEST(Tally, CountsOnlyRunsWithAKnownOutcome) {
-  SweepResult result = empty_grid({1}, 4);
-  sample(result, 0, 1, 2);
-  set(result, 2, RunState::done, std::numeric_limits<double>::quiet_NaN());
-  const Tally counted = tally(result, result.measure("popped_through"), 0);
-  EXPECT_EQ(counted.events, 1);
-  EXPECT_EQ(counted.runs, 2);
-}
-
 TEST(NextRound, RequestsNothingIfAllCellsAreCertainAndAgree) {
   for (const int events : {0, 4}) {
     SweepResult result = empty_grid({5, 3}, 8);
