@@ -12,7 +12,7 @@ namespace remote_touch {
 class ColumnSource {
  public:
   virtual ~ColumnSource() = default;
-  virtual std::vector<std::string> column_names() const = 0;  // in the order they are stored and hashed
+  virtual std::vector<std::string> column_names() const = 0;  // order: as stored and hashed
   virtual Column column(const std::string& name) const = 0;
   // Rows first .. first + count - 1; pre: they exist.
   virtual Column rows(const std::string& name, std::size_t first, std::size_t count) const = 0;

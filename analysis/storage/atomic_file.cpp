@@ -124,7 +124,7 @@ class Replacement {
     }
     copied_ = false;  // the copy is moved, or it stays
     if (::rename(old_.c_str(), place_.c_str()) == 0) return {};
-    // Under its present name the next writer of the file would remove it.
+    // The next writer of the file would remove it under its present name.
     const std::string kept = place_.string() + ".old-" + std::to_string(::getpid());
     const bool is_moved = ::rename(old_.c_str(), kept.c_str()) == 0;
     return "; the old " + place_.string() + " is now " + (is_moved ? kept : old_.string());

@@ -15,8 +15,8 @@ struct Dimension {
 };
 
 struct Unit {
-  const char* ending;  // of the name, "_m_per_s"
-  const char* text;    // as results state it, "m/s"; "1" for a pure number
+  const char* ending;  // end of the name: "_m_per_s"
+  const char* text;    // unit in results: "m/s"; "1" for a pure number
   Dimension dimension;
 };
 

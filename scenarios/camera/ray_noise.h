@@ -25,7 +25,7 @@ struct RayNoise {
 // farther apart than two pitches along x or z is independent. Throws InputError if correlation_m is so small
 // against the cloud that the lattice would have more than 2^24 nodes.
 //
-// With memory m, the noise of frame j is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
+// The noise of frame j with memory m is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
 // cut off at frame j - 16 and scaled to standard deviation 1.
 std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels);

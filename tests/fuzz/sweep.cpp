@@ -20,7 +20,7 @@ double number_in(const Json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-// The result is NaN for a number that is no number of cells.
+// The result is NaN if the number cannot be a count of cells.
 double cells_of(const Json& json, double halved) {
   double cells = 1;
   for (const Json& axis : json["axes"]) {

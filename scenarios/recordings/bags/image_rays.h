@@ -24,7 +24,7 @@ ImageSize image_size(const CameraInfoMessage& info, const std::string& subject);
 //
 // An image as measured has rays that its lens bends (plumb bob: k1, k2, p1, p2, k3). A rectified image is
 // that of a pinhole. So is an image whose coefficients are all 0, unless the lens is a fisheye (equidistant).
-// With a bending lens the points are those of the measured pixels, on their true rays, in the order of a
+// The points of a bending lens are those of the measured pixels, on their true rays, in the order of a
 // pinhole image with the intrinsics K: each of its pixels has the point whose ray passes nearest, within
 // pixel_slack. A pixel near the edge may have no point, and where the lens shrinks the image two pixels may
 // have the same point.

@@ -143,7 +143,7 @@ __attribute__((constructor)) void prepare() {
     const int shared = next<int(const char*, int, ...)>("open")(file, O_RDWR | O_CLOEXEC);
     void* const there =
         shared < 0 ? MAP_FAILED : ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, shared, 0);
-    // Without the shared counts the test would find that no call failed, and pass.
+    // The test would find that no call failed, and pass, without the shared counts.
     if (there == MAP_FAILED) {
       std::fprintf(stderr, "fail_once: %s cannot be mapped\n", file);
       ::_exit(125);

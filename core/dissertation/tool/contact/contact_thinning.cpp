@@ -38,7 +38,7 @@ ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
 }
 
 void ContactThinning::begin() {
-  if (++stamp_ == 0) {  // after 2^32 calls, an old stamp must not count as the present one
+  if (++stamp_ == 0) {  // an old stamp must not count as current after 2^32 calls
     std::fill(slots_.begin(), slots_.end(), Slot{});
     stamp_ = 1;
   }

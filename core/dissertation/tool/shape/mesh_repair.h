@@ -10,7 +10,7 @@ namespace remote_touch {
 struct MeshRepair {
   int welded_vertices = 0;    // closer to another one than a millionth of the mesh's size
   int dropped_triangles = 0;  // a corner occurs twice, or another triangle has the same corners
-  int flipped_triangles = 0;  // of the mesh, after the repair the other way round than before
+  int flipped_triangles = 0;  // triangles of the mesh whose orientation has changed
   int filled_holes = 0;       // loops of boundary edges, each closed by a triangle or a fan
 };
 

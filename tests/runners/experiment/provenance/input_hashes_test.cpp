@@ -192,7 +192,7 @@ TEST_F(Inputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
   EXPECT_EQ(read_sweep(result).result.runs_in(RunState::done).size(), 3u);
 }
 
-// As when the file cannot be written, or a run finds no memory.
+// The sweep fails as it does if the file cannot be written, or if a run finds no memory.
 TEST_F(Inputs, UndoTheRunsOfASweepThatFailsIfTheyChangeDuringIt) {
   const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
   const Sweep sweep = sweep_on(folder_.write("cloud.pcd", cloud).string());

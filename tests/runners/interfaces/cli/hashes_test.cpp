@@ -1,4 +1,4 @@
-// What the command `hashes` prints.
+// Tests of the text that the command `hashes` prints.
 #include <gtest/gtest.h>
 
 #include "runners/interfaces/cli/commands.h"

@@ -1,4 +1,4 @@
-// What the command `merge` may overwrite.
+// Tests of the files that the command `merge` may overwrite.
 #include <gtest/gtest.h>
 
 #include "analysis/sweeps/sweep_file.h"

@@ -136,7 +136,7 @@ class SilentPort {
   int number_ = 0;
 };
 
-// As the header Host of the handshake has them.
+// The header Host of the handshake has the same brackets.
 TEST(HaplyPlace, HasBracketsAroundAnAddressOfIpv6) {
   for (const auto& [address, authority] :
        {std::pair("ws://[::1]:10002", "[::1]:10002"), std::pair("ws://[fe80::1]/path", "[fe80::1]:10001"),
