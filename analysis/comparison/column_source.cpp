@@ -1,7 +1,6 @@
 #include "analysis/comparison/column_source.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -15,36 +14,19 @@ bool ColumnSource::has(const std::string& name) const {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
+StoredTrace::StoredTrace(Hdf5Reader hdf5) : StoredColumns(std::move(hdf5), "/trace/") {
   hdf5_.require_kind("trace", "a trace of remote-touch run or replay");
-  std::istringstream list(attribute(hdf5_.attributes(), "columns"));
-  list.exceptions(std::ios::badbit);  // lack of memory throws; else it would look like the end
-  for (std::string name; std::getline(list, name, ',');) column_names_.push_back(name);
-}
-
-Column StoredTrace::column(const std::string& name) const {
-  return hdf5_.column("/trace/" + name);
-}
-
-Column StoredTrace::rows(const std::string& name, std::size_t first, std::size_t count) const {
-  return hdf5_.rows("/trace/" + name, first, count);
+  column_names_ = split_names(attribute(hdf5_.attributes(), "columns"));
 }
 
 std::vector<std::uint64_t> StoredTrace::running_hash() const {
-  return hdf5_.values<std::uint64_t>(std::string("/trace/") + kRunningHash);
+  return hdf5_.values<std::uint64_t>(group_ + kRunningHash);
 }
 
-StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
+StoredFigure::StoredFigure(Hdf5Reader hdf5) : StoredColumns(std::move(hdf5), "/tables/") {
   hdf5_.require_kind("figure", "a figure of remote-touch figure");
-  const std::string tables = "/tables/";
   for (const std::string& path : hdf5_.datasets())
-    if (path.starts_with(tables)) column_names_.push_back(path.substr(tables.size()));
-}
-
-std::vector<std::string> ColumnsInMemory::column_names() const {
-  std::vector<std::string> names;
-  for (const Column& column : all_) names.push_back(column.name);
-  return names;
+    if (path.starts_with(group_)) column_names_.push_back(path.substr(group_.size()));
 }
 
 const Column& ColumnsInMemory::find(const std::string& name) const {

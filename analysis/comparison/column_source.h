@@ -20,43 +20,42 @@ class ColumnSource {
   bool has(const std::string& name) const;
 };
 
-// Throws InputError for a file that is not a trace, has another version of the layout, or was changed since
-// it was written.
-class StoredTrace final : public ColumnSource {
+// Columns below a group of a file.
+class StoredColumns : public ColumnSource {
  public:
-  explicit StoredTrace(Hdf5Reader hdf5);
-  explicit StoredTrace(const std::filesystem::path& file) : StoredTrace(Hdf5Reader(file)) {}
   std::vector<std::string> column_names() const override { return column_names_; }
-  Column column(const std::string& name) const override;
-  Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
-  std::vector<std::uint64_t> running_hash() const;  // kRunningHash
-  const TextAttributes& attributes() const { return hdf5_.attributes(); }
-
- private:
-  Hdf5Reader hdf5_;
-  std::vector<std::string> column_names_;
-};
-
-// The tables of a figure; columns are named table/column.
-class StoredFigure final : public ColumnSource {
- public:
-  explicit StoredFigure(Hdf5Reader hdf5);
-  std::vector<std::string> column_names() const override { return column_names_; }
-  Column column(const std::string& name) const override { return hdf5_.column("/tables/" + name); }
+  Column column(const std::string& name) const override { return hdf5_.column(group_ + name); }
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override {
-    return hdf5_.rows("/tables/" + name, first, count);
+    return hdf5_.rows(group_ + name, first, count);
   }
   const TextAttributes& attributes() const { return hdf5_.attributes(); }
 
- private:
+ protected:
+  StoredColumns(Hdf5Reader hdf5, std::string group) : hdf5_(std::move(hdf5)), group_(std::move(group)) {}
   Hdf5Reader hdf5_;
+  std::string group_;  // with a slash at its end
   std::vector<std::string> column_names_;
+};
+
+// Throws InputError for a file that is not a trace, has another version of the layout, or was changed since
+// it was written.
+class StoredTrace final : public StoredColumns {
+ public:
+  explicit StoredTrace(Hdf5Reader hdf5);
+  explicit StoredTrace(const std::filesystem::path& file) : StoredTrace(Hdf5Reader(file)) {}
+  std::vector<std::uint64_t> running_hash() const;  // kRunningHash
+};
+
+// The tables of a figure; columns are named table/column.
+class StoredFigure final : public StoredColumns {
+ public:
+  explicit StoredFigure(Hdf5Reader hdf5);
 };
 
 class ColumnsInMemory final : public ColumnSource {
  public:
   explicit ColumnsInMemory(std::vector<Column> columns) : all_(std::move(columns)) {}
-  std::vector<std::string> column_names() const override;
+  std::vector<std::string> column_names() const override { return names_of(all_); }
   Column column(const std::string& name) const override { return find(name); }
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
 

@@ -24,8 +24,8 @@ void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
   hdf5.attributes("/", provenance);
   hdf5.group("/hashes");
   hdf5.columns("/hashes",
-               {{"tick", "1", "number of the haptic tick", hashes.tick, 1, {}},
-                {"tick_hash", "1", "64-bit hash of all columns up to this tick", hashes.hash, 1, {}}},
+               {{"tick", "1", "number of the haptic tick", hashes.tick},
+                {"tick_hash", "1", "64-bit hash of all columns up to this tick", hashes.hash}},
                "tick");
   hdf5.save(file);
 }

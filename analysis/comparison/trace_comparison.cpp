@@ -1,7 +1,6 @@
 #include "analysis/comparison/trace_comparison.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "analysis/trace/hash64.h"
@@ -14,16 +13,9 @@ std::optional<std::size_t> earlier(std::optional<std::size_t> a, std::optional<s
   return a && b ? std::min(a, b) : a ? a : b;
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
-
 bool is_input(const std::string& column) {
-  for (const char* input : {"time", "hip_position", "hip_orientation", "frame_hash"})
-    if (column == input) return true;
-  return false;
+  return column == "time" || column == "hip_position" || column == "hip_orientation" ||
+         column == "frame_hash";
 }
 
 // The tick at which the two runs begin to differ, and the rows around it.
@@ -36,7 +28,7 @@ class PartingTick {
   // Returns the situation at that tick, and one line with its reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
-    if (!inputs.empty()) return {Cause::input, "different inputs of the renderers: " + joined(inputs)};
+    if (!inputs.empty()) return {Cause::input, "different inputs of the renderers: " + joined(inputs, ", ")};
     if (differs("frame_index"))
       return {Cause::frame_update, "both received the same frames, but one did not use the newest"};
     if (new_frame(baseline_) || new_frame(candidate_))
@@ -149,7 +141,7 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
   const PartingTick parting(baseline, candidate, columns, found.first_difference);
   std::tie(found.situation, found.observation) = parting.situation();
   found.cause = configuration.empty() ? found.situation : Cause::configuration;
-  found.explanation = configuration.empty() ? found.observation : joined(configuration);
+  found.explanation = configuration.empty() ? found.observation : joined(configuration, ", ");
   found.frame = parting.frame_text();
   found.first_row = found.first_difference > 0 ? found.first_difference - 1 : 0;
   for (const ColumnComparison& column : columns) {
@@ -164,19 +156,9 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
 }  // namespace
 
 const char* name_of(Cause cause) {
-  switch (cause) {
-    case Cause::configuration:
-      return "configuration differs";
-    case Cause::input:
-      return "input differs";
-    case Cause::frame_update:
-      return "frame update";
-    case Cause::state_transition:
-      return "state transition";
-    case Cause::drift:
-      break;
-  }
-  return "drift";
+  constexpr const char* kNames[] = {"configuration differs", "input differs", "frame update",
+                                    "state transition", "drift"};
+  return kNames[static_cast<int>(cause)];
 }
 
 bool TraceComparison::is_same() const {

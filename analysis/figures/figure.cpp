@@ -1,9 +1,7 @@
 #include "analysis/figures/figure.h"
 
-#include <cmath>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 namespace remote_touch {
 
@@ -17,60 +15,40 @@ std::string text(double value) {
   return out.str();
 }
 
-Claim claim_of(std::string figure, std::string claim, std::string paper, double measured,
-               std::string criterion, std::string unit, bool holds) {
-  return {std::move(figure),
-          std::move(claim),
-          std::move(paper),
-          measured,
-          std::move(criterion),
-          std::move(unit),
-          holds ? Verdict::pass : Verdict::fail};
+std::string range(double low, double high) {
+  return "from " + text(low) + " to " + text(high);
 }
 
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::fail:
-      return "fail";
-    case Verdict::open:
-      return "open";
-    case Verdict::differs:
-      return "differs";
-    case Verdict::not_run:
-      break;
-  }
-  return "not run";
+  constexpr const char* kNames[] = {"pass", "fail", "open", "differs", "not run"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 // Comparisons are written so that NaN fails.
-Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
-                    double high, std::string unit) {
-  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured,
-                  "from " + text(low) + " to " + text(high), std::move(unit),
-                  measured >= low && measured <= high);
+Claim claim_between(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double low, double high, const std::string& unit) {
+  const bool holds = measured >= low && measured <= high;
+  return {figure, claim, paper, measured, range(low, high), unit, holds ? Verdict::pass : Verdict::fail};
 }
 
-Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
-                    std::string unit) {
-  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured, "at most " + text(limit),
-                  std::move(unit), measured <= limit);
+Claim claim_at_most(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double limit, const std::string& unit) {
+  const Verdict verdict = measured <= limit ? Verdict::pass : Verdict::fail;
+  return {figure, claim, paper, measured, "at most " + text(limit), unit, verdict};
 }
 
-Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
-                     std::string unit) {
-  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured, "at least " + text(limit),
-                  std::move(unit), measured >= limit);
+Claim claim_at_least(const std::string& figure, const std::string& claim, const std::string& paper,
+                     double measured, double limit, const std::string& unit) {
+  const Verdict verdict = measured >= limit ? Verdict::pass : Verdict::fail;
+  return {figure, claim, paper, measured, "at least " + text(limit), unit, verdict};
 }
 
-Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
-                    double high, std::string unit) {
-  Claim made = claim_of(std::move(figure), std::move(claim), std::move(paper), measured,
-                        "expected here: from " + text(low) + " to " + text(high), std::move(unit),
-                        measured >= low && measured <= high);
+Claim claim_differs(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double low, double high, const std::string& unit) {
+  Claim made = claim_between(figure, claim, paper, measured, low, high, unit);
+  made.criterion = "expected here: " + made.criterion;
   if (made.verdict == Verdict::pass) made.verdict = Verdict::differs;
   return made;
 }
@@ -80,14 +58,8 @@ Claim set_up(Claim check) {
   return check;
 }
 
-Claim claim_not_run(std::string figure, std::string claim, std::string reason) {
-  return {std::move(figure),
-          std::move(claim),
-          "-",
-          std::numeric_limits<double>::quiet_NaN(),
-          std::move(reason),
-          "",
-          Verdict::not_run};
+Claim claim_not_run(const std::string& figure, const std::string& claim, const std::string& reason) {
+  return {figure, claim, "-", std::numeric_limits<double>::quiet_NaN(), reason, "", Verdict::not_run};
 }
 
 }  // namespace remote_touch

@@ -61,20 +61,20 @@ struct Claim {
 };
 
 // Passes if measured is within [low, high]. NaN fails.
-Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
-                    double high, std::string unit);
+Claim claim_between(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double low, double high, const std::string& unit);
 // Pass if measured is at most, or at least, the limit. NaN fails.
-Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
-                    std::string unit);
-Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
-                     std::string unit);
+Claim claim_at_most(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double limit, const std::string& unit);
+Claim claim_at_least(const std::string& figure, const std::string& claim, const std::string& paper,
+                     double measured, double limit, const std::string& unit);
 // The paper prints another value than the one measured. The verdict is `differs` if measured is within [low,
 // high], its known range in this program, else `fail`.
-Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
-                    double high, std::string unit);
+Claim claim_differs(const std::string& figure, const std::string& claim, const std::string& paper,
+                    double measured, double low, double high, const std::string& unit);
 // Marks the claim as a check that the run was set up as intended.
 Claim set_up(Claim check);
-Claim claim_not_run(std::string figure, std::string claim, std::string reason);
+Claim claim_not_run(const std::string& figure, const std::string& claim, const std::string& reason);
 
 struct Figure {
   std::string name, title, caption;

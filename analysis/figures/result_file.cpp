@@ -8,15 +8,6 @@
 
 namespace remote_touch {
 
-namespace {
-// Returns the names of the columns in the order of the digest. The file has its datasets in another order.
-std::string names(const std::vector<Column>& columns) {
-  std::string list;
-  for (const Column& column : columns) list += (list.empty() ? "" : ",") + column.name;
-  return list;
-}
-}  // namespace
-
 std::string write_trace(const std::filesystem::path& file, const std::vector<Column>& columns,
                         const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
   const std::string sum = digest(columns);
@@ -24,14 +15,15 @@ std::string write_trace(const std::filesystem::path& file, const std::vector<Col
   hdf5.attribute("/", "schema", schema_name("trace"));
   hdf5.attributes("/", provenance);
   hdf5.attribute("/", "digest", sum);
-  hdf5.attribute("/", "columns", names(columns));
-  hdf5.attribute("/", "default", "trace");  // NeXus: what a viewer opens first
+  hdf5.attribute("/", "columns",
+                 joined(names_of(columns), ","));  // the file has its datasets in another order
+  hdf5.attribute("/", "default", "trace");         // NeXus: what a viewer opens first
   hdf5.group("/trace");
   hdf5.columns("/trace", columns, "time");
   hdf5.attributes("/trace", {{"NX_class", "NXdata"}, {"signal", "proxy_position"}, {"axes", "time"}});
   if (!step_duration_s.empty()) {
     hdf5.group("/timing");
-    hdf5.columns("/timing", {{"step_duration", "s", "wall clock of one tick", step_duration_s, 1, {}}}, "");
+    hdf5.columns("/timing", {{"step_duration", "s", "wall clock of one tick", step_duration_s}}, "");
   }
   hdf5.save(file);
   return sum;
@@ -39,47 +31,10 @@ std::string write_trace(const std::filesystem::path& file, const std::vector<Col
 
 namespace {
 
-std::string style_name(CurveStyle style) {
-  switch (style) {
-    case CurveStyle::line:
-      break;
-    case CurveStyle::dots:
-      return "dots";
-    case CurveStyle::steps:
-      return "steps";
-    case CurveStyle::dashed:
-      return "dashed";
-    case CurveStyle::circle:
-      return "circle";
-    case CurveStyle::bars:
-      return "bars";
-    case CurveStyle::squares:
-      return "squares";
-    case CurveStyle::map:
-      return "map";
-    case CurveStyle::band:
-      return "band";
-    case CurveStyle::image:
-      return "image";
-    case CurveStyle::surface:
-      return "surface";
-    case CurveStyle::letters:
-      return "letters";
-  }
-  return "line";
-}
-
-const char* kind_name(ScenePart::Kind kind) {
-  switch (kind) {
-    case ScenePart::Kind::points:
-      break;
-    case ScenePart::Kind::segments:
-      return "segments";
-    case ScenePart::Kind::solid:
-      return "solid";
-  }
-  return "points";
-}
+// The names in the order of the enumerations.
+constexpr const char* kStyles[] = {"line",    "dots", "steps", "dashed", "circle",  "bars",
+                                   "squares", "map",  "band",  "image",  "surface", "letters"};
+constexpr const char* kKinds[] = {"points", "segments", "solid"};
 
 void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) {
   const auto vector = [](const Vec3& v) { return std::vector{v.x(), v.y(), v.z()}; };
@@ -93,7 +48,7 @@ void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) 
     const ScenePart& part = scene.parts[i];
     const std::string place = path + "/part" + std::to_string(i);
     hdf5.group(place);
-    hdf5.attributes(place, {{"kind", kind_name(part.kind)},
+    hdf5.attributes(place, {{"kind", kKinds[static_cast<int>(part.kind)]},
                             {"table", part.table},
                             {"label", part.label},
                             {"triangles", part.triangles},
@@ -124,7 +79,7 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
                             {"x", curve.x},
                             {"y", curve.y},
                             {"z", curve.z},
-                            {"style", style_name(curve.style)},
+                            {"style", kStyles[static_cast<int>(curve.style)]},
                             {"label", curve.label}});
     hdf5.attribute(place, "radius", std::vector<double>{curve.radius});
   }

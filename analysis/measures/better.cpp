@@ -14,19 +14,10 @@ bool is_outcome(const std::string& measure) {
 }
 
 const char* text_of(Better better) {
-  switch (better) {
-    case Better::smaller:
-      return "smaller is better";
-    case Better::larger:
-      return "larger is better";
-    case Better::near_zero:
-      return "nearer to zero is better";
-    case Better::not_negative:
-      return "larger is better up to 0; all values from 0 on are equally good";
-    case Better::neither:
-      break;
-  }
-  return "has no direction";
+  constexpr const char* kTexts[] = {"has no direction", "smaller is better", "larger is better",
+                                    "nearer to zero is better",
+                                    "larger is better up to 0; all values from 0 on are equally good"};
+  return kTexts[static_cast<int>(better)];
 }
 
 double badness(double value, Better better) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/mean.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
@@ -13,29 +14,34 @@ bool has_force(const Trace& trace, std::size_t i) {
   return !trace.force_N[i].isZero(0);
 }
 
-// Mean of value(height) over the ticks that end in contact and have a known truth. The height is that of the
-// rendered surface above the true one.
+// Height of the rendered surface above the true one.
+double height_m(const Trace& trace, std::size_t i) {
+  return trace.signed_distance_m[i] - trace.nearest_distance_m[i];
+}
+
+// Mean of value(height) over the ticks that end in contact and have a known truth.
 template <class Value>
 double mean_in_contact(const Trace& trace, Value&& value) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double height = trace.signed_distance_m[i] - trace.nearest_distance_m[i];
-    if (trace.state[i] != static_cast<std::int32_t>(ContactState::contact) || !std::isfinite(height))
-      continue;
-    sum += value(height), ++count;
-  }
-  return count == 0 ? kNoValue : sum / count;
+  const auto qualifies = [&](std::size_t i) {
+    return trace.state[i] == static_cast<std::int32_t>(ContactState::contact) &&
+           std::isfinite(height_m(trace, i));
+  };
+  return mean_where(trace.length(), qualifies, [&](std::size_t i) { return value(height_m(trace, i)); });
 }
 
 // Mean of value(distance) over the ticks with a force and a known truth. The distance is that of the centre
 // from the true surface.
 template <class Value>
 double mean_with_force(const Trace& trace, Value&& value) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]))
-      sum += value(trace.signed_distance_m[i]), ++count;
-  return count == 0 ? kNoValue : sum / count;
+  const auto qualifies = [&](std::size_t i) {
+    return has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]);
+  };
+  return mean_where(trace.length(), qualifies,
+                    [&](std::size_t i) { return value(trace.signed_distance_m[i]); });
+}
+
+double root(double mean_square) {
+  return std::isnan(mean_square) ? kNoValue : std::sqrt(mean_square);
 }
 
 }  // namespace
@@ -46,9 +52,11 @@ double mean_height_m(const Trace& trace) {
 
 double height_sd_m(const Trace& trace) {
   const double mean = mean_height_m(trace);
-  const double variance =
-      mean_in_contact(trace, [mean](double height) { return (height - mean) * (height - mean); });
-  return std::isnan(variance) ? kNoValue : std::sqrt(variance);
+  return root(mean_in_contact(trace, [mean](double height) { return (height - mean) * (height - mean); }));
+}
+
+double rms_surface_error_m(const Trace& trace) {
+  return root(mean_in_contact(trace, [](double height) { return height * height; }));
 }
 
 double mean_distance_m(const Trace& trace) {
@@ -57,9 +65,7 @@ double mean_distance_m(const Trace& trace) {
 
 double distance_sd_m(const Trace& trace) {
   const double mean = mean_distance_m(trace);
-  const double variance =
-      mean_with_force(trace, [mean](double distance) { return (distance - mean) * (distance - mean); });
-  return std::isnan(variance) ? kNoValue : std::sqrt(variance);
+  return root(mean_with_force(trace, [mean](double d) { return (d - mean) * (d - mean); }));
 }
 
 double end_distance_m(const Trace& trace) {

@@ -11,6 +11,8 @@ struct Trace;
 // contact and have a known truth. NaN if there is no such tick.
 double mean_height_m(const Trace& trace);
 double height_sd_m(const Trace& trace);
+// Error of the rendered surface: the root mean square of that height over the same ticks, m.
+double rms_surface_error_m(const Trace& trace);
 // Distance of the centre from the true surface, m: mean and standard deviation over the ticks with a force
 // and a known truth; NaN if there is no such tick. Unlike the height it does not depend on the points, so it
 // can compare renderers whose proxy lies on the surface with those whose proxy stays r_c above it.

@@ -14,6 +14,7 @@
 #include "analysis/measures/settled_contact_measures.h"
 #include "analysis/measures/surface_side.h"
 #include "analysis/measures/tool_measures.h"
+#include "analysis/statistics/mean.h"
 
 namespace remote_touch {
 
@@ -120,36 +121,41 @@ constexpr Row kMeasures[] = {
     {"tool_popped_through", "1",
      "1 when the tool's centre of mass passed through the true surface and ended behind it", tool, smaller,
      [](const Trace& trace) { return trace.has_tool() ? popped_through(trace) : kNoValue; }},
-    {"max_torque", "N m", "maximum torque about the HIP", tool, neither, max_torque_Nm},
+    {"max_torque", "N m", "maximum torque about the HIP", tool, neither, tool_max<torque_magnitude_Nm>},
     {"max_torque_jump", "N m", "maximum change of the torque at a frame update", tool, smaller,
      max_torque_jump_Nm},
     {"rms_torque_jump", "N m", "rms change of the torque at a frame update", tool, smaller,
      rms_torque_jump_Nm},
     {"torque_noise", "N m", "rms change of the torque from tick to tick, without an update", tool, smaller,
      torque_noise_Nm},
-    {"mean_contact_count", "1", "mean number of contacts of the tool", tool, neither, mean_contact_count},
-    {"max_contact_count", "1", "maximum number of contacts of the tool", tool, neither, max_contact_count},
+    {"mean_contact_count", "1", "mean number of contacts of the tool", tool, neither,
+     tool_mean<&Trace::contact_count>},
+    {"max_contact_count", "1", "maximum number of contacts of the tool", tool, neither,
+     tool_max<&Trace::contact_count>},
     {"mean_active_constraints", "1", "mean number of active constraints of (6.5)", tool, neither,
-     mean_active_constraints},
+     tool_mean<&Trace::active_constraints>},
     {"max_active_constraints", "1", "maximum number of active constraints of (6.5)", tool, neither,
-     max_active_constraints},
+     tool_max<&Trace::active_constraints>},
     {"max_contact_clusters", "1", "maximum number of groups of touching points", tool, neither,
-     max_contact_clusters},
+     tool_max<&Trace::contact_clusters>},
     {"max_tool_penetration", "m", "maximum depth of a point of the newest frame in the tool", tool, smaller,
-     max_tool_penetration_m},
+     tool_max<&Trace::tool_penetration_m>},
     {"min_clearance", "m", "minimum gap between the tool and the nearest point or region, negative inside it",
      tool, not_negative, min_clearance_m},
-    {"mean_detections", "1", "mean number of collision detections in a tick", tool, smaller, mean_detections},
+    {"mean_detections", "1", "mean number of collision detections in a tick", tool, smaller,
+     tool_mean<&Trace::detections>},
     {"max_detections", "1", "maximum number of collision detections in a tick", tool, smaller,
-     max_detections},
+     tool_max<&Trace::detections>},
     {"exhausted_fraction", "1", "fraction of ticks that ended before the tool had converged", tool, smaller,
-     exhausted_fraction},
+     tool_mean<&Trace::budget_exhausted>},
     {"mean_tool_lag", "m", "mean distance of the tool's centre of mass from the HIP", tool, neither,
-     mean_tool_lag_m},
+     tool_mean<tool_lag_m>},
     {"max_tool_lag", "m", "maximum distance of the tool's centre of mass from the HIP", tool, neither,
-     max_tool_lag_m},
-    {"mean_tool_lag_angle", "rad", "mean angle between tool and device", tool, neither, mean_tool_lag_rad},
-    {"max_tool_lag_angle", "rad", "maximum angle between tool and device", tool, neither, max_tool_lag_rad},
+     tool_max<tool_lag_m>},
+    {"mean_tool_lag_angle", "rad", "mean angle between tool and device", tool, neither,
+     tool_mean<tool_lag_rad>},
+    {"max_tool_lag_angle", "rad", "maximum angle between tool and device", tool, neither,
+     tool_max<tool_lag_rad>},
 
     {"guidance_fraction", "1", "fraction of ticks with active guidance to a visible target", guidance,
      neither, guidance_fraction},
@@ -220,7 +226,7 @@ double popped_through(const Trace& trace) {
 }
 
 double max_penetration_m(const Trace& trace) {
-  double deepest = std::numeric_limits<double>::quiet_NaN();
+  double deepest = kNoValue;
   for (const double distance : trace.signed_distance_m)
     if (!std::isnan(distance)) deepest = std::fmax(deepest, std::max(0.0, -distance));  // ignores NaN
   return deepest;
@@ -229,42 +235,20 @@ double max_penetration_m(const Trace& trace) {
 double min_slave_distance_m(const Trace& trace) {
   double min = std::numeric_limits<double>::infinity();
   for (const double distance : trace.slave_distance_m) min = std::min(min, distance);  // ignores NaN
-  return std::isinf(min) ? std::numeric_limits<double>::quiet_NaN() : min;
+  return std::isinf(min) ? kNoValue : min;
 }
 
 double wrong_side_fraction(const Trace& trace) {
-  std::size_t known = 0, wrong = 0;
-  for (const double distance : trace.signed_distance_m) {
-    if (std::isnan(distance)) continue;
-    ++known;
-    wrong += distance < -trace.held_depth_m ? 1 : 0;
-  }
-  if (known == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(wrong) / static_cast<double>(known);
-}
-
-double rms_surface_error_m(const Trace& trace) {
-  double squares = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double error = trace.signed_distance_m[i] - trace.nearest_distance_m[i];
-    if (trace.state[i] != static_cast<std::int32_t>(ContactState::contact) || !std::isfinite(error)) continue;
-    squares += error * error;
-    ++count;
-  }
-  if (count == 0)
-    return std::numeric_limits<double>::quiet_NaN();  // not 0 / 0, whose sign depends on the machine
-  return std::sqrt(squares / static_cast<double>(count));
+  const std::vector<double>& distance_m = trace.signed_distance_m;
+  return mean_where(
+      distance_m.size(), [&](std::size_t i) { return !std::isnan(distance_m[i]); },
+      [&](std::size_t i) { return distance_m[i] < -trace.held_depth_m; });
 }
 
 double no_force_fraction(const Trace& trace, double contact_radius_m) {
-  std::size_t pressed = 0, silent = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    if (!pressing(trace, i, contact_radius_m)) continue;
-    ++pressed;
-    silent += trace.force_N[i].isZero(0) ? 1 : 0;
-  }
-  return pressed == 0 ? kNoValue : static_cast<double>(silent) / static_cast<double>(pressed);
+  return mean_where(
+      trace.length(), [&](std::size_t i) { return pressing(trace, i, contact_radius_m); },
+      [&](std::size_t i) { return trace.force_N[i].isZero(0); });
 }
 
 double mean_steps(const Trace& trace) {

@@ -26,12 +26,8 @@ double min_slave_distance_m(const Trace& trace);
 // Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface, by more than
 // Trace::held_depth_m; NaN if there is no such tick.
 double wrong_side_fraction(const Trace& trace);
-// Error of the rendered surface: rms of the difference between the centre's distance to the true surface and
-// its distance to the nearest point, over the ticks that end in contact and have a known truth, m. NaN if
-// there is no such tick.
-double rms_surface_error_m(const Trace& trace);
 // Force dropouts: of the ticks in which the surface holds the proxy back (see pressing()), the fraction
-// without a force. 0 if there is no such tick.
+// without a force. NaN if there is no such tick.
 double no_force_fraction(const Trace& trace, double contact_radius_m);
 // Proxy steps per tick.
 double mean_steps(const Trace& trace);

@@ -1,6 +1,7 @@
 #include "analysis/measures/perceived_force_measures.h"
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/mean.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
@@ -14,13 +15,13 @@ bool is_felt(const Vec3& before_N, const Vec3& after_N, double weber) {
 }  // namespace
 
 double felt_jump_fraction(const Trace& trace, double weber) {
-  double felt = 0, updates = 0;
-  for (std::size_t i = 1; i < trace.length(); ++i) {
-    const Vec3 &before_N = trace.force_N[i - 1], &after_N = trace.force_N[i];
-    if (!trace.frame_update(i) || (before_N.isZero(0) && after_N.isZero(0))) continue;
-    felt += is_felt(before_N, after_N, weber) ? 1 : 0, ++updates;
-  }
-  return updates == 0 ? kNoValue : felt / updates;
+  const std::vector<Vec3>& force_N = trace.force_N;
+  return mean_where(
+      trace.length(),
+      [&](std::size_t i) {
+        return trace.frame_update(i) && !(force_N[i - 1].isZero(0) && force_N[i].isZero(0));
+      },
+      [&](std::size_t i) { return is_felt(force_N[i - 1], force_N[i], weber); });
 }
 
 // The last tick has no successor, so its duration is assumed to be the mean of the others.

@@ -2,36 +2,48 @@
 // or no guidance.
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
+
+#include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
+
 namespace remote_touch {
 
-struct Trace;
+// Lag of the tool behind the device in a tick: distance of the tool's centre of mass from the HIP, m, and
+// angle between their orientations, rad.
+double tool_lag_m(const Trace& trace, std::size_t i);
+double tool_lag_rad(const Trace& trace, std::size_t i);
+// Magnitude of the torque about the HIP in a tick, N m.
+double torque_magnitude_Nm(const Trace& trace, std::size_t i);
 
-double max_torque_Nm(const Trace& trace);
-// Contacts: points that touch the tool, or pairs of a sphere of the tool and a region; mean and maximum over
-// the ticks.
-double mean_contact_count(const Trace& trace);
-double max_contact_count(const Trace& trace);
-// Active constraints of (6.5).
-double mean_active_constraints(const Trace& trace);
-double max_active_constraints(const Trace& trace);
-// Groups of touching points.
-double max_contact_clusters(const Trace& trace);
-// Depth of the deepest point of the newest frame in the tool, m: maximum over the ticks.
-double max_tool_penetration_m(const Trace& trace);
+// The value of tick i. of: a column of the trace, or a function like those above.
+template <auto of>
+double value_of_tick(const Trace& trace, std::size_t i) {
+  if constexpr (std::is_member_object_pointer_v<decltype(of)>)
+    return (trace.*of)[i];
+  else
+    return of(trace, i);
+}
+// Mean and maximum of the value over the ticks of a run with a tool; NaN without a tool or without ticks.
+template <auto of>
+double tool_mean(const Trace& trace) {
+  if (!trace.has_tool() || trace.length() == 0) return kNoValue;
+  double sum = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) sum += value_of_tick<of>(trace, i);
+  return sum / static_cast<double>(trace.length());
+}
+template <auto of>
+double tool_max(const Trace& trace) {
+  if (!trace.has_tool() || trace.length() == 0) return kNoValue;
+  double found = value_of_tick<of>(trace, 0);
+  for (std::size_t i = 1; i < trace.length(); ++i) found = std::max(found, value_of_tick<of>(trace, i));
+  return found;
+}
+
 // Gap between the tool and the nearest point or region, m, negative inside the tool: minimum over the ticks
 // that have a nearest point or region; NaN if there is no such tick.
 double min_clearance_m(const Trace& trace);
-// Collision detections in a tick.
-double mean_detections(const Trace& trace);
-double max_detections(const Trace& trace);
-// Fraction of the ticks that ended before the tool had converged.
-double exhausted_fraction(const Trace& trace);
-// Lag of the tool behind the device: distance of the tool's centre of mass from the HIP, m, and angle between
-// their orientations, rad.
-double mean_tool_lag_m(const Trace& trace);
-double max_tool_lag_m(const Trace& trace);
-double mean_tool_lag_rad(const Trace& trace);
-double max_tool_lag_rad(const Trace& trace);
 
 // Fraction of the ticks with an active guidance fixture whose target is visible.
 double guidance_fraction(const Trace& trace);

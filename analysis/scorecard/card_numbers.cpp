@@ -17,21 +17,16 @@ using Texts = std::vector<std::string>;
 using Counts = std::vector<std::int32_t>;
 using Numbers = std::vector<double>;
 
-Column column_of(const char* name, const char* units, const char* meaning, Values values) {
-  return {name, units, meaning, std::move(values), 1, {}};
-}
-
-// The columns scene, method and noise_sigma.
+// The table with its columns scene, method and noise_sigma.
 template <class Row>
-std::vector<Column> cell_columns(const std::vector<Row>& rows) {
-  Texts scene, method;
-  Numbers noise;
-  for (const Row& row : rows) {
-    scene.push_back(row.cell.scene), method.push_back(row.cell.method);
-    noise.push_back(row.cell.noise_m);
-  }
-  return {column_of("scene", "1", "scene", scene), column_of("method", "1", "method", method),
-          column_of("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise)};
+Table table_of_cells(const char* name, const char* title, const std::vector<Row>& rows) {
+  Table table{name, title};
+  add_column(table, rows, "scene", "scene", [](const Row& row) { return row.cell.scene; });
+  add_column(table, rows, "method", "method", [](const Row& row) { return row.cell.method; });
+  add_column(table, rows, "noise_sigma", "standard deviation of the noise; NaN: the scene's own",
+             [](const Row& row) { return row.cell.noise_m; });
+  table.columns.back().units = "m";
+  return table;
 }
 
 CardCell cell_in(const Table& table, std::size_t row) {
@@ -101,44 +96,35 @@ CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
 }
 
 Table counts_table(const CardNumbers& numbers) {
-  Counts events, runs;
-  Numbers fraction, low, high;
-  for (const auto& row : numbers.counts) {
-    events.push_back(row.successes.events), runs.push_back(row.successes.runs);
-    fraction.push_back(row.successes.fraction);
-    low.push_back(row.successes.low), high.push_back(row.successes.high);
-  }
-  Table table{"success", "fractions of successful runs with Wilson's 95 % interval",
-              cell_columns(numbers.counts)};
-  table.columns.push_back(column_of("successes", "1", "successful runs", events));
-  table.columns.push_back(
-      column_of("runs", "1", "number of runs; identical runs, as without noise, count once", runs));
-  table.add("fraction", "1", "fraction of successful runs", fraction);
-  table.add("low", "1", "lower end of the interval", low);
-  table.add("high", "1", "upper end of the interval", high);
+  Table table =
+      table_of_cells("success", "fractions of successful runs with Wilson's 95 % interval", numbers.counts);
+  const auto add = [&](const char* name, const char* meaning, auto part) {
+    add_column(table, numbers.counts, name, meaning, [part](const auto& row) { return row.successes.*part; });
+  };
+  add("successes", "successful runs", &Proportion::events);
+  add("runs", "number of runs; identical runs, as without noise, count once", &Proportion::runs);
+  add("fraction", "fraction of successful runs", &Proportion::fraction);
+  add("low", "lower end of the interval", &Proportion::low);
+  add("high", "upper end of the interval", &Proportion::high);
   return table;
 }
 
 Table means_table(const CardNumbers& numbers) {
-  Texts measure, units;
-  Counts runs;
-  Numbers mean, low, high;
-  for (const auto& row : numbers.means) {
-    measure.push_back(row.measure), units.push_back(row.units);
-    runs.push_back(static_cast<std::int32_t>(row.value.pairs));
-    mean.push_back(row.value.mean), low.push_back(row.value.low), high.push_back(row.value.high);
-  }
-  Table table{
+  using Row = CardNumbers::Mean;
+  const std::vector<Row>& rows = numbers.means;
+  Table table = table_of_cells(
       "measures",
       "means with Student's 95 % intervals; judged measures over the successful runs, reported measures over "
       "all runs",
-      cell_columns(numbers.means)};
-  table.columns.push_back(column_of("measure", "1", "measure", measure));
-  table.columns.push_back(column_of("units", "1", "unit of the measure", units));
-  table.columns.push_back(column_of("runs", "1", "runs that have a number", runs));
-  table.add("mean", "1", "mean, in the measure's unit", mean);
-  table.add("low", "1", "lower end of the interval", low);
-  table.add("high", "1", "upper end of the interval", high);
+      rows);
+  add_column(table, rows, "measure", "measure", &Row::measure);
+  add_column(table, rows, "units", "unit of the measure", &Row::units);
+  add_column(table, rows, "runs", "runs that have a number",
+             [](const Row& row) { return static_cast<std::int32_t>(row.value.pairs); });
+  add_column(table, rows, "mean", "mean, in the measure's unit",
+             [](const Row& row) { return row.value.mean; });
+  add_column(table, rows, "low", "lower end of the interval", [](const Row& row) { return row.value.low; });
+  add_column(table, rows, "high", "upper end of the interval", [](const Row& row) { return row.value.high; });
   return table;
 }
 

@@ -2,8 +2,11 @@
 // interval. A later card is compared with them.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,6 +48,15 @@ const List& values_of(const Table& table, const std::string& name) {
     break;
   }
   throw std::out_of_range("table " + table.name + " has no usable column " + name);
+}
+
+// Adds to the table a column of numbers without unit, counts or texts: value(row) of each row.
+template <class Row, class Value>
+void add_column(Table& table, const std::vector<Row>& rows, std::string name, std::string meaning,
+                Value value) {
+  std::vector<std::decay_t<std::invoke_result_t<Value, const Row&>>> values;
+  for (const Row& row : rows) values.push_back(std::invoke(value, row));
+  table.add(std::move(name), "1", std::move(meaning), std::move(values));
 }
 
 // Conversion to two tables and back. numbers_in throws std::out_of_range if a table lacks one of the columns,

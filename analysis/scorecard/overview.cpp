@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/scorecard/card_numbers.h"
 #include "analysis/statistics/paired_bootstrap.h"
 
 namespace remote_touch {
@@ -109,49 +110,46 @@ std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& metho
 }
 
 Table overview_table(const Scorecard& card) {
-  std::vector<double> success, low, high, noise_free, old;
-  std::vector<std::int32_t> scenes, held, best, worst;
-  for (const MethodSummary& one : overview(card)) {
-    success.push_back(one.success.mean), low.push_back(one.success.low), high.push_back(one.success.high);
-    noise_free.push_back(one.noise_free.mean), old.push_back(one.old_success.mean);
-    scenes.push_back(static_cast<std::int32_t>(one.success.pairs));
-    held.push_back(one.held), best.push_back(one.best), worst.push_back(one.worst);
-  }
+  using Row = MethodSummary;
+  const std::vector<Row> rows = overview(card);
   Table table{"overview", "each method over all scenes"};
-  table.columns.push_back({"method", "1", "method", card.methods, 1, {}});
-  table.columns.push_back({"scenes", "1", "scenes", scenes, 1, {}});
-  table.add("success", "1", "mean over the scenes of the fraction of successes with noise", success);
-  table.add("low", "1", "lower end of its interval, of a bootstrap over scenes", low);
-  table.add("high", "1", "upper end of its interval", high);
-  table.add("noise_free", "1", "mean over the scenes of the fraction of successes without noise", noise_free);
-  table.add("old_success", "1", "like success, by the previous rule, over the scenes that have one", old);
-  table.columns.push_back({"held", "1", "scenes held in more than 90 % of the runs", held, 1, {}});
-  table.columns.push_back(
-      {"best", "1", "scenes in which it is significantly better than all other methods", best, 1, {}});
-  table.columns.push_back(
-      {"worst", "1", "scenes in which it is significantly worse than all other methods", worst, 1, {}});
+  const auto add = [&](const char* name, const char* meaning, auto value) {
+    add_column(table, rows, name, meaning, value);
+  };
+  table.add("method", "1", "method", card.methods);
+  add("scenes", "scenes", [](const Row& one) { return static_cast<std::int32_t>(one.success.pairs); });
+  add("success", "mean over the scenes of the fraction of successes with noise",
+      [](const Row& one) { return one.success.mean; });
+  add("low", "lower end of its interval, of a bootstrap over scenes",
+      [](const Row& one) { return one.success.low; });
+  add("high", "upper end of its interval", [](const Row& one) { return one.success.high; });
+  add("noise_free", "mean over the scenes of the fraction of successes without noise",
+      [](const Row& one) { return one.noise_free.mean; });
+  add("old_success", "like success, by the previous rule, over the scenes that have one",
+      [](const Row& one) { return one.old_success.mean; });
+  add("held", "scenes held in more than 90 % of the runs", &Row::held);
+  add("best", "scenes in which it is significantly better than all other methods", &Row::best);
+  add("worst", "scenes in which it is significantly worse than all other methods", &Row::worst);
   return table;
 }
 
 Table behind_table(const Scorecard& card) {
-  std::vector<std::string> scene, what, units, other;
-  std::vector<double> own, better, p;
-  std::vector<std::int32_t> ahead, shown;
-  for (const Weakness& one : weaknesses(card, kOwnMethod)) {
-    scene.push_back(one.scene), what.push_back(one.what), units.push_back(one.units);
-    other.push_back(one.other), ahead.push_back(one.ahead), shown.push_back(one.is_significant);
-    own.push_back(one.own_mean), better.push_back(one.other_mean), p.push_back(one.p);
-  }
+  using Row = Weakness;
+  const std::vector<Row> rows = weaknesses(card, kOwnMethod);
   Table table{"behind", std::string("where ") + kOwnMethod + " is behind another method"};
-  table.columns = {{"scene", "1", "scene", scene, 1, {}},
-                   {"what", "1", "success or measure", what, 1, {}},
-                   {"units", "1", "unit of the measure", units, 1, {}},
-                   {"other", "1", "the best of the methods that are ahead", other, 1, {}},
-                   {"ahead", "1", "number of methods that are ahead", ahead, 1, {}},
-                   {"shown", "1", "1 if the difference is significant, else 0", shown, 1, {}}};
-  table.add("own_mean", "1", "mean of the own method, in the measure's unit", own);
-  table.add("other_mean", "1", "mean of the other", better);
-  table.add("p", "1", "p value, corrected for all comparisons of the card; NaN: not tested", p);
+  const auto add = [&](const char* name, const char* meaning, auto value) {
+    add_column(table, rows, name, meaning, value);
+  };
+  add("scene", "scene", &Row::scene);
+  add("what", "success or measure", &Row::what);
+  add("units", "unit of the measure", &Row::units);
+  add("other", "the best of the methods that are ahead", &Row::other);
+  add("ahead", "number of methods that are ahead", &Row::ahead);
+  add("shown", "1 if the difference is significant, else 0",
+      [](const Row& one) { return static_cast<std::int32_t>(one.is_significant); });
+  add("own_mean", "mean of the own method, in the measure's unit", &Row::own_mean);
+  add("other_mean", "mean of the other", &Row::other_mean);
+  add("p", "p value, corrected for all comparisons of the card; NaN: not tested", &Row::p);
   return table;
 }
 

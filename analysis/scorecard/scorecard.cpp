@@ -76,12 +76,6 @@ Successes counted(const PairedValues& success, const std::vector<double>& noise_
   return result;
 }
 
-std::string units_of(const SweepResult& sweep, const std::string& measure) {
-  for (const Column& column : sweep.measures)
-    if (column.name == measure) return column.units;
-  return "1";
-}
-
 // Data that all parts of a score share.
 struct Runs {
   const std::vector<SweepResult>& sweeps;
@@ -119,7 +113,9 @@ std::vector<Successes> counts_of(const Runs& runs, const std::vector<PairedValue
 // A method that loses the surface early has a short and quiet run. So judged measures count successes only.
 JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
                      const std::vector<PairedValues>& won) {
-  JudgedMeasure measure{name, units_of(runs.sweeps.front(), name), better};
+  JudgedMeasure measure{name, "1", better};
+  for (const Column& column : runs.sweeps.front().measures)
+    if (column.name == name) measure.units = column.units;
   std::vector<PairedValues> values;
   for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
     const std::vector<double>& all = runs.sweeps[c].measure(name);
@@ -162,13 +158,6 @@ void correct(Scorecard& card) {
 
 namespace {
 
-Column texts(const char* name, const char* meaning, std::vector<std::string> values) {
-  return {name, "1", meaning, std::move(values), 1, {}};
-}
-Column counts(const char* name, const char* meaning, std::vector<std::int32_t> values) {
-  return {name, "1", meaning, std::move(values), 1, {}};
-}
-
 Table success_table(const Scorecard& card, const CardNumbers& numbers) {
   std::vector<std::int32_t> old_events;
   for (const SceneScore& s : card.scenes)
@@ -176,23 +165,25 @@ Table success_table(const Scorecard& card, const CardNumbers& numbers) {
       for (std::size_t i = 0; i < s.noise_m.size(); ++i)
         old_events.push_back(s.old_success.empty() ? -1 : s.old_success[c].at_level[i].events);
   Table table = counts_table(numbers);
-  table.columns.push_back(
-      counts("old_successes", "successes by the previous rule; -1 if there is none", old_events));
+  table.add("old_successes", "1", "successes by the previous rule; -1 if there is none", old_events);
   return table;
 }
+
+struct Standing {
+  std::string scene, measure, method;
+  std::int32_t place, mark, top_group;
+};
 
 // The place is 1, 2, ... in the order of each ranking. The mark is 1 for the best method, -1 for the worst
 // and 0 for others.
 Table ranking_table(const Scorecard& card) {
-  std::vector<std::string> scene, method, measure;
-  std::vector<std::int32_t> place, mark, top;
+  std::vector<Standing> rows;
   const auto add = [&](const SceneScore& s, const std::string& name, const Ranking& ranking) {
     for (std::size_t i = 0; i < ranking.order.size(); ++i) {
       const std::size_t c = ranking.order[i];
-      scene.push_back(s.name), measure.push_back(name), method.push_back(card.methods[c]);
-      place.push_back(static_cast<std::int32_t>(i + 1));
-      mark.push_back(i == 0 && ranking.has_best ? 1 : i + 1 == ranking.ranked && ranking.has_worst ? -1 : 0);
-      top.push_back(std::count(ranking.top_group.begin(), ranking.top_group.end(), c) > 0);
+      const int mark = i == 0 && ranking.has_best ? 1 : i + 1 == ranking.ranked && ranking.has_worst ? -1 : 0;
+      const bool top = std::count(ranking.top_group.begin(), ranking.top_group.end(), c) > 0;
+      rows.push_back({s.name, name, card.methods[c], static_cast<std::int32_t>(i + 1), mark, top});
     }
   };
   for (const SceneScore& s : card.scenes) {
@@ -201,14 +192,15 @@ Table ranking_table(const Scorecard& card) {
       if (m.better != Better::neither) add(s, m.name, m.ranking);
   }
   Table table{"standings", "methods in order over all levels with noise"};
-  table.columns = {
-      texts("scene", "scene", scene),
-      texts("measure", "success or measure", measure),
-      counts("place", "place in the order, 1 the best", place),
-      texts("method", "method", method),
-      counts("mark", "1 if significantly better, -1 if significantly worse than all others, else 0", mark),
-      counts("top_group", "1 for the first method and for all that it is not significantly better than",
-             top)};
+  add_column(table, rows, "scene", "scene", &Standing::scene);
+  add_column(table, rows, "measure", "success or measure", &Standing::measure);
+  add_column(table, rows, "place", "place in the order, 1 the best", &Standing::place);
+  add_column(table, rows, "method", "method", &Standing::method);
+  add_column(table, rows, "mark",
+             "1 if significantly better, -1 if significantly worse than all others, else 0", &Standing::mark);
+  add_column(table, rows, "top_group",
+             "1 for the first method and for all that it is not significantly better than",
+             &Standing::top_group);
   return table;
 }
 
@@ -227,12 +219,10 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
   panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
   for (std::size_t c = 0; c < card.methods.size(); ++c) {
     const std::string& name = card.methods[c];
-    std::vector<double> fraction, low, high;
-    for (const Proportion& one : s.success[c].at_level)
-      fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
-    table.add(name, "1", "share of successful runs", fraction);
-    table.add(name + "_low", "1", "lower end of its interval", low);
-    table.add(name + "_high", "1", "upper end of its interval", high);
+    const std::vector<Proportion>& shares = s.success[c].at_level;
+    add_column(table, shares, name, "share of successful runs", &Proportion::fraction);
+    add_column(table, shares, name + "_low", "lower end of its interval", &Proportion::low);
+    add_column(table, shares, name + "_high", "upper end of its interval", &Proportion::high);
     panel.curves.push_back({table.name, "noise", name, CurveStyle::line, number == 0 ? name : ""});
   }
   figure.tables.push_back(std::move(table));

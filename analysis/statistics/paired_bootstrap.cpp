@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/numeric/noise.h"
 
@@ -51,20 +50,19 @@ double drawn_mean(const std::vector<std::vector<double>>& groups, Choices choice
 
 MeanDifference bootstrap_mean(const std::vector<std::vector<double>>& differences, std::uint64_t key,
                               int draws) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  MeanDifference result{0, kNone, kNone, kNone};
   std::vector<std::vector<double>> groups;
   double sum = 0;
+  std::int64_t count = 0;
   for (const std::vector<double>& all : differences) {
     groups.emplace_back();
     for (const double d : all)
-      if (!std::isnan(d)) groups.back().push_back(d), sum += d, ++result.pairs;
+      if (!std::isnan(d)) groups.back().push_back(d), sum += d, ++count;
   }
-  const double pairs = static_cast<double>(result.pairs);
-  if (result.pairs > 0) result.mean = sum / pairs;
-  if (result.pairs < 2 || draws < 1) return result;
+  MeanDifference result = mean_of_sum(sum, count);
+  if (count < 2 || draws < 1) return result;
   std::vector<double> means;
-  for (int draw = 0; draw < draws; ++draw) means.push_back(drawn_mean(groups, Choices(key, draw), pairs));
+  for (int draw = 0; draw < draws; ++draw)
+    means.push_back(drawn_mean(groups, Choices(key, draw), static_cast<double>(count)));
   std::sort(means.begin(), means.end());
   result.low = quantile(means, 0.025), result.high = quantile(means, 0.975);
   return result;

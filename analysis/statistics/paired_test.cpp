@@ -1,10 +1,11 @@
 #include "analysis/statistics/paired_test.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "analysis/statistics/mean.h"
 
 namespace remote_touch {
 
@@ -60,20 +61,19 @@ std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int
   return {std::max(-1.0, difference / n - half), std::min(1.0, difference / n + half)};
 }
 
-MeanDifference mean_difference(const std::vector<double>& differences) {
+MeanDifference mean_of_sum(double sum, std::int64_t pairs, double half_width) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  MeanDifference result{0, kNone, kNone, kNone};
-  double sum = 0, squares = 0;
-  for (const double d : differences)
-    if (!std::isnan(d)) sum += d, ++result.pairs;
-  const double n = static_cast<double>(result.pairs);
-  if (result.pairs > 0) result.mean = sum / n;
-  if (result.pairs < 2) return result;
-  for (const double d : differences)
-    if (!std::isnan(d)) squares += (d - result.mean) * (d - result.mean);
-  const double half = kTwoSided95 * std::sqrt(squares / (n - 1) / n);
-  result.low = result.mean - half, result.high = result.mean + half;
-  return result;
+  const double mean = pairs > 0 ? sum / static_cast<double>(pairs) : kNone;
+  if (std::isnan(half_width)) return {pairs, mean, kNone, kNone};
+  return {pairs, mean, mean - half_width, mean + half_width};
+}
+
+MeanDifference mean_difference(const std::vector<double>& differences) {
+  const Moments m = moments_of(differences);
+  const auto pairs = static_cast<std::int64_t>(m.count);
+  if (pairs < 2) return mean_of_sum(m.mean, pairs);
+  const double half = kTwoSided95 * std::sqrt(m.variance / m.count);
+  return {pairs, m.mean, m.mean - half, m.mean + half};
 }
 
 std::vector<double> holm_adjusted(const std::vector<double>& p) {

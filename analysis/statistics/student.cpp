@@ -2,33 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "analysis/statistics/mean.h"
 
 namespace remote_touch {
 
 namespace {
-
-struct Moments {
-  double count = 0, mean = 0, variance = 0, third = 0;  // third: mean of the cubed deviations
-};
-
-Moments moments_of(const std::vector<double>& values) {
-  Moments m;
-  double sum = 0, squares = 0, cubes = 0;
-  for (const double value : values)
-    if (!std::isnan(value)) sum += value, ++m.count;
-  if (m.count == 0) return m;
-  m.mean = sum / m.count;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    const double d = value - m.mean;
-    squares += d * d, cubes += d * d * d;
-  }
-  if (m.count > 1) m.variance = squares / (m.count - 1);
-  m.third = cubes / m.count;
-  return m;
-}
 
 // Hall's transformation of t, which increases with the mean whatever the skewness is.
 double hall_t(const Moments& m) {
@@ -76,8 +56,6 @@ double student_quantile(double probability, int degrees) {
 
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
                             const std::vector<bool>& without_scatter) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  MeanDifference result{0, kNone, kNone, kNone};
   double all = 0, sum = 0, scatter = 0, squares = 0;
   bool has_scatter = false;
   for (const auto& group : with_lone_numbers_together(groups, without_scatter)) {
@@ -87,13 +65,11 @@ MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
     const double part = m.count * m.variance;
     scatter += part, squares += part * part / (m.count - 1), has_scatter = true;
   }
-  result.pairs = static_cast<std::int64_t>(all);
-  if (all > 0) result.mean = sum / all;
-  if (!has_scatter) return result;
+  const auto pairs = static_cast<std::int64_t>(all);
+  if (!has_scatter) return mean_of_sum(sum, pairs);
   const int degrees = scatter > 0 ? std::max(1, static_cast<int>(scatter * scatter / squares)) : 1;
-  const double half = scatter > 0 ? student_quantile(0.05, degrees) * std::sqrt(scatter) / all : 0;
-  result.low = result.mean - half, result.high = result.mean + half;
-  return result;
+  return mean_of_sum(sum, pairs,
+                     scatter > 0 ? student_quantile(0.05, degrees) * std::sqrt(scatter) / all : 0);
 }
 
 double mean_test(const std::vector<double>& differences) {

@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,30 +28,18 @@ bool is_sink(const struct stat& there) {
 }
 
 // Returns 0, or the errno of the call that failed.
-int write_and_flush(int file, const char* data, std::size_t size) {
-  while (size > 0) {
-    const ssize_t written = ::write(file, data, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written < 0 ? errno : ENOSPC;
-    data += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+int write_and_flush(int file, const void* data, std::size_t size) {
+  std::size_t done = 0;
+  const int error = write_all(file, data, size, done);
+  return error == 0 ? flush(file) : error;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& target) {
   return target.has_parent_path() ? target.parent_path() : ".";
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
-  throw InputError(target.string(),
-                   std::string("cannot be written (") + std::strerror(error) + "): expected " + allowed);
-}
-
-// remark: what else the user has to know.
-[[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size,
-                              const std::string& remark = "") {
-  refuse(target, error, "a writable folder with free space for " + std::to_string(size) + " bytes" + remark);
+[[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size) {
+  refuse_writing(target, error, "a writable folder with free space for " + std::to_string(size) + " bytes");
 }
 
 bool is_folder(const std::filesystem::path& target) {
@@ -75,70 +62,45 @@ std::filesystem::path write_temporary(const std::filesystem::path& target, const
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) refuse_size(target, errno, size);
   keep_permissions(file, resolved(target));
-  int error = write_and_flush(file, static_cast<const char*>(data), size);
+  int error = write_and_flush(file, data, size);
   if (::close(file) != 0 && error == 0) error = errno;
   if (error == 0) return temporary;
   ::unlink(temporary.c_str());
   refuse_size(target, error, size);
 }
 
-// One of the files that are replaced together. The new file and a copy of the old one are beside it until the
-// end.
-class Replacement {
- public:
-  explicit Replacement(const NewFile& file) : place_(resolved(file.target)), old_(temporary_of(file.target)) {
-    old_ += "-old";
-    std::error_code failure;
-    if (std::filesystem::exists(place_, failure)) {
-      copied_ = true;
-      if (!std::filesystem::copy_file(place_, old_, failure)) {
-        remove_copy();
-        refuse_size(file.target, failure.value(), file.content.size());
-      }
-    }
-    try {
-      new_ = write_temporary(file.target, file.content.data(), file.content.size());
-    } catch (...) {  // the destructor does not run for a constructor that throws
-      remove_copy();
-      throw;
-    }
-  }
-  ~Replacement() {
-    if (!renamed_) ::unlink(new_.c_str());
-    remove_copy();
-  }
-  Replacement(const Replacement&) = delete;
-  Replacement& operator=(const Replacement&) = delete;
-
-  // Returns 0, or the errno of the call that failed.
-  int rename() {
-    renamed_ = ::rename(new_.c_str(), place_.c_str()) == 0;
-    return renamed_ ? 0 : errno;
-  }
-  // Returns an empty text, or where the old file is if it cannot be put back.
-  std::string put_back() {
-    if (!renamed_) return {};
-    if (!copied_) {
-      ::unlink(place_.c_str());
-      return {};
-    }
-    copied_ = false;  // the copy is moved, or it stays
-    if (::rename(old_.c_str(), place_.c_str()) == 0) return {};
-    // The next writer of the file would remove it under its present name.
-    const std::string kept = place_.string() + ".old-" + std::to_string(::getpid());
-    const bool is_moved = ::rename(old_.c_str(), kept.c_str()) == 0;
-    return "; the old " + place_.string() + " is now " + (is_moved ? kept : old_.string());
-  }
-
- private:
-  void remove_copy() {
-    if (copied_) ::unlink(old_.c_str());
-  }
-  std::filesystem::path place_, old_, new_;
-  bool copied_ = false, renamed_ = false;
-};
-
 }  // namespace
+
+void refuse_writing(const std::filesystem::path& target, int error, const std::string& expected) {
+  throw InputError(target.string(),
+                   std::string("cannot be written (") + std::strerror(error) + "): expected " + expected);
+}
+
+void require_no_device(const std::filesystem::path& target) {
+  std::error_code absent;
+  if (std::filesystem::exists(target, absent) && !std::filesystem::is_regular_file(target, absent))
+    throw InputError(target.string(), "is a device: expected a file");
+}
+
+int write_all(int descriptor, const void* data, std::size_t size, std::size_t& done) {
+  for (done = 0; done < size;) {
+    const ssize_t written = ::write(descriptor, static_cast<const char*>(data) + done, size - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    done += static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+int flush(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+bool is_name_of(const std::filesystem::path& name, int descriptor) {
+  struct stat held = {}, there = {};
+  return ::fstat(descriptor, &held) == 0 && ::stat(name.c_str(), &there) == 0 &&
+         held.st_ino == there.st_ino && held.st_dev == there.st_dev;
+}
 
 void flush_folder(const std::filesystem::path& target) {
   const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -164,7 +126,7 @@ std::filesystem::path resolved(const std::filesystem::path& target) {
   std::filesystem::path place = target;
   std::error_code unreachable;
   for (int links = 0; std::filesystem::is_symlink(place, unreachable); ++links) {
-    if (links == kMaxLinks) refuse(target, ELOOP, "a file");
+    if (links == kMaxLinks) refuse_writing(target, ELOOP, "a file");
     const auto next = std::filesystem::read_symlink(place, unreachable);
     if (unreachable) break;
     place = place.parent_path() / next;  // next itself, if it is absolute
@@ -173,10 +135,19 @@ std::filesystem::path resolved(const std::filesystem::path& target) {
 }
 
 void require_writable(const std::filesystem::path& target) {
-  if (is_folder(target)) refuse(target, EISDIR, "a file");
+  if (is_folder(target)) refuse_writing(target, EISDIR, "a file");
   if (is_written_in_place(target)) return;
   const std::filesystem::path folder = folder_of(resolved(target));
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse_writing(target, errno, "a file in a writable folder");
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw InputError(folder.string(),
+                     "cannot be made (" + failure.message() + "): expected a writable folder");
 }
 
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size) {
@@ -184,7 +155,7 @@ void write_file_atomically(const std::filesystem::path& target, const void* data
   if (is_written_in_place(target)) {
     const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
     if (file < 0) refuse_size(target, errno, size);
-    const int error = write_and_flush(file, static_cast<const char*>(data), size);
+    const int error = write_and_flush(file, data, size);
     ::close(file);
     if (error != 0) refuse_size(target, error, size);
     return;
@@ -197,19 +168,6 @@ void write_file_atomically(const std::filesystem::path& target, const void* data
   flush_folder(place);
 }
 
-void write_files_together(const std::vector<NewFile>& files) {
-  std::deque<Replacement> replacements;
-  for (const NewFile& file : files) replacements.emplace_back(file);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const int error = replacements[i].rename();
-    if (error == 0) continue;
-    std::string kept;
-    for (Replacement& done : replacements) kept += done.put_back();
-    refuse_size(files[i].target, error, files[i].content.size(), kept);
-  }
-  for (const NewFile& file : files) flush_folder(resolved(file.target));
-}
-
 std::filesystem::path temporary_of(const std::filesystem::path& target) {
   return resolved(target).string() + kTemporary + std::to_string(::getpid());
 }
@@ -218,13 +176,13 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
   const std::filesystem::path place = resolved(target);
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
-  if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != EROFS) error = errno;
+  if (error == 0) error = flush(file);
   if (error == 0) keep_permissions(file, place);
   if (file >= 0) ::close(file);
   if (error == 0) error = rename_or_keep(temporary, target);
   if (error != 0) {
     ::unlink(temporary.c_str());
-    refuse(target, error, "a writable folder with free space for the file");
+    refuse_writing(target, error, "a writable folder with free space for the file");
   }
   flush_folder(place);
 }

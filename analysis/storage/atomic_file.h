@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace remote_touch {
 
@@ -15,20 +14,18 @@ namespace remote_touch {
 // appeared at the target meanwhile is kept if replacement_rule.h requires it.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
 
-struct NewFile {
-  std::filesystem::path target;  // a regular file, or absent
-  std::string content;
-};
-// Replaces files that belong together. All are written beside their targets and flushed to the disk first;
-// then they are renamed, with nothing else to do in between. If one cannot be written or renamed, it throws
-// InputError, which names that target, and all targets are as before. If an old file cannot be put back, it
-// is kept beside its target, and the message names it. Only a program that is killed between two renames
-// leaves the first files new and the others old.
-void write_files_together(const std::vector<NewFile>& files);
-
 // Throws the InputError of write_file_atomically() if the folder is missing or not writable, or if the target
 // is not a file, before any work is done for the file. Never blocks.
 void require_writable(const std::filesystem::path& target);
+
+// Makes the folder and those above it. Throws InputError.
+void make_folder(const std::filesystem::path& folder);
+
+// Throws the InputError of a target that cannot be written. error: the errno of the call that failed.
+[[noreturn]] void refuse_writing(const std::filesystem::path& target, int error, const std::string& expected);
+
+// Throws InputError if the target is a device: a file that is renamed to it would replace it.
+void require_no_device(const std::filesystem::path& target);
 
 // Throws InputError, which names the target, if the target and the input are the same file.
 void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input);
@@ -38,6 +35,16 @@ std::filesystem::path temporary_of(const std::filesystem::path& target);
 // Flushes the temporary file to the disk and renames it over the target. Fails like write_file_atomically(),
 // also if a file appeared meanwhile.
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
+
+// Writes bytes to an open file. Returns 0, or the errno of the call that failed; `done` is the number of
+// bytes that were written.
+int write_all(int descriptor, const void* data, std::size_t size, std::size_t& done);
+
+// Writes an open file to the disk, if it and its file system support that. Returns 0, or the errno.
+int flush(int descriptor);
+
+// True if that is the name of the open file.
+bool is_name_of(const std::filesystem::path& name, int descriptor);
 
 // Gives an open file the permissions of the file at the place, if there is one; its owner can always read and
 // write it.

@@ -14,6 +14,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_digest.h"
+#include "analysis/storage/sha256.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -100,9 +101,7 @@ void require_no_journal_beside(const std::filesystem::path& target) {
 JournalWriter::JournalWriter(const std::filesystem::path& target, const JournalBlock& first)
     : target_(target), file_(journal_of(target)) {
   require_writable(target);
-  std::error_code absent;
-  if (std::filesystem::exists(target, absent) && !std::filesystem::is_regular_file(target, absent))
-    throw InputError(target.string(), "is a device: expected a file");
+  require_no_device(target);
   require_no_journal_beside(target);
   try {
     create(first);
@@ -146,25 +145,19 @@ void JournalWriter::give_name(const std::filesystem::path& temporary) const {
 }
 
 void JournalWriter::refuse(int error) const {
-  throw InputError(target_.string(), std::string("cannot be written (") + std::strerror(error) +
-                                         "): expected a writable folder with free space");
+  refuse_writing(target_, error, "a writable folder with free space");
 }
 
 // Removes the written part of a block for which there is no room. If that fails, readers ignore this part and
 // all that is behind it, so nothing more is written.
 void JournalWriter::write(const std::string& bytes) {
   if (lasting_error_ != 0) refuse(lasting_error_);
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int error = written < 0 ? errno : ENOSPC;
-      if (done > 0 && (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0 ||
-                       ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0))
-        lasting_error_ = error;
-      refuse(error);
-    }
-    done += static_cast<std::size_t>(written);
+  std::size_t done = 0;
+  if (const int error = write_all(descriptor_, bytes.data(), bytes.size(), done); error != 0) {
+    if (done > 0 && (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0 ||
+                     ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0))
+      lasting_error_ = error;
+    refuse(error);
   }
   size_ += bytes.size();
 }
@@ -199,8 +192,7 @@ JournalReader::JournalReader(const std::filesystem::path& file) : file_(file) {
   if (descriptor_ < 0 || ::fstat(descriptor_, &there) != 0) {
     const int error = errno;
     if (descriptor_ >= 0) ::close(descriptor_);
-    throw InputError(file.string(),
-                     std::string("cannot be read (") + std::strerror(error) + "): expected a readable file");
+    refuse_reading(file, error);
   }
   is_growing_ = ::flock(descriptor_, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   size_ = static_cast<std::uint64_t>(there.st_size);
@@ -213,17 +205,9 @@ JournalReader::~JournalReader() {
 
 // Returns false if the file ends before.
 bool JournalReader::read(std::uint64_t from, void* bytes, std::size_t size) const {
-  char* const to = static_cast<char*>(bytes);
-  for (std::size_t done = 0; done < size;) {
-    const ssize_t part = ::pread(descriptor_, to + done, size - done, static_cast<off_t>(from + done));
-    if (part < 0 && errno == EINTR) continue;
-    if (part < 0)
-      throw InputError(file_.string(), std::string("cannot be read (") + std::strerror(errno) +
-                                           "): expected a readable file");
-    if (part == 0) return false;
-    done += static_cast<std::size_t>(part);
-  }
-  return true;
+  const ssize_t found = read_all(descriptor_, bytes, size, static_cast<off_t>(from));
+  if (found < 0) refuse_reading(file_, errno);
+  return static_cast<std::size_t>(found) == size;
 }
 
 std::optional<JournalBlock> JournalReader::next() {

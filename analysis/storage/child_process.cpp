@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
 
 namespace remote_touch {
@@ -23,16 +24,7 @@ namespace {
 // The first byte that a child sends.
 constexpr char kAnswer = 'a', kFailure = 'f', kNoMemory = 'm';
 
-void write_all(int to, const char* data, std::size_t size) {
-  while (size > 0) {
-    const ssize_t written = ::write(to, data, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) ::_exit(1);
-    data += written, size -= static_cast<std::size_t>(written);
-  }
-}
-
-std::string read_all(int from) {
+std::string all_from(int from) {
   std::string all;
   std::array<char, 65536> piece;
   for (;;) {
@@ -61,8 +53,8 @@ void limit(int resource, rlim_t wanted) {
                          const std::function<std::string()>& work) noexcept {
   become_limited_child(limits);
   const auto send = [to](char kind, std::string_view text) {  // allocates nothing
-    write_all(to, &kind, 1);
-    write_all(to, text.data(), text.size());
+    std::size_t done = 0;
+    if (write_all(to, &kind, 1, done) != 0 || write_all(to, text.data(), text.size(), done) != 0) ::_exit(1);
   };
   try {
     send(kAnswer, work());
@@ -117,7 +109,7 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
   }
   const int error = errno;
   ::close(ends[1]);
-  std::string answered = child < 0 ? "" : read_all(ends[0]);
+  std::string answered = child < 0 ? "" : all_from(ends[0]);
   ::close(ends[0]);
   if (child < 0) throw std::runtime_error(std::strerror(error));
   if (const std::string end = end_of(child, limits); !end.empty()) throw std::runtime_error(end);

@@ -69,14 +69,9 @@ void write_seal(const std::filesystem::path& file) {
 std::string opening_of(const std::filesystem::path& file, std::size_t size) {
   std::string opening(size, '\0');
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  std::size_t found = 0;
-  while (descriptor >= 0 && found < size) {
-    const ssize_t part = ::read(descriptor, opening.data() + found, size - found);
-    if (part < 0 && errno == EINTR) continue;
-    if (part <= 0) break;
-    found += static_cast<std::size_t>(part);
-  }
-  if (descriptor >= 0) ::close(descriptor);
+  if (descriptor < 0) return opening;
+  read_all(descriptor, opening.data(), size, 0);
+  ::close(descriptor);
   return opening;
 }
 

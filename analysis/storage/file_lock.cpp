@@ -2,11 +2,9 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -16,12 +14,6 @@
 namespace remote_touch {
 
 namespace {
-
-bool is_same_file(int descriptor, const std::filesystem::path& path) {
-  struct stat held = {}, there = {};
-  return ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &there) == 0 &&
-         held.st_ino == there.st_ino && held.st_dev == there.st_dev;
-}
 
 bool is_special(const std::filesystem::path& target) {
   std::error_code unreachable;
@@ -39,14 +31,12 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target)
   do {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0)
-      throw InputError(target.string(), std::string("cannot be written (") + std::strerror(errno) +
-                                            "): expected a file in a writable folder");
+    if (descriptor_ < 0) refuse_writing(target, errno, "a file in a writable folder");
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) continue;
     if (errno != EWOULDBLOCK) return;
     ::close(descriptor_);
     throw InputError(target.string(), "another process is writing this file: expected one at a time");
-  } while (!is_same_file(descriptor_, lock_));
+  } while (!is_name_of(lock_, descriptor_));
   try {
     remove_leftovers(target);
   } catch (...) {  // the destructor does not run for a constructor that throws

@@ -18,21 +18,9 @@ namespace {
 constexpr unsigned kDeflate = 1;
 
 hid_t stored(Hdf5Appender::Number number) {
-  switch (number) {
-    case Hdf5Appender::Number::f64:
-      return H5T_IEEE_F64LE;
-    case Hdf5Appender::Number::f32:
-      return H5T_IEEE_F32LE;
-    case Hdf5Appender::Number::i32:
-      return H5T_STD_I32LE;
-    case Hdf5Appender::Number::u64:
-      return H5T_STD_U64LE;
-    case Hdf5Appender::Number::u32:
-      return H5T_STD_U32LE;
-    case Hdf5Appender::Number::u16:
-      return H5T_STD_U16LE;
-  }
-  return -1;
+  const hid_t types[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_STD_I32LE,
+                         H5T_STD_U64LE,  H5T_STD_U32LE,  H5T_STD_U16LE};
+  return types[static_cast<int>(number)];
 }
 
 }  // namespace
@@ -57,7 +45,7 @@ void Hdf5Appender::guarded(const Call& call) {
 Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     : target_(target), temporary_(temporary_of(target)) {
   require_writable(target);
-  require_no_device();
+  require_no_device(target);
   remove_leftovers(target);
   try {
     guarded([&] { begin(); });
@@ -65,13 +53,6 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     remove_temporary();
     throw;
   }
-}
-
-// A file that was renamed over a device would replace it.
-void Hdf5Appender::require_no_device() const {
-  std::error_code absent;
-  if (std::filesystem::exists(target_, absent) && !std::filesystem::is_regular_file(target_, absent))
-    throw InputError(target_.string(), "is a device: expected a file");
 }
 
 void Hdf5Appender::begin() {
@@ -113,8 +94,7 @@ void Hdf5Appender::dataset(const Dataset& made) {
     std::vector<hsize_t> now{0}, max{H5S_UNLIMITED}, chunk{made.rows_a_chunk};
     for (const auto extent : made.row) now.push_back(extent), max.push_back(extent), chunk.push_back(extent);
     const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), max.data()), H5Sclose);
-    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    check(H5Pset_obj_track_times(creation, false));
+    const Handle creation = creation_list(H5P_DATASET_CREATE);
     check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
     check(H5Pset_shuffle(creation));
     check(H5Pset_deflate(creation, kDeflate));
@@ -136,7 +116,7 @@ void Hdf5Appender::append(const std::string& path, const void* rows, std::size_t
     check(H5Dset_extent(data.id, end.data()));
     const Handle space(H5Dget_space(data.id), H5Sclose);
     check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
-    const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+    const Handle memory = space_of(size);
     const Handle type(H5Tget_native_type(stored(data.made.number), H5T_DIR_ASCEND), H5Tclose);
     check(H5Dwrite(data.id, type, memory, space, H5P_DEFAULT, rows));
     data.rows += count;

@@ -49,7 +49,6 @@ class Hdf5Appender {
   };
   template <class Call>
   void guarded(const Call& call);
-  void require_no_device() const;
   void begin();
   bool close();
   void remove_temporary();

@@ -25,9 +25,8 @@ bool is_there(hid_t file, const std::string& path) {
 }
 
 Handle made_scale(hid_t file, const std::string& path, hid_t type, hsize_t size) {
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  return Handle(H5Dcreate2(file, path.c_str(), type, space, H5P_DEFAULT, creation_list(H5P_DATASET_CREATE),
-                           H5P_DEFAULT),
+  return Handle(H5Dcreate2(file, path.c_str(), type, space_of({size}), H5P_DEFAULT,
+                           creation_list(H5P_DATASET_CREATE), H5P_DEFAULT),
                 H5Dclose);
 }
 
@@ -98,18 +97,11 @@ Handle named_enumeration(hid_t file, const std::string& column, const std::vecto
 void write_flags(hid_t file, const std::string& dataset, const std::vector<std::string>& value_names) {
   std::vector<std::int32_t> values(value_names.size());
   std::iota(values.begin(), values.end(), 0);
-  const hsize_t length = values.size();
-  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-  const Handle flags(H5Acreate_by_name(file, dataset.c_str(), "flag_values", H5T_STD_I32LE, space,
-                                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose);
-  check(H5Awrite(flags, H5T_NATIVE_INT32, values.data()));
-  std::string meanings;
-  for (std::string name : value_names) {
-    std::replace(name.begin(), name.end(), ' ', '_');  // a blank ends a name
-    meanings += (meanings.empty() ? "" : " ") + name;
-  }
-  write_text(file, dataset, "flag_meanings", meanings);
+  write_attribute(file, dataset, "flag_values", H5T_STD_I32LE, space_of({values.size()}), H5T_NATIVE_INT32,
+                  values.data());
+  std::vector<std::string> words = value_names;
+  for (std::string& name : words) std::replace(name.begin(), name.end(), ' ', '_');  // a blank ends a name
+  write_text(file, dataset, "flag_meanings", joined(words, " "));
 }
 
 }  // namespace remote_touch

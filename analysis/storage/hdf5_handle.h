@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace remote_touch {
 
@@ -47,6 +48,10 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
+inline Handle space_of(const std::vector<hsize_t>& extent) {
+  return Handle(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+}
+
 inline Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   check(H5Tset_size(type, std::max<std::size_t>(1, length)));
@@ -55,15 +60,20 @@ inline Handle text_type(std::size_t length) {
   return type;
 }
 
-// Writes a text attribute of an existing group or dataset.
+// Writes an attribute of an existing group or dataset.
+inline void write_attribute(hid_t file, const std::string& object, const std::string& name, hid_t stored,
+                            hid_t space, hid_t in_memory, const void* values) {
+  const Handle made(H5Acreate_by_name(file, object.c_str(), name.c_str(), stored, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+  check(H5Awrite(made, in_memory, values));
+}
+
 inline void write_text(hid_t file, const std::string& object, const std::string& name,
                        const std::string& value) {
   const Handle type = text_type(value.size());
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  check(H5Awrite(made, type, value.empty() ? "\0" : value.data()));
+  write_attribute(file, object, name, type, space, type, value.empty() ? "\0" : value.data());
 }
 
 }  // namespace remote_touch

@@ -1,7 +1,6 @@
 #include "analysis/storage/hdf5_reader.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/schema.h"
@@ -103,11 +103,7 @@ class Hdf5Reader::HeldFile {
 
   // True if that is still the name of the held file, or if the file could not be opened (another check
   // refuses it).
-  bool has_name(const std::string& file) const {
-    struct stat ours = {}, there = {};
-    if (descriptor_ < 0 || ::fstat(descriptor_, &ours) != 0) return true;
-    return ::stat(file.c_str(), &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
-  }
+  bool has_name(const std::string& file) const { return descriptor_ < 0 || is_name_of(file, descriptor_); }
 
  private:
   int descriptor_;

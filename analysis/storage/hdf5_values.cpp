@@ -60,10 +60,7 @@ std::string read_text(hid_t attribute) {
   if (!size || *size > file_size(attribute)) throw std::runtime_error("an attribute is longer than the file");
   std::string packed(*size, '\0');
   check(H5Aread(attribute, type, packed.data()));
-  std::string joined;
-  for (const std::string& text : texts_in(packed, H5Tget_size(type), H5Tget_strpad(type)))
-    joined.append(joined.empty() ? "" : ", ").append(text);
-  return joined;
+  return joined(texts_in(packed, H5Tget_size(type), H5Tget_strpad(type)), ", ");
 }
 
 std::string text_attribute(hid_t object, const char* name) {
@@ -214,7 +211,7 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
   const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
   std::vector<hsize_t> size = checked_extent(data, type, space, name);
   std::vector<hsize_t> start(size.size(), 0);
-  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
+  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}};
   const bool by_character = has_texts_by_character(data, type, size);
   column.width = static_cast<int>(size.size() == 2 && !by_character ? size[1] : 1);
   if (rows) start[0] = rows->first, size[0] = rows->count;
@@ -227,7 +224,7 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
     return column;
   }
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
-  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  const Handle memory = space_of(size);
   wanted.in_memory = memory, wanted.in_file = space;
   column.values = read_values(data, type, wanted);
   return column;

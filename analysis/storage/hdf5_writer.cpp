@@ -28,13 +28,15 @@ std::size_t max_length(const std::vector<std::string>& texts) {
 }
 
 Handle stored_type(hid_t file, const Column& column) {
-  if (std::holds_alternative<std::vector<double>>(column.values))
-    return Handle(H5Tcopy(H5T_IEEE_F64LE), H5Tclose);
   if (std::holds_alternative<std::vector<std::string>>(column.values)) return character_type();
-  if (std::holds_alternative<std::vector<std::uint64_t>>(column.values))
-    return Handle(H5Tcopy(H5T_STD_U64LE), H5Tclose);
-  if (column.value_names.empty()) return Handle(H5Tcopy(H5T_STD_I32LE), H5Tclose);
-  return named_enumeration(file, column.name, column.value_names);
+  const bool are_integers = std::holds_alternative<std::vector<std::int32_t>>(column.values);
+  if (are_integers && !column.value_names.empty())
+    return named_enumeration(file, column.name, column.value_names);
+  const bool are_hashes = std::holds_alternative<std::vector<std::uint64_t>>(column.values);
+  return Handle(H5Tcopy(are_integers ? H5T_STD_I32LE
+                        : are_hashes ? H5T_STD_U64LE
+                                     : H5T_IEEE_F64LE),
+                H5Tclose);
 }
 
 }  // namespace
@@ -66,20 +68,13 @@ void Hdf5Writer::attribute(const std::string& object, const std::string& name, c
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name,
                            const std::vector<double>& values) {
-  const hsize_t length = values.size();
-  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-  const Handle made(H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  check(H5Awrite(made, H5T_NATIVE_DOUBLE, values.data()));
+  write_attribute(file_, object, name, H5T_IEEE_F64LE, space_of({values.size()}), H5T_NATIVE_DOUBLE,
+                  values.data());
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, std::int32_t value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_STD_I32LE, space, H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  check(H5Awrite(made, H5T_NATIVE_INT32, &value));
+  write_attribute(file_, object, name, H5T_STD_I32LE, space, H5T_NATIVE_INT32, &value);
 }
 
 void Hdf5Writer::attributes(const std::string& object, const TextAttributes& list) {
@@ -122,7 +117,7 @@ void Hdf5Writer::dataset(const std::string& path, const Column& column, std::vec
   const auto* const texts = std::get_if<std::vector<std::string>>(&column.values);
   if (texts) extent.push_back(max_length(*texts));
   const int rank = static_cast<int>(extent.size());
-  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  const Handle space = space_of(extent);
   const Handle creation = creation_list(H5P_DATASET_CREATE);
   const Handle type = stored_type(file_, column);
   if (storage == Storage::in_place) {

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/replacement_rule.h"
@@ -17,10 +16,8 @@ NewFiles::~NewFiles() {
   put_back();
 }
 
-void NewFiles::refuse(const File& file, int error) const {
-  throw InputError(file.target.string(),
-                   std::string("cannot be written (") + std::strerror(error) +
-                       "): expected a writable folder with free space for the exported files");
+void NewFiles::refuse(const File& file, int error, const std::string& remark) const {
+  refuse_writing(file.target, error, "a writable folder with free space for " + contents_ + remark);
 }
 
 void NewFiles::begin(const std::filesystem::path& target) {
@@ -37,18 +34,15 @@ void NewFiles::begin(const std::filesystem::path& target) {
 }
 
 void NewFiles::append(const std::string& bytes) {
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) refuse(files_.back(), written < 0 ? errno : ENOSPC);
-    done += static_cast<std::size_t>(written);
-  }
+  std::size_t done = 0;
+  if (const int error = write_all(descriptor_, bytes.data(), bytes.size(), done); error != 0)
+    refuse(files_.back(), error);
   size_ += bytes.size();
 }
 
 void NewFiles::close() {
   if (descriptor_ < 0) return;
-  int error = ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+  int error = flush(descriptor_);
   if (::close(descriptor_) != 0 && error == 0) error = errno;
   descriptor_ = -1;
   if (error != 0) refuse(files_.back(), error);
@@ -78,7 +72,7 @@ void NewFiles::finish() {
                        "was written by another program meanwhile, and is unchanged: expected "
                        "another file, or --force");
     else if (error != 0)
-      refuse(file, error);
+      refuse(file, error, put_back());
     file.is_new = true;
   }
   const std::vector<File> done = std::move(files_);  // they now stay, whatever happens
@@ -88,18 +82,23 @@ void NewFiles::finish() {
   for (const File& file : done) flush_folder(file.place);
 }
 
-void NewFiles::put_back() {
-  for (const File& file : files_) {
-    if (!file.is_new)
+std::string NewFiles::put_back() {
+  std::string remark;
+  for (File& file : files_) {
+    if (!file.is_new) {
       ::unlink(file.temporary.c_str());
-    else if (file.old.empty())
+      if (!file.old.empty()) ::unlink(file.old.c_str());
+    } else if (file.old.empty()) {
       ::unlink(file.place.c_str());
-    if (file.old.empty()) continue;
-    if (file.is_new)
-      ::rename(file.old.c_str(), file.place.c_str());
-    else
-      ::unlink(file.old.c_str());
+    } else if (::rename(file.old.c_str(), file.place.c_str()) != 0) {
+      // The next writer of the file would remove it under its present name.
+      const std::string kept = file.place.string() + ".old-" + std::to_string(::getpid());
+      const bool is_moved = ::rename(file.old.c_str(), kept.c_str()) == 0;
+      remark += "; the old " + file.place.string() + " is now " + (is_moved ? kept : file.old.string());
+    }
+    file.is_new = false, file.old.clear();
   }
+  return remark;
 }
 
 }  // namespace remote_touch

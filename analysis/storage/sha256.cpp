@@ -19,30 +19,15 @@ namespace remote_touch {
 
 namespace {
 
-// Throws InputError with the error of the system, errno.
-[[noreturn]] void refuse_unreadable(const std::filesystem::path& file) {
-  throw InputError(file.string(),
-                   std::string("cannot be read (") + std::strerror(errno) + "): expected a readable file");
-}
-
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file) : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (file_ < 0) refuse_unreadable(file);
+    if (file_ < 0) refuse_reading(file, errno);
   }
   ~OpenFile() { ::close(file_); }
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
-
-  // Reads up to size bytes from the offset `at` on. Returns their number, 0 at the end, or -1 with errno set
-  // if the file cannot be read.
-  ssize_t read(char* to, std::size_t size, off_t at) const {
-    ssize_t found;
-    do {
-      found = ::pread(file_, to, size, at);
-    } while (found < 0 && errno == EINTR);
-    return found;
-  }
+  operator int() const { return file_; }
 
  private:
   int file_;
@@ -70,15 +55,31 @@ std::string Sha256::hex() {
   return text;
 }
 
+ssize_t read_all(int descriptor, void* to, std::size_t size, off_t from) {
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t part =
+        ::pread(descriptor, static_cast<char*>(to) + done, size - done, from + static_cast<off_t>(done));
+    if (part < 0 && errno == EINTR) continue;
+    if (part <= 0) return part < 0 ? -1 : static_cast<ssize_t>(done);
+    done += static_cast<std::size_t>(part);
+  }
+  return static_cast<ssize_t>(size);
+}
+
+void refuse_reading(const std::filesystem::path& file, int error) {
+  throw InputError(file.string(),
+                   std::string("cannot be read (") + std::strerror(error) + "): expected a readable file");
+}
+
 std::string sha256_of_file(const std::filesystem::path& file, std::size_t from, std::string_view before) {
   std::vector<char> part(1 << 18);
   Sha256 hash;
   hash.add(before.data(), before.size());
   const OpenFile open(file);
   for (auto at = static_cast<off_t>(from);;) {
-    const ssize_t size = open.read(part.data(), part.size(), at);
+    const ssize_t size = read_all(open, part.data(), part.size(), at);
     if (size == 0) return hash.hex();
-    if (size < 0) refuse_unreadable(file);
+    if (size < 0) refuse_reading(file, errno);
     hash.add(part.data(), static_cast<std::size_t>(size));
     at += size;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <sstream>
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/schema.h"
@@ -11,43 +10,34 @@
 
 namespace remote_touch {
 
+Column state_column(const SweepResult& result) {
+  std::vector<std::int32_t> numbers;
+  for (const RunState state : result.state) numbers.push_back(static_cast<std::int32_t>(state));
+  return {"state",
+          "1",
+          "state of the run",
+          std::move(numbers),
+          1,
+          {"not_sampled", "pending", "done", "failed", "elsewhere"}};
+}
+
 namespace {
 
 using Storage = Hdf5Writer::Storage;
 
-std::vector<std::int32_t> numbers_of(const std::vector<RunState>& states) {
-  std::vector<std::int32_t> numbers;
-  for (const RunState state : states) numbers.push_back(static_cast<std::int32_t>(state));
-  return numbers;
-}
-
-Column state_column(const SweepResult& result) {
-  return {"state",
-          "1",
-          "state of the run",
-          numbers_of(result.state),
-          1,
-          {"not_sampled", "pending", "done", "failed", "elsewhere"}};
-}
 Column error_column(const SweepResult& result) {
-  return {"error", "1", "why the run failed", result.error, 1, {}};
+  return {"error", "1", "why the run failed", result.error};
 }
 Column round_column(const SweepResult& result) {
-  return {"round", "1", "round of refinement that added the run; -1 if none did", result.round, 1, {}};
+  return {"round", "1", "round of refinement that added the run; -1 if none did", result.round};
 }
 Column notes_column(const SweepResult& result) {
-  return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes, 1, {}};
+  return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes};
 }
 Column replicate_column(const SweepResult& result) {
   std::vector<std::int32_t> numbers;
   for (int i = 0; i < result.replicates; ++i) numbers.push_back(i);
-  return {"replicate", "1", "repetition with other noise", numbers, 1, {}};
-}
-
-std::string names_of(const std::vector<Column>& columns) {
-  std::vector<std::string> names;
-  for (const Column& column : columns) names.push_back(column.name);
-  return joined_names(names);
+  return {"replicate", "1", "repetition with other noise", numbers};
 }
 
 std::vector<std::int32_t> checksums(const SweepResult& result) {
@@ -58,28 +48,14 @@ std::vector<std::int32_t> checksums(const SweepResult& result) {
 
 }  // namespace
 
-std::string joined_names(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
-  return all;
-}
-
-std::vector<std::string> split_names(const std::string& joined) {
-  std::vector<std::string> list;
-  std::istringstream text(joined);
-  text.exceptions(std::ios::badbit);  // throws if memory runs out, instead of ending the list early
-  for (std::string name; std::getline(text, name, ',');) list.push_back(name);
-  return list;
-}
-
 std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   std::sort(attributes.begin(), attributes.end());
   std::vector<std::string> texts;
   for (const auto& [name, value] : attributes) texts.push_back(name), texts.push_back(value);
   std::vector<Column> columns = result.axes;
-  columns.push_back({"attributes", "1", "", texts, 1, {}});
+  columns.push_back({"attributes", "1", "", texts});
   if (!result.round.empty()) columns.push_back(round_column(result));
-  if (!result.note_kinds.empty()) columns.push_back({"note_kinds", "1", "", result.note_kinds, 1, {}});
+  if (!result.note_kinds.empty()) columns.push_back({"note_kinds", "1", "", result.note_kinds});
   return digest(columns);
 }
 
@@ -92,8 +68,9 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   hdf5.attribute("/", "schema", schema_name("sweep"));
   hdf5.attributes("/", attributes);
   if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
-  hdf5.attributes("/", {{"axes", names_of(result.axes)}, {"measures", names_of(result.measures)}});
-  if (!result.note_kinds.empty()) hdf5.attribute("/", "note_kinds", joined_names(result.note_kinds));
+  hdf5.attribute("/", "axes", joined(names_of(result.axes), ","));
+  hdf5.attribute("/", "measures", joined(names_of(result.measures), ","));
+  if (!result.note_kinds.empty()) hdf5.attribute("/", "note_kinds", joined(result.note_kinds, ","));
   hdf5.attribute("/", "default", "sweep");  // NeXus: what a viewer opens first
   hdf5.group("/sweep");
   std::vector<Column> scales = result.axes;
@@ -105,14 +82,10 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   if (!result.note_kinds.empty()) hdf5.array("/sweep", notes_column(result), axes, storage);
   if (!result.round.empty()) hdf5.array("/sweep", round_column(result), axes, Storage::compact);
   if (storage == Storage::in_place)
-    hdf5.array("/sweep",
-               {"checksum",
-                "1",
-                "checksum of the run's values, only while the sweep runs",
-                checksums(result),
-                1,
-                {}},
-               axes, storage);
+    hdf5.array(
+        "/sweep",
+        {"checksum", "1", "checksum of the run's values, only while the sweep runs", checksums(result)}, axes,
+        storage);
   else
     hdf5.array("/sweep", error_column(result), axes, storage);
   hdf5.attributes("/sweep", {{"NX_class", "NXdata"}, {"signal", result.measures.front().name}});

@@ -15,10 +15,8 @@ namespace remote_touch {
 // they do not change the numbers.
 std::string digest(const SweepResult& result);
 
-// Joins names with commas, and splits them again. The attributes axes, measures and note_kinds have this
-// form.
-std::string joined_names(const std::vector<std::string>& names);
-std::vector<std::string> split_names(const std::string& joined);
+// Returns the state of each run as a column of an enumeration.
+Column state_column(const SweepResult& result);
 
 // Writes the finished file and returns its digest. Equal results are equal bytes. attributes: configuration,
 // provenance and shard; schema and digest are added. Throws InputError if the file cannot be written.

@@ -1,21 +1,23 @@
 #include "analysis/sweeps/sweep_in_progress.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <string>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
 namespace {
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& problem) {
-  throw InputError(file.string(), problem);
+[[noreturn]] void refuse_record(const std::filesystem::path& file, int error) {
+  throw InputError(file.string(),
+                   std::string("cannot be written (") + std::strerror(error) +
+                       "); finished runs are kept in the file; free some space and repeat the command");
 }
 }  // namespace
 
@@ -30,8 +32,7 @@ SweepInProgress::SweepInProgress(const std::filesystem::path& file, const SweepR
   checksum_offset_ = there.offset("/sweep/checksum");
   if (!result.notes.empty()) notes_offset_ = there.offset("/sweep/notes");
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor_ < 0)
-    refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "): expected a writable file");
+  if (descriptor_ < 0) refuse_writing(file_, errno, "a writable file");
 }
 
 SweepInProgress::~SweepInProgress() {
@@ -57,19 +58,15 @@ void SweepInProgress::put(std::int64_t offset, const void* value, std::size_t si
     written = ::pwrite(descriptor_, value, size, offset);
   } while (written < 0 && errno == EINTR);
   if (written == static_cast<ssize_t>(size)) return;
-  refuse(file_, std::string("cannot be written (") + std::strerror(written < 0 ? errno : ENOSPC) +
-                    "); finished runs are kept in the file; free some space and repeat the command");
+  refuse_record(file_, written < 0 ? errno : ENOSPC);
 }
 
 void SweepInProgress::flush() {
-  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
-    refuse(file_, std::string("cannot be written (") + std::strerror(errno) +
-                      "); finished runs are kept in the file; free some space and repeat the command");
-  struct stat ours = {}, there = {};
-  if (::fstat(descriptor_, &ours) != 0 || ::stat(file_.c_str(), &there) != 0 || ours.st_ino != there.st_ino ||
-      ours.st_dev != there.st_dev)
-    refuse(file_,
-           "was replaced or removed by another program during the sweep: expected only one that writes it");
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) refuse_record(file_, errno);
+  if (!is_name_of(file_, descriptor_))
+    throw InputError(
+        file_.string(),
+        "was replaced or removed by another program during the sweep: expected only one that writes it");
 }
 
 }  // namespace remote_touch

@@ -14,10 +14,6 @@ double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
   return std::sqrt(point_distance_m * point_distance_m - b * b);
 }
 
-double touching_m(const FirstTouch& touch) {
-  return plane_distance_m(touch, touch.r1_m);
-}
-
 double resting_m(const FirstTouch& touch) {
   return plane_distance_m(touch, 0.5 * (touch.r1_m + touch.r2_m));
 }
@@ -25,7 +21,7 @@ double resting_m(const FirstTouch& touch) {
 }  // namespace
 
 double max_first_touch_velocity(const FirstTouch& touch) {
-  return touching_m(touch) * touch.frame_rate_hz;
+  return plane_distance_m(touch, touch.r1_m) * touch.frame_rate_hz;
 }
 
 double max_touched_velocity(const FirstTouch& touch) {
@@ -34,8 +30,9 @@ double max_touched_velocity(const FirstTouch& touch) {
 
 double lost_at_first_touch(const FirstTouch& touch, double velocity_m_per_s) {
   const double moved_m = velocity_m_per_s / touch.frame_rate_hz;
-  const double first_m = std::max(0.0, moved_m - touching_m(touch));
-  const double second_m = std::max(0.0, moved_m + touching_m(touch) - 2 * resting_m(touch));
+  const double touching_m = plane_distance_m(touch, touch.r1_m);
+  const double first_m = std::max(0.0, moved_m - touching_m);
+  const double second_m = std::max(0.0, moved_m + touching_m - 2 * resting_m(touch));
   return std::min(1.0, (first_m + second_m) / moved_m);
 }
 

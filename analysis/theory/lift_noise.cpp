@@ -14,7 +14,7 @@ bool counts(const LiftUpdate& update, SettledFrom settled) {
   return update.above_before && update.frame > settled.frame;
 }
 
-struct Moments {
+struct Sums {
   double sum = 0, squares = 0;
   std::size_t count = 0;
   void add(double value) {
@@ -52,7 +52,7 @@ double gain(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settl
 
 NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
                          double frame_rate_hz) {
-  Moments thickness, normal_error, velocity, margin;
+  Sums thickness, normal_error, velocity, margin;
   for (const std::vector<LiftUpdate>& lift : lifts)
     for (const LiftUpdate& update : lift) {
       if (!counts(update, settled)) continue;
@@ -68,7 +68,7 @@ NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, Sett
 }
 
 LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled) {
-  Moments thickness, normal_error;
+  Sums thickness, normal_error;
   for (const LiftUpdate& update : lift) {
     if (!counts(update, settled)) continue;
     thickness.add(update.thickness_m);

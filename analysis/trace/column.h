@@ -20,7 +20,7 @@ struct Column {
   std::string long_name;
   Values values;
   int width = 1;
-  std::vector<std::string> value_names;
+  std::vector<std::string> value_names = {};
 
   std::size_t length() const {
     return std::visit([this](const auto& v) { return v.size() / static_cast<std::size_t>(width); }, values);
@@ -33,11 +33,19 @@ struct Table {
   std::string title;
   std::vector<Column> columns = {};
 
-  // Adds a column of numbers.
-  void add(std::string column, std::string units, std::string long_name, std::vector<double> values) {
-    columns.push_back({std::move(column), std::move(units), std::move(long_name), std::move(values), 1, {}});
+  // Adds a column of numbers, counts or texts.
+  template <class Value = double>
+  void add(std::string column, std::string units, std::string long_name, std::vector<Value> values) {
+    columns.push_back({std::move(column), std::move(units), std::move(long_name), std::move(values)});
   }
 };
+
+std::vector<std::string> names_of(const std::vector<Column>& columns);
+
+// Returns the names in one text. split_names() is the inverse for commas, which separate the names in
+// attributes.
+std::string joined(const std::vector<std::string>& names, const char* separator);
+std::vector<std::string> split_names(const std::string& joined);
 
 // Returns the column of numbers with this name. Throws std::out_of_range if the table has no such column, and
 // std::bad_variant_access if the column is not of type double.

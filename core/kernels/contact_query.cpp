@@ -1,9 +1,6 @@
 // Query of the points near the proxy: one pass computes its state, its normal and the stiffness. The code is
 // written in vectors, because compilers vectorise minima and 64-bit integers badly.
-#include <immintrin.h>
-
-#include <cstdint>
-
+#include "core/kernels/double_lanes.h"
 #include "core/kernels/level.h"
 #include "core/kernels/proxy_kernels.h"
 
@@ -11,56 +8,9 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-#if defined(__AVX512F__)
-constexpr std::size_t kWidth = 8;
-#elif defined(__AVX2__)
-constexpr std::size_t kWidth = 4;
-#else
-constexpr std::size_t kWidth = 2;
-#endif
-using Lanes __attribute__((vector_size(8 * kWidth))) = double;
+constexpr std::size_t kWidth = kDoubles;
+using Lanes = Doubles;
 using Bits __attribute__((vector_size(8 * kWidth))) = std::uint64_t;
-
-#if defined(__AVX512F__)
-inline Lanes load(const double* p) {
-  return _mm512_loadu_pd(p);
-}
-inline Lanes root(Lanes a) {
-  return _mm512_sqrt_pd(a);
-}
-inline Lanes larger(Lanes a, Lanes b) {
-  return _mm512_max_pd(a, b);
-}
-inline Lanes smaller(Lanes a, Lanes b) {
-  return _mm512_min_pd(a, b);
-}
-#elif defined(__AVX2__)
-inline Lanes load(const double* p) {
-  return _mm256_loadu_pd(p);
-}
-inline Lanes root(Lanes a) {
-  return _mm256_sqrt_pd(a);
-}
-inline Lanes larger(Lanes a, Lanes b) {
-  return _mm256_max_pd(a, b);
-}
-inline Lanes smaller(Lanes a, Lanes b) {
-  return _mm256_min_pd(a, b);
-}
-#else
-inline Lanes load(const double* p) {
-  return _mm_loadu_pd(p);
-}
-inline Lanes root(Lanes a) {
-  return _mm_sqrt_pd(a);
-}
-inline Lanes larger(Lanes a, Lanes b) {
-  return _mm_max_pd(a, b);
-}
-inline Lanes smaller(Lanes a, Lanes b) {
-  return _mm_min_pd(a, b);
-}
-#endif
 
 inline std::uint64_t bits(double t) {
   return __builtin_bit_cast(std::uint64_t, t);

@@ -1,5 +1,5 @@
-// Vectors of double precision for the kernels of the tool. Each lane processes one disk, so the number of
-// lanes does not change any result.
+// Vectors of double precision for the kernels. In those of the tool each lane processes one disk, so the
+// number of lanes does not change any result.
 #pragma once
 
 #include <immintrin.h>
@@ -39,8 +39,14 @@ inline void store(double* p, Doubles a) {
 inline Doubles root(Doubles a) {
   return _mm512_sqrt_pd(a);
 }
-inline bool is_any(Flags flags) {
-  return _mm512_movepi64_mask((__m512i)flags) != 0;
+inline Doubles larger(Doubles a, Doubles b) {
+  return _mm512_max_pd(a, b);
+}
+inline Doubles smaller(Doubles a, Doubles b) {
+  return _mm512_min_pd(a, b);
+}
+inline unsigned mask_of(Flags flags) {
+  return _mm512_movepi64_mask((__m512i)flags);
 }
 inline Counts toward_zero(Doubles a) {
   return __builtin_convertvector(a, Counts);
@@ -52,8 +58,14 @@ inline Doubles as_doubles(Counts a) {
 inline Doubles root(Doubles a) {
   return _mm256_sqrt_pd(a);
 }
-inline bool is_any(Flags flags) {
-  return _mm256_movemask_pd((__m256d)flags) != 0;
+inline Doubles larger(Doubles a, Doubles b) {
+  return _mm256_max_pd(a, b);
+}
+inline Doubles smaller(Doubles a, Doubles b) {
+  return _mm256_min_pd(a, b);
+}
+inline unsigned mask_of(Flags flags) {
+  return static_cast<unsigned>(_mm256_movemask_pd((__m256d)flags));
 }
 inline Counts toward_zero(Doubles a) {
   return (Counts)_mm256_cvttpd_epi32(a);
@@ -65,8 +77,14 @@ inline Doubles as_doubles(Counts a) {
 inline Doubles root(Doubles a) {
   return _mm_sqrt_pd(a);
 }
-inline bool is_any(Flags flags) {
-  return _mm_movemask_pd((__m128d)flags) != 0;
+inline Doubles larger(Doubles a, Doubles b) {
+  return _mm_max_pd(a, b);
+}
+inline Doubles smaller(Doubles a, Doubles b) {
+  return _mm_min_pd(a, b);
+}
+inline unsigned mask_of(Flags flags) {
+  return static_cast<unsigned>(_mm_movemask_pd((__m128d)flags));
 }
 inline Counts toward_zero(Doubles a) {
   return Counts{static_cast<std::int32_t>(a[0]), static_cast<std::int32_t>(a[1])};
@@ -75,6 +93,9 @@ inline Doubles as_doubles(Counts a) {
   return Doubles{static_cast<double>(a[0]), static_cast<double>(a[1])};
 }
 #endif
+inline bool is_any(Flags flags) {
+  return mask_of(flags) != 0;
+}
 
 // A divisor that is used several times. The quotient is computed from the rounded reciprocal if there is
 // fused multiplication and addition. It is the same as that of a division, bit for bit, in a third of the
@@ -127,7 +148,7 @@ inline double least(Doubles a) {
 // Stores the flagged lanes of vectors one after the other, without gaps.
 class Packing {
  public:
-  explicit Packing(Flags flags);
+  explicit Packing(Flags flags) : mask_(mask_of(flags)) {}
 
   std::size_t count() const { return static_cast<std::size_t>(__builtin_popcount(mask_)); }
   // Other lanes may be stored after the flagged ones: p needs room for kDoubles numbers.
@@ -138,13 +159,11 @@ class Packing {
 };
 
 #if defined(__AVX512F__)
-inline Packing::Packing(Flags flags) : mask_(_mm512_movepi64_mask((__m512i)flags)) {}
 inline void Packing::put(Doubles a, double* p) const {
   // The compressing store instruction is avoided, because it needs a hundred cycles on some processors.
   store(p, _mm512_maskz_compress_pd(static_cast<__mmask8>(mask_), a));
 }
 #elif defined(__AVX2__)
-inline Packing::Packing(Flags flags) : mask_(static_cast<unsigned>(_mm256_movemask_pd((__m256d)flags))) {}
 inline void Packing::put(Doubles a, double* p) const {
   // The indices of the 32-bit halves of the flagged lanes, one byte each, for each mask.
   static constexpr std::uint64_t kOrder[16] = {
@@ -156,7 +175,6 @@ inline void Packing::put(Doubles a, double* p) const {
   store(p, (Doubles)_mm256_permutevar8x32_epi32((__m256i)a, order));
 }
 #else
-inline Packing::Packing(Flags flags) : mask_(static_cast<unsigned>(_mm_movemask_pd((__m128d)flags))) {}
 inline void Packing::put(Doubles a, double* p) const {
   store(p, mask_ == 2 ? Doubles{a[1], a[1]} : a);
 }

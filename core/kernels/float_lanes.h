@@ -20,13 +20,16 @@ constexpr int kFloats = 4;
 #endif
 using Floats __attribute__((vector_size(4 * kFloats))) = float;
 
-#if defined(__AVX512F__)
 inline Floats load(const float* p) {
-  return _mm512_loadu_ps(p);
+  Floats a;
+  __builtin_memcpy(&a, p, sizeof a);
+  return a;
 }
 inline void store(float* p, Floats a) {
-  _mm512_storeu_ps(p, a);
+  __builtin_memcpy(p, &a, sizeof a);
 }
+
+#if defined(__AVX512F__)
 inline Floats root(Floats a) {
   return _mm512_sqrt_ps(a);
 }
@@ -37,12 +40,6 @@ inline Floats smaller(Floats a, Floats b) {
   return _mm512_min_ps(a, b);
 }
 #elif defined(__AVX2__)
-inline Floats load(const float* p) {
-  return _mm256_loadu_ps(p);
-}
-inline void store(float* p, Floats a) {
-  _mm256_storeu_ps(p, a);
-}
 inline Floats root(Floats a) {
   return _mm256_sqrt_ps(a);
 }
@@ -53,12 +50,6 @@ inline Floats smaller(Floats a, Floats b) {
   return _mm256_min_ps(a, b);
 }
 #else
-inline Floats load(const float* p) {
-  return _mm_loadu_ps(p);
-}
-inline void store(float* p, Floats a) {
-  _mm_storeu_ps(p, a);
-}
 inline Floats root(Floats a) {
   return _mm_sqrt_ps(a);
 }

@@ -2,9 +2,9 @@
 // that matter. Groups of regions whose boxes are too far away are skipped, and pairs that are far apart are
 // rejected without a root. The remaining pairs are stored close together, so that roots and divisions are
 // computed for them alone.
-#include <immintrin.h>
 #include <math.h>
 
+#include "core/kernels/double_lanes.h"
 #include "core/kernels/level.h"
 #include "core/kernels/region_kernels.h"
 
@@ -81,36 +81,11 @@ inline std::size_t sort_group(const Leaf& leaf, const SphereRun& run, std::size_
 
 #else
 
-#if defined(__AVX2__)
-constexpr std::size_t kWidth = 4;
-using Lanes = __m256d;
-inline Lanes load(const double* p) {
-  return _mm256_loadu_pd(p);
-}
-inline Lanes larger(Lanes a, Lanes b) {
-  return _mm256_max_pd(a, b);
-}
-template <class Mask>
-inline unsigned bits(Mask mask) {
-  return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask));
-}
-#else
-constexpr std::size_t kWidth = 2;
-using Lanes = __m128d;
-inline Lanes load(const double* p) {
-  return _mm_loadu_pd(p);
-}
-inline Lanes larger(Lanes a, Lanes b) {
-  return _mm_max_pd(a, b);
-}
-template <class Mask>
-inline unsigned bits(Mask mask) {
-  return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
-}
-#endif
+constexpr std::size_t kWidth = kDoubles;
+using Lanes = Doubles;
 
 inline unsigned equal(const double* p, double value) {
-  return bits(load(p) == Lanes{} + value);
+  return mask_of(load(p) == Lanes{} + value);
 }
 
 struct Leaf {
@@ -122,7 +97,7 @@ struct Leaf {
 
 inline unsigned within_reach(Lanes x, Lanes y, Lanes z, Lanes own, Lanes radius) {
   const Lanes reach = (own + radius) * kRounding;
-  return bits((x * x + (y * y + z * z) <= reach * reach) & (reach >= Lanes{}));
+  return mask_of((x * x + (y * y + z * z) <= reach * reach) & (reach >= Lanes{}));
 }
 
 inline unsigned boxes_near(const Leaf& leaf, const SphereRun& run, std::size_t g) {

@@ -8,9 +8,9 @@
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
-namespace {
-
 #if defined(__AVX512F__)
+
+namespace {
 
 // Returns a coordinate of eight points in cells, rounded towards zero. NaN and values beyond the range of
 // integers become negative.
@@ -21,9 +21,11 @@ inline __m256i coordinate(const double row[4], __m512d x, __m512d y, __m512d z) 
   return _mm512_cvttpd_epi32(_mm512_add_pd(along, _mm512_set1_pd(row[3])));
 }
 
-std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
-                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
-                 std::uint32_t* found) {
+}  // namespace
+
+std::size_t points_in_cells(const double* x, const double* y, const double* z, const std::uint32_t* groups,
+                            std::size_t group_count, const CellTransform& to_cells, const CellTable& table,
+                            int min, std::uint32_t* found) {
   const __m256i columns = _mm256_set1_epi32(table.cells[0]), rows = _mm256_set1_epi32(table.cells[1]),
                 layers = _mm256_set1_epi32(table.cells[2]), limit = _mm256_set1_epi32(min);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -54,6 +56,8 @@ std::size_t find(const double* x, const double* y, const double* z, const std::u
 
 #else
 
+namespace {
+
 #if defined(__AVX2__)
 constexpr std::size_t kWidth = 4;
 inline void store_coordinate(const double row[4], const double* x, const double* y, const double* z,
@@ -76,11 +80,13 @@ inline void store_coordinate(const double row[4], const double* x, const double*
 }
 #endif
 
+}  // namespace
+
 // Computes the coordinates of eight points in vectors, then reads the cells one by one, because few points
 // are inside the grid.
-std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
-                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
-                 std::uint32_t* found) {
+std::size_t points_in_cells(const double* x, const double* y, const double* z, const std::uint32_t* groups,
+                            std::size_t group_count, const CellTransform& to_cells, const CellTable& table,
+                            int min, std::uint32_t* found) {
   const auto columns = static_cast<std::uint32_t>(table.cells[0]),
              rows = static_cast<std::uint32_t>(table.cells[1]),
              layers = static_cast<std::uint32_t>(table.cells[2]);
@@ -103,13 +109,5 @@ std::size_t find(const double* x, const double* y, const double* z, const std::u
 }
 
 #endif
-
-}  // namespace
-
-std::size_t points_in_cells(const double* x, const double* y, const double* z, const std::uint32_t* groups,
-                            std::size_t group_count, const CellTransform& to_cells, const CellTable& table,
-                            int min, std::uint32_t* found) {
-  return find(x, y, z, groups, group_count, to_cells, table, min, found);
-}
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

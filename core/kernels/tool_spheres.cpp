@@ -8,9 +8,9 @@
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
-namespace {
-
 #if defined(__AVX512F__)
+
+namespace {
 
 // A coordinate of eight centres in cells, moved into the grid (NaN becomes 0), and the distance by which it
 // was moved.
@@ -28,9 +28,11 @@ inline Along coordinate(const double row[4], int cells, __m512d x, __m512d y, __
           _mm512_abs_pd(_mm512_sub_pd(u, in))};
 }
 
-std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
-                 const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
-                 std::uint32_t* found) {
+}  // namespace
+
+std::size_t near_spheres(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
+                         const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
+                         std::uint32_t* found) {
   const __m256i columns = _mm256_set1_epi32(table.cells[0]), rows = _mm256_set1_epi32(table.cells[1]);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m512d per_unit = _mm512_set1_pd(1 / code.unit);
@@ -70,6 +72,8 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
 
 #else
 
+namespace {
+
 inline double along(const double row[4], double x, double y, double z) {
   return row[0] * x + row[1] * y + row[2] * z + row[3];
 }
@@ -84,11 +88,13 @@ inline double magnitude(double x) {
   return x < 0 ? -x : x;
 }
 
+}  // namespace
+
 // Does the same in doubles: computes the coordinates of eight spheres at a time, then reads the cells one by
 // one.
-std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
-                 const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
-                 std::uint32_t* found) {
+std::size_t near_spheres(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
+                         const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
+                         std::uint32_t* found) {
   const double columns = table.cells[0], rows = table.cells[1], layers = table.cells[2];
   const double per_unit = 1 / code.unit;
   constexpr double kNever = 1e9;  // larger than every value of a cell
@@ -123,13 +129,5 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
 }
 
 #endif
-
-}  // namespace
-
-std::size_t near_spheres(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
-                         const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
-                         std::uint32_t* found) {
-  return find(spheres, groups, group_count, to_cells, table, code, found);
-}
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

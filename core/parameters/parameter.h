@@ -1,7 +1,9 @@
 // Parameters as data: a configuration struct lists its fields once, in a function `parameters(Struct&)`, and
-// reading, range checks, help and the configuration stored with a result all use that list.
+// reading, range checks, help and the configuration stored with a result all use that list. A function
+// `validate(const Struct&)` describes the first invalid combination in one line; empty if there is none.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -41,6 +43,19 @@ inline constexpr bool kLive = true;
 // Returns the parameters of a list that may change during a run.
 inline Parameters live_ones(Parameters list) {
   std::erase_if(list, [](const Parameter& parameter) { return !parameter.is_live; });
+  return list;
+}
+
+inline Parameters appended(Parameters list, const Parameters& more) {
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+// Returns the parameters of a list except those of these names.
+inline Parameters without(Parameters list, const std::vector<std::string>& names) {
+  std::erase_if(list, [&](const Parameter& parameter) {
+    return std::find(names.begin(), names.end(), parameter.name) != names.end();
+  });
   return list;
 }
 

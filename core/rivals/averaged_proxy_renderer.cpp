@@ -3,10 +3,7 @@
 namespace remote_touch {
 
 Parameters parameters(AveragedProxyParameters& p) {
-  Parameters list = parameters(p.proxy);
-  const Parameters more = parameters(p.average);
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(p.proxy), parameters(p.average));
 }
 
 std::string validate(const AveragedProxyParameters& p) {

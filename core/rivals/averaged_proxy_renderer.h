@@ -16,11 +16,6 @@ struct AveragedProxyParameters {
 
 Parameters parameters(AveragedProxyParameters& p);
 std::string validate(const AveragedProxyParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover the damper, nor points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const AveragedProxyParameters& p) {
-  return max_stiffness_N_per_m(p.proxy);
-}
 
 class AveragedProxyRenderer final : public Renderer {
  public:

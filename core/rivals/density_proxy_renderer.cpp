@@ -8,16 +8,14 @@
 namespace remote_touch {
 
 Parameters parameters(DensityProxyParameters& p) {
-  Parameters list = with_fixed_radii(parameters(p.proxy));
-  const Parameters more = {
+  const Parameters own = {
       {"radius_ratio", &p.radius_ratio, 0.1, 100,
        "contact radius r_c in units of the local spacing of the points"},
       {"min_radius_m", &p.min_radius_m, 1e-4, 1, "smallest contact radius"},
       {"max_radius_m", &p.max_radius_m, 1e-4, 1, "largest contact radius"},
       {"neighbours", &p.neighbours, 4, 1000, "number K of points from which the local spacing is computed"},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(with_fixed_radii(parameters(p.proxy)), own);
 }
 
 std::string validate(const DensityProxyParameters& p) {

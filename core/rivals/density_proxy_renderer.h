@@ -29,13 +29,7 @@ struct DensityProxyParameters {
 };
 
 Parameters parameters(DensityProxyParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const DensityProxyParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover the damper, nor points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const DensityProxyParameters& p) {
-  return max_stiffness_N_per_m(p.proxy);
-}
 
 class DensityProxyRenderer final : public Renderer {
  public:

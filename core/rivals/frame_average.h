@@ -34,7 +34,6 @@ struct FrameAverageSettings {
 };
 
 Parameters parameters(FrameAverageSettings& s);
-// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const FrameAverageSettings& s);
 
 class FrameAverage {

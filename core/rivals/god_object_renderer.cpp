@@ -1,7 +1,6 @@
 #include "core/rivals/god_object_renderer.h"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 namespace remote_touch {
@@ -112,12 +111,8 @@ bool GodObjectRenderer::go(const Vec3& goal) {
 }
 
 void GodObjectRenderer::report(const Vec3& hip_W, RenderOutput& out) {
-  PointsView points = near_.around(proxy_W_).view();
-  points.radius = nullptr;
-  const double reach = p_.max_edge_length_m;
-  const ContactQuery query = kernels_.proxy.contact_query(
-      points, proxy_W_.data(), {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
-  out.nearest_distance_m = query.nearest <= reach ? query.nearest : std::numeric_limits<double>::infinity();
+  const PointsView points = near_.around(proxy_W_).view();
+  const ContactQuery query = query_near_proxy(points, near_.sum_grid(), p_.max_edge_length_m, out);
   out.steps = rounds_;
   if (active_planes_ == 0) return;
   const Vec3 push = proxy_W_ - hip_W;

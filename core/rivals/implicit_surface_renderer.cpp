@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace remote_touch {
 
@@ -146,12 +145,8 @@ bool ImplicitSurfaceRenderer::slide(Place& here, const Vec3& hip_W) {
 }
 
 void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, RenderOutput& out) {
-  PointsView points = near_.around(proxy_W_).view();
-  points.radius = nullptr;
-  const double R = p_.support_radius_m;
-  const ContactQuery query = kernels_.proxy.contact_query(points, proxy_W_.data(),
-                                                          {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
-  out.nearest_distance_m = query.nearest <= R ? query.nearest : std::numeric_limits<double>::infinity();
+  const PointsView points = near_.around(proxy_W_).view();
+  const ContactQuery query = query_near_proxy(points, near_.sum_grid(), p_.support_radius_m, out);
   out.contact_count = static_cast<int>(query.touching_count);
   out.steps = steps_;
   const Vec3 u = hip_W - proxy_W_;

@@ -19,20 +19,13 @@ Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
 
 }  // namespace
 
-namespace {
 // The true motion is given, so there is no estimate.
-Parameters without_estimate(Parameters list) {
-  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
-  return list;
-}
-}  // namespace
-
 Parameters parameters(OracleProxyParameters& p) {
-  return without_estimate(parameters(p.proxy));
+  return without(parameters(p.proxy), {"velocity_estimate"});
 }
 
 Parameters OracleProxyRenderer::live_parameters() {
-  return without_estimate(proxy_.live_parameters());
+  return without(proxy_.live_parameters(), {"velocity_estimate"});
 }
 
 SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s) {

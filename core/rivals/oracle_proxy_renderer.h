@@ -22,11 +22,6 @@ Parameters parameters(OracleProxyParameters& p);
 inline std::string validate(const OracleProxyParameters& p) {
   return validate(p.proxy);
 }
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover the damper, nor points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const OracleProxyParameters& p) {
-  return max_stiffness_N_per_m(p.proxy);
-}
 
 // Returns the motion of the true surface nearest to p from before_s to now_s, along its normal at now_s. The
 // motion is zero if it is not known.

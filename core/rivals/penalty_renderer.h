@@ -31,7 +31,6 @@ struct PenaltyParameters {
 };
 
 Parameters parameters(PenaltyParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const PenaltyParameters& p);
 // Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
 // It does not cover the damper, nor points that have a stiffness of their own.

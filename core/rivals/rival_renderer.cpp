@@ -17,6 +17,15 @@ void RivalRenderer::on_frame(const Frame& frame) {
   usable_ = set_points(*points);
 }
 
+ContactQuery RivalRenderer::query_near_proxy(PointsView points, double sum_grid, double reach_m,
+                                             RenderOutput& out) const {
+  points.radius = nullptr;
+  const ProxyRegions regions{0, reach_m, reach_m, sum_grid, stiffness_N_per_m_};
+  const ContactQuery query = kernels_.proxy.contact_query(points, proxy_W_.data(), regions);
+  out.nearest_distance_m = query.nearest <= reach_m ? query.nearest : std::numeric_limits<double>::infinity();
+  return query;
+}
+
 RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {
   time_s_ = time_s;
   const Vec3& hip_W = device.position_W;

@@ -36,6 +36,9 @@ class RivalRenderer : public Renderer {
   // Resets the state that assumes a continuous motion, because the HIP is lost or there is no frame.
   virtual void reset_motion() {}
 
+  // Queries the points within reach of the proxy, without their r_f. Writes the nearest distance to the
+  // output; infinite beyond the reach. sum_grid: M of core/kernels/kernels.h for the list of points.
+  ContactQuery query_near_proxy(PointsView points, double sum_grid, double reach_m, RenderOutput& out) const;
   // Returns the stiffness (5.8) if the points have one, else the renderer's own.
   double stiffness_of(const ContactQuery& query) const {
     return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : stiffness_N_per_m_;

@@ -1,7 +1,6 @@
 #include "core/rivals/surfel_renderer.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "core/rivals/exact_sum.h"
@@ -158,15 +157,9 @@ void SurfelRenderer::follow(const Vec3& hip_W) {
 }
 
 void SurfelRenderer::report(const Vec3& hip_W, RenderOutput& out) {
-  out.nearest_distance_m = std::numeric_limits<double>::infinity();
   out.steps = samples_;
   const GatheredPoints& near = near_.within(proxy_W_, radius_m_);
-  PointsView points = near.view();
-  points.radius = nullptr;
-  const double grid = sum_grid_for(near.size());
-  const ContactQuery query = kernels_.proxy.contact_query(
-      points, proxy_W_.data(), {0, radius_m_, radius_m_, grid, p_.stiffness_N_per_m});
-  if (query.nearest <= radius_m_) out.nearest_distance_m = query.nearest;
+  const ContactQuery query = query_near_proxy(near.view(), sum_grid_for(near.size()), radius_m_, out);
   out.contact_count = static_cast<int>(query.touching_count);
   if (!is_held_) return;
   out.state = depth_m_ > 0 ? ContactState::entrenched : ContactState::contact;

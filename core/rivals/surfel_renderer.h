@@ -40,7 +40,6 @@ struct SurfelParameters {
 };
 
 Parameters parameters(SurfelParameters& p);
-// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const SurfelParameters& p);
 // Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
 // It does not cover points that have a stiffness of their own.

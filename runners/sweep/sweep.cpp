@@ -52,18 +52,18 @@ Parameters parameters(std::string& title, int& replicates) {
           {"replicates", &replicates, 1, 1e6, "runs of each cell, each with its own noise"}};
 }
 
-constexpr const char* kParts[] = {"title", "experiment", "set", "axes", "replicates", "measures", "refine"};
+const std::vector<std::string> kParts = {"title",      "experiment", "set",   "axes",
+                                         "replicates", "measures",   "refine"};
 
 bool is_of_sweep(const std::string& assignment) {
   const std::string key = assignment.substr(0, assignment.find_first_of(".="));
-  return std::find(std::begin(kParts), std::end(kParts), key) != std::end(kParts);
+  return std::find(kParts.begin(), kParts.end(), key) != kParts.end();
 }
 
 void refuse_unknown_part(const Json& json, const std::string& label) {
-  std::string known;
-  for (const char* part : kParts) known += (known.empty() ? "" : ", ") + std::string(part);
   for (const auto& item : json.items())
-    if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown: expected " + known);
+    if (!is_of_sweep(item.key()))
+      throw InputError(label + ": " + item.key(), "unknown: expected " + joined(kParts, ", "));
 }
 
 // Returns the path of an experiment that a sweep file names. A file in the folder of the sweep file comes
@@ -120,14 +120,11 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   const auto found = json.find("measures");
   if (found == json.end()) return {measures().begin(), measures().end()};
   std::vector<Measure> chosen;
-  std::string known;
   std::vector<std::string> names;
-  for (const Measure& measure : measures()) {
-    known += (known.empty() ? "" : ", ") + measure.name;
-    names.push_back(measure.name);
-  }
+  for (const Measure& measure : measures()) names.push_back(measure.name);
   const auto refuse = [&](const std::string& what) {
-    throw InputError(label + ": measures", what + ": expected a list of different names of " + known);
+    throw InputError(label + ": measures",
+                     what + ": expected a list of different names of " + joined(names, ", "));
   };
   if (!found->is_array() || found->empty()) refuse("not a list");
   for (const Json& name : *found) {

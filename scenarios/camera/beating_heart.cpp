@@ -38,15 +38,13 @@ Eigen::Matrix3d turned() {
 }  // namespace
 
 Parameters parameters(BeatingHeart::Settings& s) {
-  Parameters list = {
+  const Parameters own = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
       {"rate_per_min", &s.rate_per_min, 1, 600, "beats per minute"},
       {"amplitude_m", &s.amplitude_m, 0, 0.015,
        "amplitude of the motion of the organ's top in each beat; 0: no motion"},
   };
-  const Parameters camera = parameters(s.camera);
-  list.insert(list.end(), camera.begin(), camera.end());
-  return list;
+  return appended(own, parameters(s.camera));
 }
 
 BeatingHeart::BeatingHeart(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
@@ -98,10 +96,6 @@ PointCloud BeatingHeart::cloud(int frame) const {
     return hit;
   };
   return camera_.measured(camera_.view(cast, /*coloured=*/true), frame);
-}
-
-std::shared_ptr<const NeighbourSearch> BeatingHeart::points(int frame) const {
-  return make_search(cloud(frame));
 }
 
 }  // namespace remote_touch

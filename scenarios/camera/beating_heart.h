@@ -34,7 +34,6 @@ class BeatingHeart final : public Scenario {
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Distance at exactly time_s, also between frames. It is exact outside organ and table. Inside, the depth
   // returned is a lower bound, because the nearest point of one lobe may lie inside another lobe or inside

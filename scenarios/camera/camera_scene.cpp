@@ -6,12 +6,8 @@
 namespace remote_touch {
 
 Parameters parameters(CameraScene::Settings& s) {
-  Parameters list = {
-      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
-  };
-  const Parameters camera = parameters(s.camera);
-  list.insert(list.end(), camera.begin(), camera.end());
-  return list;
+  return appended({{"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"}},
+                  parameters(s.camera));
 }
 
 CameraScene::CameraScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
@@ -44,14 +40,6 @@ RayHit CameraScene::cast(const Vec3& origin_W, const Vec3& ray_W) const {
   if (ray_W.y() < 0) hit.t = -origin_W.y() / ray_W.y();
   for (const Extrusion& solid : solids_) hit.t = std::min(hit.t, solid.cast(origin_W, ray_W));
   return hit;
-}
-
-PointCloud CameraScene::cloud(int frame) const {
-  return camera_.measured(view_, frame);
-}
-
-std::shared_ptr<const NeighbourSearch> CameraScene::points(int frame) const {
-  return make_search(cloud(frame));
 }
 
 }  // namespace remote_touch

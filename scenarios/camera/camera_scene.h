@@ -24,8 +24,7 @@ class CameraScene final : public Scenario {
 
   double frame_rate_hz() const override { return frame_rate_hz_; }
   int frame_count() const override;
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
-  PointCloud cloud(int frame) const override;
+  PointCloud cloud(int frame) const override { return camera_.measured(view_, frame); }
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 

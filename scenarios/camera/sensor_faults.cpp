@@ -22,6 +22,12 @@ NoiseStream of_frame(const NoiseKey& key, int frame) {
   return noise_stream(key, NoiseUse::sensor_frame, static_cast<std::uint32_t>(frame));
 }
 
+// Returns true if one of the faults moves points along the view.
+bool move_points(const SensorFaults& s) {
+  return s.ray_noise.sigma_m > 0 || s.flying_probability > 0 || s.outlier_probability > 0 ||
+         s.quantisation_m > 0;
+}
+
 void lose(PointCloud& cloud, std::size_t i) {
   cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
   if (cloud.has_normals()) cloud.nx[i] = cloud.ny[i] = cloud.nz[i] = cloud.x[i];
@@ -96,23 +102,13 @@ std::string validate(const SensorFaults& s) {
 }
 
 bool use_view_direction(const SensorFaults& s) {
-  return s.ray_noise.sigma_m > 0 || s.flying_probability > 0 || s.outlier_probability > 0 ||
-         s.quantisation_m > 0 || s.hole_fraction > 0;
+  return move_points(s) || s.hole_fraction > 0;
 }
 
 FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,
                            const NoiseKey& key, const Kernels& kernels)
     : scenario_(std::move(scenario)), settings_(settings), key_(key), kernels_(kernels) {
   if (!validate(settings).empty()) throw std::invalid_argument(validate(settings));
-}
-
-bool FaultySensor::needs_view_coordinates() const {
-  return settings_.hole_fraction > 0 || settings_.ray_noise.sigma_m > 0;
-}
-
-bool FaultySensor::moves_points() const {
-  return settings_.ray_noise.sigma_m > 0 || settings_.flying_probability > 0 ||
-         settings_.outlier_probability > 0 || settings_.quantisation_m > 0;
 }
 
 int FaultySensor::frame_count() const {
@@ -145,7 +141,8 @@ std::optional<double> FaultySensor::leaves_sensor_s(int frame) const {
 }
 
 std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {
-  if (moves_points() || loses_points() || settings_.rolling_shutter_s > 0) return make_search(cloud(frame));
+  if (move_points(settings_) || loses_points() || settings_.rolling_shutter_s > 0)
+    return make_search(cloud(frame));
   return scenario_->points(scenario_frame(content_frame(frame)));
 }
 
@@ -153,10 +150,11 @@ PointCloud FaultySensor::cloud(int frame) const {
   const int content = content_frame(frame);
   PointCloud cloud = scenario_->cloud(scenario_frame(content));
   ViewCoordinates without_faults;
-  if (needs_view_coordinates()) without_faults = view_coordinates(cloud);
+  if (settings_.hole_fraction > 0 || settings_.ray_noise.sigma_m > 0)
+    without_faults = view_coordinates(cloud);
   if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
   if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.positions, content);
-  if (moves_points()) displace(cloud, content);
+  if (move_points(settings_)) displace(cloud, content);
   if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
   if (settings_.dropout_probability > 0) drop_points(cloud, content);
   return cloud;

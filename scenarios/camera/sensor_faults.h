@@ -82,8 +82,6 @@ class FaultySensor final : public Scenario {
   };
   int content_frame(int frame) const;   // the frame whose content this frame shows
   int scenario_frame(int frame) const;  // the scenario's frame for it: the last one if there is none
-  bool needs_view_coordinates() const;
-  bool moves_points() const;
   bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
   Vec3 viewing_direction(const PointCloud& cloud, const Vec3& p_W) const;
   void shear(PointCloud& cloud, double captured_s) const;

@@ -30,7 +30,7 @@ std::uint32_t channel(double value) {
 }  // namespace
 
 Parameters parameters(ValveTank::Settings& s) {
-  Parameters list = {
+  const Parameters own = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
       {"left_valve_position_m", &s.left_valve_position_m, -2, 2,
        "centre of the wheel of the left valve; z is the distance from the wall"},
@@ -47,9 +47,7 @@ Parameters parameters(ValveTank::Settings& s) {
       {"dropout_probability", &s.dropout_probability, 0, 1,
        "probability that a pixel has no depth in clear water"},
   };
-  const Parameters camera = parameters(s.camera);
-  list.insert(list.end(), camera.begin(), camera.end());
-  return list;
+  return appended(own, parameters(s.camera));
 }
 
 std::string validate(const ValveTank::Settings& s) {
@@ -145,10 +143,6 @@ void ValveTank::apply_water(int frame, int row, PointCloud& cloud) const {
     if (uniforms(dropouts, pixel[u])[0] < lost_[i])
       cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
   }
-}
-
-std::shared_ptr<const NeighbourSearch> ValveTank::points(int frame) const {
-  return make_search(cloud(frame));
 }
 
 double ValveTank::signed_distance(const Vec3& p_W, double) const {

@@ -43,7 +43,6 @@ class ValveTank final : public Scenario {
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Distance to the union of wall and valves; exact outside.
   double signed_distance(const Vec3& p_W, double time_s) const override;

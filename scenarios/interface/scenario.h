@@ -56,9 +56,9 @@ class Scenario {
   // frame 0 if no frame was captured by then.
   int newest_frame(double time_s) const;
 
-  // Points of a frame, as a renderer touches them. The noise of a point may be computed late, when a search
-  // gathers the point.
-  virtual std::shared_ptr<const NeighbourSearch> points(int frame) const = 0;
+  // Points of a frame, as a renderer touches them; by default those of cloud(). The noise of a point may be
+  // computed late, when a search gathers the point.
+  virtual std::shared_ptr<const NeighbourSearch> points(int frame) const { return make_search(cloud(frame)); }
   // The same frame with every point computed: for drawing, for planning a path and as the oracle of points().
   virtual PointCloud cloud(int frame) const = 0;
 

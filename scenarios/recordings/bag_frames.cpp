@@ -12,6 +12,7 @@
 #include "scenarios/recordings/bags/depth_from_message.h"
 #include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/static_transforms.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -20,10 +21,8 @@ void check_image_size(const std::string& subject, const DepthImage& depth, std::
                       std::uint32_t height) {
   if (static_cast<std::uint32_t>(depth.width) == width && static_cast<std::uint32_t>(depth.height) == height)
     return;
-  throw InputError(subject, "has " + std::to_string(depth.width) + " x " + std::to_string(depth.height) +
-                                " pixels: expected " + std::to_string(width) + " x " +
-                                std::to_string(height) +
-                                ", as its CameraInfo has (width, height, binning, roi)");
+  refuse(subject, "has ", depth.width, " x ", depth.height, " pixels: expected ", width, " x ", height,
+         ", as its CameraInfo has (width, height, binning, roi)");
 }
 
 // Returns true if the cameras agree in every field that affects how a depth image becomes a cloud.
@@ -55,11 +54,12 @@ BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
 
 // Throws InputError if the choice has settings for depth images, because a topic of clouds does not use them.
 void BagFrames::refuse_image_settings(const BagChoice& choice) const {
-  const auto refuse = [&](const std::string& problem) { throw InputError(path_, topic().name + problem); };
-  if (choice.depth_unit_m != 0) refuse(" holds clouds, in metres: expected scenario.depth_unit_m = 0");
-  if (!choice.camera_info.empty()) refuse(" holds clouds: expected scenario.camera_info = \"\"");
+  if (choice.depth_unit_m != 0)
+    refuse(path_, topic().name, " holds clouds, in metres: expected scenario.depth_unit_m = 0");
+  if (!choice.camera_info.empty())
+    refuse(path_, topic().name, " holds clouds: expected scenario.camera_info = \"\"");
   if (choice.images != BagChoice::Images::by_name)
-    refuse(" holds clouds: expected scenario.images = by_name");
+    refuse(path_, topic().name, " holds clouds: expected scenario.images = by_name");
 }
 
 std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) const {
@@ -120,7 +120,7 @@ void BagFrames::choose_unit(double chosen_m) {
   if (!(rounded_m > 0 && unit_m <= 1)) {
     char unit_text[40];
     std::snprintf(unit_text, sizeof unit_text, "%g", unit_m);
-    throw InputError(name, std::string("depth unit = ") + unit_text + " m: expected 1e-9 to 1");
+    refuse(name, "depth unit = ", unit_text, " m: expected 1e-9 to 1");
   }
   units_.of_integers_m = rounded_m;
   note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
@@ -178,8 +178,7 @@ void BagFrames::choose_frame_id(const std::string& frame_id) {
 
 void BagFrames::check_frame_id(const MessageHeader& header, const std::string& subject) const {
   if (plain_frame(header.frame_id) == plain_frame(frame_id_)) return;
-  throw InputError(
-      subject, "frame_id = " + header.frame_id + ": expected " + frame_id_ + ", as the first message has");
+  refuse(subject, "frame_id = ", header.frame_id, ": expected ", frame_id_, ", as the first message has");
 }
 
 DepthImage BagFrames::depth_of(const MessagePlace& place, double max_depth_m) const {

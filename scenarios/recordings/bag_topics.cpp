@@ -5,6 +5,8 @@
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/depth_from_message.h"
 #include "scenarios/recordings/bags/messages.h"
+#include "scenarios/recordings/static_transforms.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -64,14 +66,13 @@ bool has_frames(const BagFile& bag, std::size_t t) {
   return topic.type == kImageType && is_depth_encoding(encoding_of(bag, t));
 }
 
-// Returns the coordinate frame of the first message, without the leading / that older programs write.
+// Returns the coordinate frame of the first message.
 std::string frame_id_of(const std::string& path, const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   constexpr std::uint64_t kLongestHeader = 1024;
   const std::string start = bag.start(bag.places(t).front(), kLongestHeader);
   MessageCursor cursor(start, wire_format(topic), path + ": " + topic.name);
-  const MessageHeader header = read_header(cursor);
-  return header.frame_id.substr(header.frame_id.find('/') == 0 ? 1 : 0);
+  return plain_frame(read_header(cursor).frame_id);
 }
 
 std::string listed(const BagFile& bag, const std::vector<std::size_t>& topics) {
@@ -123,9 +124,8 @@ std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const s
   const auto of_frames = topics_that(bag, [&](std::size_t t) { return has_frames(bag, t); });
   if (name.empty() && of_frames.size() == 1) return of_frames.front();
   if (name.empty() && of_frames.size() > 1)
-    throw InputError(path,
-                     "has several topics of clouds or depth images: expected scenario.topic as one of " +
-                         listed(bag, of_frames));
+    refuse(path, "has several topics of clouds or depth images: expected scenario.topic as one of ",
+           listed(bag, of_frames));
   const auto named = topics_that(bag, [&](std::size_t t) {
     const std::string& type = bag.topics()[t].type;
     return bag.topics()[t].name == name && is_wanted_topic(bag.topics()[t]) && has_messages(bag, t) &&
@@ -135,11 +135,9 @@ std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const s
   const std::string damage = bag.remark().empty() ? "" : bag.remark() + "; ";
   const std::string problem =
       damage + (name.empty() ? "has no topic of clouds or depth images" : "scenario.topic = " + name);
-  throw InputError(
-      path,
-      problem + ": expected a topic of " + kCloudType + ", " + kImageType + " (" + kDepthEncodings + ") or " +
-          kCompressedType + " (compressedDepth); there are " +
-          listed(bag, of_frames.empty() ? topics_that(bag, [](std::size_t) { return true; }) : of_frames));
+  refuse(path, problem, ": expected a topic of ", kCloudType, ", ", kImageType, " (", kDepthEncodings,
+         ") or ", kCompressedType, " (compressedDepth); there are ",
+         listed(bag, of_frames.empty() ? topics_that(bag, [](std::size_t) { return true; }) : of_frames));
 }
 
 std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::size_t images,
@@ -155,8 +153,8 @@ std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::si
   const std::size_t none = bag.topics().size();
   if (!name.empty()) {
     if (find(name) != none) return find(name);
-    throw InputError(path, "scenario.camera_info = " + name + ": expected a topic of " + kCameraType +
-                               "; there are " + listed(bag, cameras));
+    refuse(path, "scenario.camera_info = ", name, ": expected a topic of ", kCameraType, "; there are ",
+           listed(bag, cameras));
   }
   const std::string& name_of_images = bag.topics()[images].name;
   const std::vector<std::string> parts = parts_without_transport(name_of_images);
@@ -170,7 +168,7 @@ std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::si
     problem = bag.topics()[beside].name + " has frame_id = \"" + of_camera.substr(0, 64) +
               "\" where the images have \"" + of_images.substr(0, 64) + "\"";
   }
-  throw InputError(path, problem + ": expected scenario.camera_info as one of " + listed(bag, cameras));
+  refuse(path, problem, ": expected scenario.camera_info as one of ", listed(bag, cameras));
 }
 
 std::size_t topic_of_unit(const BagFile& bag, std::size_t images) {

@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
-#include "core/parameters/input_error.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -16,7 +16,7 @@ namespace {
 
 void require_target(const fs::path& file) {
   if (fs::is_symlink(file) && !fs::exists(file))
-    throw InputError(file.string(), "is a link to a file that does not exist: expected a file");
+    refuse(file.string(), "is a link to a file that does not exist: expected a file");
 }
 
 // Returns all numbers in a name, without leading zeros: 2 and 7 for img_2_0007.png.
@@ -34,10 +34,9 @@ std::vector<std::string> numbers_in(const fs::path& file) {
 }
 
 [[noreturn]] void refuse_pair(const fs::path& colour, const fs::path& depth) {
-  throw InputError(colour.string(),
-                   "it is not clear whether it belongs to " + depth.string() +
-                       ": expected colour images with the names of the depth images, or with "
-                       "the same numbers in their names");
+  refuse(colour.string(), "it is not clear whether it belongs to ", depth.string(),
+         ": expected colour images with the names of the depth images, or with "
+         "the same numbers in their names");
 }
 
 std::vector<fs::path> paired_by_numbers(const std::vector<fs::path>& depth,
@@ -76,8 +75,8 @@ std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs
   if (!fs::is_directory(folder)) return images;
   const std::vector<fs::path> colours = files_in_order(folder, ".png");
   if (colours.empty() && !fs::is_empty(folder))
-    throw InputError(folder.string(), "holds no .png file: expected the colour images of " +
-                                          depth.front().string() + " and the others");
+    refuse(folder.string(), "holds no .png file: expected the colour images of ", depth.front().string(),
+           " and the others");
   if (colours.empty()) return images;
   std::map<std::string, fs::path> of_stem;
   for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -44,17 +44,16 @@ PointCloud image_of_holes(const CameraIntrinsics& camera) {
 void conform_to_camera(const CameraIntrinsics& camera, const std::string& subject, PointCloud& cloud) {
   if (cloud.size() == 0) cloud = image_of_holes(camera);
   if (cloud.columns() != camera.width || rows_of(cloud) != camera.height)
-    throw InputError(subject, "has " + size_text(cloud.columns(), rows_of(cloud)) + ": expected " +
-                                  size_text(camera.width, camera.height) +
-                                  ", as the first frame that is used has");
+    refuse(subject, "has ", size_text(cloud.columns(), rows_of(cloud)), ": expected ",
+           size_text(camera.width, camera.height), ", as the first frame that is used has");
   // A depth image has the recording's camera. It is not tested, because a lens may bend its rays by more than
   // a pixel.
   if (cloud.image && cloud.image->camera == camera) return;
   const double residual = residual_px(camera, cloud);
   if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))
-    throw InputError(subject,
-                     "has another camera than the first frame that is used, or none: expected points at the "
-                     "pixels of the same camera");
+    refuse(subject,
+           "has another camera than the first frame that is used, or none: expected points at the "
+           "pixels of the same camera");
   if (!cloud.image)
     cloud.image = ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
 }
@@ -69,11 +68,11 @@ FrameLayout layout_of(const PointCloud& cloud) {
 
 void conform(const FrameLayout& layout, const std::string& subject, PointCloud& cloud) {
   if (cloud.size() > 0 && layout.is_organised != (cloud.columns() > 0))
-    throw InputError(subject, layout.is_organised
-                                  ? "has points in no order: expected an organised cloud, as the first frame "
-                                    "that is used is"
-                                  : "is an organised cloud: expected points in no order, as the first frame "
-                                    "that is used has");
+    refuse(subject, layout.is_organised
+                        ? "has points in no order: expected an organised cloud, as the first frame "
+                          "that is used is"
+                        : "is an organised cloud: expected points in no order, as the first frame "
+                          "that is used has");
   if (layout.camera)
     conform_to_camera(*layout.camera, subject, cloud);
   else

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -41,9 +41,8 @@ FrameTimes::FrameTimes(const RecordingIndex& recording, const RecordingPart& par
   if (is_stamped_ && count_ > 1) recorded_hz_ = (count_ - 1) / since_first_s_.back();
   rate_hz_ = chosen_hz > 0 ? chosen_hz : recorded_hz_;
   if (!(rate_hz_ <= kMaxFrameRate_hz))
-    throw InputError(part.path, "frames " + std::to_string(first_) + " to " + std::to_string(frames.last) +
-                                    " have timestamps of more than " + number(kMaxFrameRate_hz) +
-                                    " frames a second: expected seconds");
+    refuse(part.path, "frames ", first_, " to ", frames.last, " have timestamps of more than ",
+           number(kMaxFrameRate_hz), " frames a second: expected seconds");
 }
 
 int FrameTimes::index_in_part(int frame) const {

@@ -1,7 +1,8 @@
 #include "scenarios/recordings/image_mask.h"
 
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
+
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -29,13 +30,11 @@ ImageMask::ImageMask(const Settings& settings)
       mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
 
 void ImageMask::require(const PointCloud& cloud) const {
-  if (!cloud.image)
-    throw InputError("image-mask", "the frame is not an image: expected a scenario with a camera");
+  if (!cloud.image) refuse("image-mask", "the frame is not an image: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   if (camera.width != width_ || camera.height != height_)
-    throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +
-                                " pixels: expected as many as the frames: " + std::to_string(camera.width) +
-                                " x " + std::to_string(camera.height));
+    refuse(path_, width_, " x ", height_, " pixels: expected as many as the frames: ", camera.width, " x ",
+           camera.height);
 }
 
 std::vector<double> ImageMask::weights(const PointCloud& cloud) const {

@@ -7,13 +7,55 @@
 
 #include "core/geometry/near_origin.h"
 #include "core/geometry/rotation.h"
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
 namespace {
 constexpr std::size_t kMaxCached = 8;  // 12 MB each
+
+// Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
+// registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
+RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
+  const RigidTransform X_registered =
+      Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
+  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
+  const RigidTransform X_WC = X_registered * recording.bag->pose();
+  if (!is_near_origin(X_WC.translation())) refuse(s.path, far_from_origin("tf_static has its sensor"));
+  return X_WC;
+}
+
+// The plane through the pixels of a window: the mean of all points, and a normal from the differences along
+// its rows and columns. Not usable if a pixel is missing, or if the depths in the camera differ by more than
+// max_width_m, which indicates an edge.
+struct Patch {
+  Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
+  bool usable = false;
+};
+
+Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, int v, int half,
+                   double max_width_m) {
+  const CameraIntrinsics& camera = cloud.image->camera;
+  Patch patch;
+  if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
+  Vec3 across = Vec3::Zero(), down = Vec3::Zero();
+  double min_depth = std::numeric_limits<double>::infinity(), max_depth = -min_depth;
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
+      const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
+      if (!p.allFinite()) return patch;
+      patch.mean += p, across += x * p, down += y * p;
+      const double depth = (X_CW * p).z();
+      min_depth = std::min(min_depth, depth), max_depth = std::max(max_depth, depth);
+    }
+  }
+  patch.mean /= (2 * half + 1) * (2 * half + 1);
+  patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
+  patch.usable = max_depth - min_depth <= max_width_m && patch.normal.allFinite();
+  return patch;
+}
+
 }  // namespace
 
 Parameters parameters(RecordedScene::Settings& s) {
@@ -63,22 +105,6 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
   return {s.path, s.first_frame, s.last_frame};
 }
 
-namespace {
-
-// Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
-// registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
-RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
-  const RigidTransform X_registered =
-      Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
-  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
-  const RigidTransform X_WC = X_registered * recording.bag->pose();
-  if (!is_near_origin(X_WC.translation()))
-    throw InputError(s.path, far_from_origin("tf_static has its sensor"));
-  return X_WC;
-}
-
-}  // namespace
-
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings),
       recording_(index_recording(find_recording(settings.path), settings.bag)),
@@ -88,10 +114,9 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
   require_points();
   recording_.camera = layout_->camera.value_or(CameraIntrinsics{});
   if (!layout_->camera && settings_.max_depth_m != Settings{}.max_depth_m)
-    throw InputError(settings_.path,
-                     "its points form no camera image and have no depth: expected scenario.max_depth_m = " +
-                         std::to_string(Settings{}.max_depth_m) +
-                         ", the default, which does not apply to them");
+    refuse(settings_.path,
+           "its points form no camera image and have no depth: expected scenario.max_depth_m = ",
+           Settings{}.max_depth_m, ", the default, which does not apply to them");
 }
 
 // Throws InputError if the first frame has no usable point. That is caused by a mistake: another unit,
@@ -102,18 +127,14 @@ void RecordedScene::require_points() const {
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first.point(i).norm() <= kReach_m) return;  // false if not finite
   const std::string limit = std::to_string(layout_->camera ? settings_.max_depth_m : kReach_m);
-  throw InputError(settings_.path, "its first frame has no point within " +
-                                       (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m") +
-                                       ": expected a frame of measured points, in metres");
+  refuse(settings_.path, "its first frame has no point within ",
+         (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m"),
+         ": expected a frame of measured points, in metres");
 }
 
 int RecordedScene::frame_count() const {
   const bool ends = settings_.playback == Playback::hold || times_.count() == 1;
   return ends ? times_.count() : std::numeric_limits<int>::max();
-}
-
-double RecordedScene::captured_s(int frame) const {
-  return times_.captured_s(frame);
 }
 
 std::string RecordedScene::input() const {
@@ -177,11 +198,9 @@ PointCloud RecordedScene::registered(std::size_t source) const {
   RigidTransform X_FC;
   PointCloud cloud = as_recorded(source, X_FC);
   if (is_far_from_origin(cloud))
-    throw InputError(settings_.path,
-                     far_from_origin("frame " + std::to_string(source) + " has all its points"));
+    refuse(settings_.path, far_from_origin("frame " + std::to_string(source) + " has all its points"));
   if (!is_near_origin(X_FC.translation()))
-    throw InputError(settings_.path,
-                     far_from_origin("frame " + std::to_string(source) + " has its VIEWPOINT"));
+    refuse(settings_.path, far_from_origin("frame " + std::to_string(source) + " has its VIEWPOINT"));
   const RigidTransform X_WC = X_FC.matrix().isIdentity(0) ? X_WC_ : X_WC_ * X_FC;
   if (X_WC.matrix().isIdentity(0)) return cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -192,7 +211,7 @@ PointCloud RecordedScene::registered(std::size_t source) const {
   return cloud;
 }
 
-std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
+std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
   const std::size_t source = times_.source(frame);
   const auto found =
       std::find_if(cache_.begin(), cache_.end(), [&](const CachedFrame& k) { return k.source == source; });
@@ -205,59 +224,21 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const 
   return cache_.front().points;
 }
 
-std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
-  return measured(frame);
-}
-
 // A grid search stores the points in another order than the file, so that the file is read again.
 PointCloud RecordedScene::cloud(int frame) const {
   if (!layout_ || layout_->camera) {
-    const auto points = measured(frame);
-    const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
+    const auto search = points(frame);
+    const auto* image = dynamic_cast<const ImageWindowSearch*>(search.get());
     if (image) return image->cloud();
   }
   return registered(times_.source(frame));
 }
 
-namespace {
-
-// The plane through the pixels of a window: the mean of all points, and a normal from the differences along
-// its rows and columns. Not usable if a pixel is missing, or if the depths in the camera differ by more than
-// max_width_m, which indicates an edge.
-struct Patch {
-  Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
-  bool usable = false;
-};
-
-Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, int v, int half,
-                   double max_width_m) {
-  const CameraIntrinsics& camera = cloud.image->camera;
-  Patch patch;
-  if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
-  Vec3 across = Vec3::Zero(), down = Vec3::Zero();
-  double min_depth = std::numeric_limits<double>::infinity(), max_depth = -min_depth;
-  for (int y = -half; y <= half; ++y) {
-    for (int x = -half; x <= half; ++x) {
-      const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
-      if (!p.allFinite()) return patch;
-      patch.mean += p, across += x * p, down += y * p;
-      const double depth = (X_CW * p).z();
-      min_depth = std::min(min_depth, depth), max_depth = std::max(max_depth, depth);
-    }
-  }
-  patch.mean /= (2 * half + 1) * (2 * half + 1);
-  patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
-  patch.usable = max_depth - min_depth <= max_width_m && patch.normal.allFinite();
-  return patch;
-}
-
-}  // namespace
-
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!p_W.allFinite()) return unknown;
-  const auto points = measured(newest_frame(time_s));
-  const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
+  const auto search = points(newest_frame(time_s));
+  const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*search).cloud();
   if (!cloud.image) return unknown;
   const RigidTransform X_CW = cloud.image->X_WC.inverse();
   const Vec3 p_C = X_CW * p_W;
@@ -270,10 +251,6 @@ double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const Patch patch = patch_around(cloud, X_CW, static_cast<int>(u), static_cast<int>(v),
                                    static_cast<int>(half), 4 * settings_.truth_radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
-}
-
-Vec3 RecordedScene::true_normal(const Vec3&, double) const {
-  return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace remote_touch

@@ -1,6 +1,7 @@
 // A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,7 +41,7 @@ class RecordedScene final : public Scenario {
   // The mean rate at which the frames are played.
   double frame_rate_hz() const override { return times_.rate_hz(); }
   int frame_count() const override;
-  double captured_s(int frame) const override;
+  double captured_s(int frame) const override { return times_.captured_s(frame); }
   // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels; 12 read: ..."
   std::string input() const override;
   std::vector<Note> input_notes() const override;
@@ -53,14 +54,13 @@ class RecordedScene final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Returns NaN, because the measured surface is no independent truth: a normal would be judged by the error
   // of the measurement.
-  Vec3 true_normal(const Vec3& p_W, double time_s) const override;
+  Vec3 true_normal(const Vec3&, double) const override { return Vec3::Constant(std::nan("")); }
 
  private:
   void require_points() const;
   PointCloud as_recorded(std::size_t source, RigidTransform& X_FC) const;
   std::vector<Note> unusual_rate() const;
   PointCloud registered(std::size_t source) const;
-  std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
   RecordingIndex recording_;  // its camera is that of the layout

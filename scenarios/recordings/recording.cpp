@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/geometry/camera.h"
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/folder_files.h"
 #include "scenarios/recordings/frame_layout.h"
@@ -17,16 +16,13 @@
 #include "scenarios/recordings/tum_layout.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const fs::path& file, const std::string& problem) {
-  throw InputError(file.string(), problem);
-}
 
 constexpr double kNominalRate_hz = 30;  // rate of the Kinect class; used if a recording has none
 constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
@@ -46,10 +42,10 @@ Json parse_camera_file(const fs::path& file) {
   static const Json kKeys = {"width",         "height",           "fx", "fy", "cx", "cy", "depth_scale_m",
                              "frame_rate_hz", "colour_registered"};
   Json json = parse_json(read_text_file(file, "expected an object of plain values"), file.string());
-  if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": expected object");
+  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
   for (const auto& [key, value] : json.items()) {
     if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
-    refuse(file, "key " + shown(key) + ": expected " + kKeys.dump());
+    refuse(file, "key ", shown(key), ": expected ", kKeys.dump());
   }
   return json;
 }
@@ -58,11 +54,10 @@ Json parse_camera_file(const fs::path& file) {
 // kind.
 double number(const fs::path& file, const Json& json, const std::string& key, bool positive) {
   const auto found = json.find(key);
-  if (found == json.end()) refuse(file, "has no key '" + key + "'");
+  if (found == json.end()) refuse(file, "has no key '", key, "'");
   const double value = found->is_number() ? found->get<double>() : std::nan("");
-  if (!std::isfinite(value) || (positive && value <= 0)) {
-    refuse(file, key + " = " + shown(*found) + ": expected a number" + (positive ? " above 0" : ""));
-  }
+  if (!std::isfinite(value) || (positive && value <= 0))
+    refuse(file, key, " = ", shown(*found), ": expected a number", (positive ? " above 0" : ""));
   return value;
 }
 
@@ -71,13 +66,13 @@ int pixel_count(const fs::path& file, const Json& json, const std::string& key) 
   constexpr double kMaxCount = 65535;
   const double value = number(file, json, key, true);
   if (value == std::floor(value) && value <= kMaxCount) return static_cast<int>(value);
-  refuse(file, key + " = " + shown(json[key]) + ": expected an integer from 1 to 65535");
+  refuse(file, key, " = ", shown(json[key]), ": expected an integer from 1 to 65535");
 }
 
 double frame_rate(const fs::path& file, const Json& json) {
   const double value = number(file, json, "frame_rate_hz", true);
   if (value <= kMaxFrameRate_hz) return value;
-  refuse(file, "frame_rate_hz = " + shown(json["frame_rate_hz"]) + ": expected above 0 to 10000");
+  refuse(file, "frame_rate_hz = ", shown(json["frame_rate_hz"]), ": expected above 0 to 10000");
 }
 
 // Reads the intrinsics and the scale, which are required, and colour_registered, which is optional.
@@ -89,9 +84,7 @@ CameraFile read_camera(const fs::path& file, const Json& json) {
   camera.cx = number(file, json, "cx", false), camera.cy = number(file, json, "cy", false);
   result.metres_per_unit = number(file, json, "depth_scale_m", true);
   if (const auto found = json.find("colour_registered"); found != json.end()) {
-    if (!found->is_boolean()) {
-      refuse(file, "colour_registered = " + shown(*found) + ": expected true, false");
-    }
+    if (!found->is_boolean()) refuse(file, "colour_registered = ", shown(*found), ": expected true, false");
     result.colour_registered = found->get<bool>();
   }
   return result;
@@ -102,7 +95,7 @@ double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) 
   if (frames < 2) return kNominalRate_hz;
   const double rate_hz = static_cast<double>(frames - 1) / last_s;
   if (rate_hz > kMaxFrameRate_hz)
-    throw InputError(file, "has timestamps of more than 10000 frames a second: expected seconds");
+    refuse(file, "has timestamps of more than 10000 frames a second: expected seconds");
   return rate_hz;
 }
 
@@ -128,9 +121,9 @@ RecordingIndex index_tum(const fs::path& folder) {
   index.is_stamped = true;
   const auto has_colour = [](const RecordedFrame& frame) { return !frame.colour.empty(); };
   if (!colour.empty() && std::none_of(index.frames.begin(), index.frames.end(), has_colour))
-    refuse(folder / "rgb.txt", "no image is within 0.02 s of one in depth.txt; the first are " +
-                                   colour.front().file.string() + " and " + depth.front().file.string() +
-                                   ": expected stamps of one clock, in seconds");
+    refuse(folder / "rgb.txt", "no image is within 0.02 s of one in depth.txt; the first are ",
+           colour.front().file.string(), " and ", depth.front().file.string(),
+           ": expected stamps of one clock, in seconds");
   index.frame_rate_hz =
       mean_rate_hz((folder / "depth.txt").string(), index.frames.size(), index.frames.back().captured_s);
   return index;
@@ -145,10 +138,9 @@ void append_frames(RecordingIndex& index, const std::vector<fs::path>& files) {
 
 RecordingIndex index_depth_folder(const fs::path& folder) {
   const fs::path camera_file = folder / "camera.json";
-  if (!fs::exists(camera_file)) {
+  if (!fs::exists(camera_file))
     refuse(camera_file,
            "is missing: depth images need {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}");
-  }
   const Json json = parse_camera_file(camera_file);
   const CameraFile camera = read_camera(camera_file, json);
   RecordingIndex index;
@@ -203,15 +195,14 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (fs::exists(path) && is_bag(path)) return index_bag(path, choice);
   for (const auto& [name, value] :
        {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
-    if (!value.empty()) refuse(path, "is not a ROS bag: expected scenario." + std::string(name) + " = \"\"");
+    if (!value.empty()) refuse(path, "is not a ROS bag: expected scenario.", name, " = \"\"");
   if (choice.depth_unit_m != 0) refuse(path, "is not a ROS bag: expected scenario.depth_unit_m = 0");
   if (choice.images != BagChoice::Images::by_name)
     refuse(path, "is not a ROS bag: expected scenario.images = by_name");
   if (fs::is_regular_file(path) && has_ending(path, ".pcd")) return index_pcd({path}, {});
-  if (!fs::is_directory(path)) {
-    refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
-                     ": expected a recording folder, a .pcd file or a bag (.mcap, .db3, .bag)");
-  }
+  if (!fs::is_directory(path))
+    refuse(path, fs::exists(path) ? "is of another kind" : "does not exist",
+           ": expected a recording folder, a .pcd file or a bag (.mcap, .db3, .bag)");
   if (fs::exists(path / "depth.txt")) return index_tum(path);
   if (fs::is_directory(path / "depth")) return index_depth_folder(path);
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
@@ -225,9 +216,8 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
 // depth, colour and camera.
 void check_size(const fs::path& file, int width, int height, const CameraIntrinsics& camera) {
   if (width == camera.width && height == camera.height) return;
-  refuse(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: expected " +
-                   std::to_string(camera.width) + " x " + std::to_string(camera.height) +
-                   ", as the camera has");
+  refuse(file, "has ", width, " x ", height, " pixels: expected ", camera.width, " x ", camera.height,
+         ", as the camera has");
 }
 
 }  // namespace
@@ -238,7 +228,7 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
     index.name = name_of(path);
     return index;
   } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
-    refuse(error.path1(), "cannot be read: " + error.code().message());
+    refuse(error.path1(), "cannot be read: ", error.code().message());
   }
 }
 

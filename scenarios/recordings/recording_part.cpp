@@ -6,6 +6,7 @@
 
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/text_files/file_ending.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -14,6 +15,21 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string data_folder;
+
+// True for images, meshes of tools and live sessions. A recording of frames is not made from such files.
+bool is_single_file(const fs::path& file) {
+  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5", ".oni"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return has_ending(file, ending); });
+}
+
+// Returns all files of a bag, regardless of the topic and the frames.
+std::vector<InputFile> bag_files(const fs::path& bag) {
+  std::vector<InputFile> list;
+  for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
+  std::sort(list.begin(), list.end(), [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
+  return list;
+}
 
 }  // namespace
 
@@ -37,30 +53,10 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
   const int available = static_cast<int>(recording.frames.size());
   const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
   if (part.first_frame >= available || last >= available)
-    throw InputError(part.path, "first_frame = " + std::to_string(part.first_frame) +
-                                    ", last_frame = " + std::to_string(part.last_frame) + ": expected 0 to " +
-                                    std::to_string(available - 1));
+    refuse(part.path, "first_frame = ", part.first_frame, ", last_frame = ", part.last_frame,
+           ": expected 0 to ", available - 1);
   return {part.first_frame, last};
 }
-
-namespace {
-
-// True for images, meshes of tools and live sessions. A recording of frames is not made from such files.
-bool is_single_file(const fs::path& file) {
-  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5", ".oni"};
-  return std::any_of(kEndings.begin(), kEndings.end(),
-                     [&](const char* ending) { return has_ending(file, ending); });
-}
-
-// Returns all files of a bag, regardless of the topic and the frames.
-std::vector<InputFile> bag_files(const fs::path& bag) {
-  std::vector<InputFile> list;
-  for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
-  std::sort(list.begin(), list.end(), [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
-  return list;
-}
-
-}  // namespace
 
 std::vector<InputFile> files_of(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);

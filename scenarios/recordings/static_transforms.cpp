@@ -1,6 +1,6 @@
 #include "scenarios/recordings/static_transforms.h"
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -13,8 +13,7 @@ void StaticTransforms::add(const std::vector<StampedTransform>& transforms, cons
   for (const StampedTransform& transform : transforms) {
     parent_of_[plain_frame(transform.child)] = {plain_frame(transform.parent), transform.X};
     if (parent_of_.size() > kMaxFrames)
-      throw InputError(subject,
-                       "has too many coordinate frames: expected at most " + std::to_string(kMaxFrames));
+      refuse(subject, "has too many coordinate frames: expected at most ", kMaxFrames);
   }
 }
 
@@ -29,7 +28,7 @@ RigidTransform StaticTransforms::to_root(std::string frame, std::string& root,
     }
     X = parent->second.X * X, frame = parent->second.name;
   }
-  throw InputError(subject, "tf_static has '" + frame + "' as its own ancestor");
+  refuse(subject, "tf_static has '", frame, "' as its own ancestor");
 }
 
 RigidTransform StaticTransforms::between(const std::string& to, const std::string& from,
@@ -44,9 +43,8 @@ RigidTransform StaticTransforms::between(const std::string& to, const std::strin
     if (known.size() > 500) break;
     known += (known.empty() ? "" : ", ") + child + " in " + parent.name;
   }
-  throw InputError(subject, "scenario.frame_id = " + to +
-                                ": expected a frame that tf_static connects with '" + from + "'; it has " +
-                                (known.empty() ? "none" : known));
+  refuse(subject, "scenario.frame_id = ", to, ": expected a frame that tf_static connects with '", from,
+         "'; it has ", (known.empty() ? "none" : known));
 }
 
 }  // namespace remote_touch

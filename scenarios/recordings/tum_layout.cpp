@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -20,7 +20,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
   if (error == std::errc() && end == stamp.data() + stamp.size() && std::abs(stamp_s) <= kMaxStamp_s)
     return stamp_s;
-  throw InputError(where, "timestamp '" + stamp.substr(0, 32) + "': expected a number of seconds");
+  refuse(where, "timestamp '", stamp.substr(0, 32), "': expected a number of seconds");
 }
 
 }  // namespace
@@ -40,19 +40,15 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
     if (!(words >> stamp) || stamp.front() == '#') continue;
     const std::string where = list.string() + ":" + std::to_string(line_number);
     const double stamp_s = read_stamp(where, stamp);
-    if (!(words >> name) || words >> surplus) {
-      throw InputError(where, "'" + line.substr(0, 64) + "': expected one timestamp and one file name");
-    }
-    if (!files.empty() && stamp_s <= files.back().stamp_s) {
-      throw InputError(where, "timestamp " + stamp + ": expected above that of the line before");
-    }
+    if (!(words >> name) || words >> surplus)
+      refuse(where, "'", line.substr(0, 64), "': expected one timestamp and one file name");
+    if (!files.empty() && stamp_s <= files.back().stamp_s)
+      refuse(where, "timestamp ", stamp, ": expected above that of the line before");
     files.push_back({stamp_s, list.parent_path() / name});
     const std::filesystem::path& file = files.back().file;
-    if (!std::filesystem::is_regular_file(file)) throw InputError(where, "no file " + file.string());
+    if (!std::filesystem::is_regular_file(file)) refuse(where, "no file ", file.string());
   }
-  if (files.empty()) {
-    throw InputError(list.string(), "lists no file: expected lines 'timestamp filename'");
-  }
+  if (files.empty()) refuse(list.string(), "lists no file: expected lines 'timestamp filename'");
   return files;
 }
 

@@ -3,12 +3,11 @@
 
 #include <string>
 
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 
-class FlatGrid final : public Scenario {
+class FlatGrid final : public GridScene {
  public:
   struct Settings {
     Grid grid;
@@ -17,23 +16,18 @@ class FlatGrid final : public Scenario {
     bool redraw_noise = true;
   };
 
-  FlatGrid(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+  FlatGrid(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+      : GridScene(settings, key, kernels), redraw_noise_(settings.redraw_noise) {}
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane; NaN for a position that is below the plane and beyond the grid.
-  double signed_distance(const Vec3& p_W, double) const override {
-    return settings_.grid.signed_distance(p_W, 0);
-  }
+  double signed_distance(const Vec3& p_W, double) const override { return grid_.signed_distance(p_W, 0); }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double) const override { return 0; }
 
  private:
-  const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
+  const bool redraw_noise_;
 };
 
 Parameters parameters(FlatGrid::Settings& s);

@@ -13,17 +13,11 @@ std::string validate(const ListedPoints::Settings& s) {
   return s.points.empty() ? "points: expected one or more" : "";
 }
 
-ListedPoints::ListedPoints(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
-
 PointCloud ListedPoints::cloud(int) const {
   PointCloud cloud;
   const std::vector<double>& p = settings_.points;
   for (std::size_t i = 0; i + 2 < p.size(); i += 3) cloud.append({p[i], p[i + 1], p[i + 2]});
   return cloud;
-}
-
-std::shared_ptr<const NeighbourSearch> ListedPoints::points(int frame) const {
-  return make_search(cloud(frame));
 }
 
 }  // namespace remote_touch

@@ -17,11 +17,10 @@ class ListedPoints final : public Scenario {
     double frame_rate_hz = 30;
   };
 
-  ListedPoints(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+  ListedPoints(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // NaN: single points are no surface and have no sides.
   double signed_distance(const Vec3&, double) const override {

@@ -5,13 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 #include "scenarios/synthetic/lift_motion.h"
 
 namespace remote_touch {
 
-class MovingLift final : public Scenario {
+class MovingLift final : public GridScene {
  public:
   enum class Truth { newest_frame, moving };
   struct Settings {
@@ -28,8 +27,7 @@ class MovingLift final : public Scenario {
 
   MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  int frame_count() const override { return lift_.frame_count(settings_.frame_rate_hz); }
+  int frame_count() const override { return lift_.frame_count(frame_rate_hz()); }
   std::vector<Phase> phases() const override { return lift_.phases(); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
@@ -37,19 +35,13 @@ class MovingLift final : public Scenario {
   // seen. With Truth::moving it is the height over the plane as it moves. NaN for a position that is below
   // the plane and beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  double truth_time_s(double time_s) const override {
-    return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
-  }
   // Height of the plane as it moves, also between frames.
   double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
 
  private:
-  double height_m(int frame) const { return lift_.height_of_frame_m(frame, settings_.frame_rate_hz); }
+  double height_m(int frame) const { return lift_.height_of_frame_m(frame, frame_rate_hz()); }
 
-  const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
   const LiftMotion lift_;
 };
 

@@ -7,7 +7,6 @@
 namespace remote_touch {
 
 Parameters parameters(MovingPlane::Settings& s) {
-  Parameters list = parameters(s.grid);
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"start_height_m", &s.start_height_m, -100, 100, "initial height of the plane"},
@@ -18,8 +17,7 @@ Parameters parameters(MovingPlane::Settings& s) {
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
        "standard deviation of the noise on x, y and z, redrawn per frame", kLive},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(s.grid), more);
 }
 
 std::string validate(const MovingPlane::Settings& s) {
@@ -30,7 +28,7 @@ std::string validate(const MovingPlane::Settings& s) {
 }
 
 MovingPlane::MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : settings_(settings), key_(key), kernels_(kernels) {
+    : GridScene(settings, key, kernels), settings_(settings) {
   if (settings.rise_height_m == 0) return;
   // The root of v t + a t^2 / 2 = rise, without cancellation and for a = 0 too.
   const double v = settings.speed_m_per_s, a = settings.acceleration_m_per_s2;
@@ -47,20 +45,10 @@ double MovingPlane::height(double time_s) const {
   return settings_.start_height_m + t * (settings_.speed_m_per_s + 0.5 * settings_.acceleration_m_per_s2 * t);
 }
 
-std::shared_ptr<const NeighbourSearch> MovingPlane::points(int frame) const {
-  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
-}
-
 PointCloud MovingPlane::cloud(int frame) const {
-  PointCloud cloud;
-  const Grid& grid = settings_.grid;
-  cloud.grid_columns = grid.columns;
   const double y = height(captured_s(frame));
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      cloud.append({grid.x(column), y, grid.z(row)}, Vec3::UnitY());
-  const auto drawn = static_cast<std::uint32_t>(frame);
-  add_noise(cloud, settings_.noise_sigma_m, noise_stream(key_, NoiseUse::point_position, drawn), kernels_);
+  PointCloud cloud = sampled(frame, [y](double x, double z) { return Vec3(x, y, z); });
+  cloud.nx.assign(cloud.size(), 0), cloud.ny.assign(cloud.size(), 1), cloud.nz = cloud.nx;
   return cloud;
 }
 

@@ -3,13 +3,11 @@
 
 #include <string>
 
-#include "core/parameters/parameter.h"
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 
-class MovingPlane final : public Scenario {
+class MovingPlane final : public GridScene {
  public:
   struct Settings {
     Grid grid{100, 100, 0.002, 0, 0};
@@ -24,7 +22,6 @@ class MovingPlane final : public Scenario {
 
   MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Number of frames up to and including the first one in which the plane has come to rest for good, limited
   // to the largest int.
   int frame_count() const override { return frame_count_; }
@@ -32,12 +29,11 @@ class MovingPlane final : public Scenario {
     if (settings_.rise_height_m == 0) return {};
     return {{"the rise of the plane", settings_.wait_s, settings_.wait_s + rising_s_}};
   }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane at time_s, also between frames. NaN for a position that is below the plane and
   // beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override {
-    return settings_.grid.signed_distance(p_W, height(time_s));
+    return grid_.signed_distance(p_W, height(time_s));
   }
   std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double time_s) const override { return height(time_s); }
@@ -46,8 +42,6 @@ class MovingPlane final : public Scenario {
   double height(double time_s) const;
 
   const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
   double rising_s_ = 0;  // duration of the rise
   int frame_count_ = 1;
 };

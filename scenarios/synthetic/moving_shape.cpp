@@ -36,11 +36,9 @@ int first_frame_from(double time_s, double frame_rate_hz) {
 
 Parameters parameters(MovingShape::Settings& s) {
   Parameters list = parameters(s.grid);
-  const auto add = [&list](const Parameters& more) { list.insert(list.end(), more.begin(), more.end()); };
-  add({{"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"}});
-  add(parameters(s.shape));
-  add(parameters(s.motion));
-  add({
+  list.push_back({"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"});
+  list = appended(appended(std::move(list), parameters(s.shape)), parameters(s.motion));
+  const Parameters more = {
       {"sheets", &s.sheets, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
       {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
       {"normals", &s.normals, 0, 0, "the points have the normals of the true surface, as tools need them"},
@@ -51,8 +49,8 @@ Parameters parameters(MovingShape::Settings& s) {
        "the first frame from this time on has no points; negative: none"},
       {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
        "true surface: newest_frame: as at the last capture; moving: as it moves between frames"},
-  });
-  return list;
+  };
+  return appended(std::move(list), more);
 }
 
 std::string validate(const MovingShape::Settings& s) {
@@ -64,18 +62,16 @@ std::string validate(const MovingShape::Settings& s) {
 }
 
 MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : settings_(settings),
-      key_(key),
-      kernels_(kernels),
+    : GridScene(settings, key, kernels, settings.truth == Truth::moving),
+      settings_(settings),
       shape_(settings.shape, settings.grid),
       motion_(settings.motion, settings.frame_rate_hz),
       vanish_frame_(first_frame_from(settings.vanish_at_s, settings.frame_rate_hz)),
       empty_frame_(first_frame_from(settings.empty_frame_at_s, settings.frame_rate_hz)) {
-  const Grid& grid = settings_.grid;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      nodes_S_.push_back(shape_.point(grid.x(column), grid.z(row))),
-          normals_S_.push_back(shape_.normal(grid.x(column), grid.z(row)));
+  for (int row = 0; row < grid_.rows; ++row)
+    for (int column = 0; column < grid_.columns; ++column)
+      nodes_S_.push_back(shape_.point(grid_.x(column), grid_.z(row))),
+          normals_S_.push_back(shape_.normal(grid_.x(column), grid_.z(row)));
 }
 
 int MovingShape::frame_count() const {
@@ -92,11 +88,6 @@ std::vector<Phase> MovingShape::phases() const {
   return list;
 }
 
-NoiseStream MovingShape::noise(int frame) const {
-  const auto drawn = static_cast<std::uint32_t>(settings_.redraw_noise ? frame : 0);
-  return noise_stream(key_, NoiseUse::point_position, drawn);
-}
-
 bool MovingShape::is_a_level_grid() const {
   return settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 &&
          motion_.moves_vertically_only() && !settings_.normals;
@@ -104,9 +95,9 @@ bool MovingShape::is_a_level_grid() const {
 
 std::shared_ptr<const NeighbourSearch> MovingShape::points(int frame) const {
   if (is_a_level_grid() && !is_empty(frame))
-    return std::make_shared<NoisyGridSearch>(settings_.grid, motion_.of_frame(frame).y_m,
-                                             settings_.noise_sigma_m, noise(frame));
-  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
+    return std::make_shared<NoisyGridSearch>(grid_, motion_.of_frame(frame).y_m, noise_sigma_m_,
+                                             noise(noise_frame(frame)));
+  return GridScene::points(frame);
 }
 
 PointCloud MovingShape::cloud(int frame) const {
@@ -125,13 +116,12 @@ PointCloud MovingShape::cloud(int frame) const {
         cloud.append(p_W);
     }
   }
-  cloud.grid_columns = settings_.grid.columns;  // sheet after sheet, each whole rows
-  add_noise(cloud, settings_.noise_sigma_m, noise(frame), kernels_);
-  return cloud;
+  cloud.grid_columns = grid_.columns;  // sheet after sheet, each whole rows
+  return with_noise(std::move(cloud), noise_frame(frame));
 }
 
 ShapePose MovingShape::true_pose(double time_s) const {
-  return settings_.truth == Truth::moving ? motion_.at(time_s) : motion_.of_frame(newest_frame(time_s));
+  return has_moving_truth_ ? motion_.at(time_s) : motion_.of_frame(newest_frame(time_s));
 }
 
 double MovingShape::signed_distance(const Vec3& p_W, double time_s) const {

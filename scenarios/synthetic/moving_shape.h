@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 #include "scenarios/synthetic/shape.h"
 #include "scenarios/synthetic/shape_motion.h"
 
@@ -15,7 +14,7 @@ namespace remote_touch {
 // The points are the grid's nodes on the shape, row by row and sheet by sheet, moved by the motion. Noise is
 // added in the world frame, to the points and not to their normals. A small grid makes a patch, whose border
 // is an edge to slide over. A flat lift has the same bits as a moving-lift of the same settings.
-class MovingShape final : public Scenario {
+class MovingShape final : public GridScene {
  public:
   enum class Truth { newest_frame, moving };
   struct Settings {
@@ -35,7 +34,6 @@ class MovingShape final : public Scenario {
 
   MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Number of frames up to the last one that differs from its predecessor. Noise is redrawn in these frames
   // only.
   int frame_count() const override;
@@ -51,9 +49,6 @@ class MovingShape final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Returns the normal of the flat shape until it vanishes. Empty for other shapes.
   std::optional<Vec3> plane_normal(double time_s) const override;
-  double truth_time_s(double time_s) const override {
-    return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
-  }
   // Height of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a
   // surface to press. After the sheet has vanished, it is the height at that time.
   double surface_height(double x, double z, double time_s) const override;
@@ -61,13 +56,11 @@ class MovingShape final : public Scenario {
  private:
   bool has_vanished(int frame) const { return vanish_frame_ >= 0 && frame >= vanish_frame_; }
   bool is_empty(int frame) const { return has_vanished(frame) || frame == empty_frame_; }
-  NoiseStream noise(int frame) const;
+  int noise_frame(int frame) const { return settings_.redraw_noise ? frame : 0; }
   ShapePose true_pose(double time_s) const;
   bool is_a_level_grid() const;
 
   const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
   const Shape shape_;
   const ShapeMotion motion_;
   const int vanish_frame_, empty_frame_;   // -1: none

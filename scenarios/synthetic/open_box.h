@@ -16,12 +16,10 @@ class OpenBox final : public PanelScene {
     bool floor = true;
   };
 
-  OpenBox(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  OpenBox(const Settings& settings, const NoiseKey&, const Kernels&)
+      : PanelScene({settings.spacing_m}), settings_(settings) {}
   // Walls at -x, +x, -z, +z, then the floor.
   std::vector<FlatPanel> panels(double time_s) const override;
-
- protected:
-  PanelGrid grid() const override { return {settings_.spacing_m}; }
 
  private:
   const Settings settings_;

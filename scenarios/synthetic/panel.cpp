@@ -21,6 +21,26 @@ int last_index(double half_m, double phase_m, double spacing_m) {
   return static_cast<int>(std::floor((half_m - phase_m + kSame_m) / spacing_m));
 }
 
+// Returns true if the vector from the nearest point q on the panels to p is a combination of the normals of
+// the panels that contain q: p lies over the inside of a panel, or over an edge or corner at which panels
+// meet. Returns false if p lies beyond a border that no other panel continues.
+bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Vec3& q) {
+  Vec3 rest = p - q;  // p - q without its components along those normals
+  std::array<Vec3, 3> axes;
+  std::size_t count = 0;
+  for (const FlatPanel& panel : panels) {
+    if (count == axes.size()) break;
+    if ((panel.nearest(q) - q).norm() > kSame_m) continue;
+    Vec3 axis = panel.normal;
+    for (std::size_t i = 0; i < count; ++i) axis -= axis.dot(axes[i]) * axes[i];
+    if (axis.norm() < kParallel) continue;
+    axes[count] = axis.normalized();
+    rest -= rest.dot(axes[count]) * axes[count];
+    ++count;
+  }
+  return rest.norm() <= kSame_m;
+}
+
 }  // namespace
 
 Vec3 FlatPanel::nearest(const Vec3& p) const {
@@ -44,30 +64,6 @@ int columns(const FlatPanel& panel, const PanelGrid& grid) {
   return last_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) -
          first_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) + 1;
 }
-
-namespace {
-
-// Returns true if the vector from the nearest point q on the panels to p is a combination of the normals of
-// the panels that contain q: p lies over the inside of a panel, or over an edge or corner at which panels
-// meet. Returns false if p lies beyond a border that no other panel continues.
-bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Vec3& q) {
-  Vec3 rest = p - q;  // p - q without its components along those normals
-  std::array<Vec3, 3> axes;
-  std::size_t count = 0;
-  for (const FlatPanel& panel : panels) {
-    if (count == axes.size()) break;
-    if ((panel.nearest(q) - q).norm() > kSame_m) continue;
-    Vec3 axis = panel.normal;
-    for (std::size_t i = 0; i < count; ++i) axis -= axis.dot(axes[i]) * axes[i];
-    if (axis.norm() < kParallel) continue;
-    axes[count] = axis.normalized();
-    rest -= rest.dot(axes[count]) * axes[count];
-    ++count;
-  }
-  return rest.norm() <= kSame_m;
-}
-
-}  // namespace
 
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity(), over = 0;

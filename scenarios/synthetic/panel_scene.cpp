@@ -5,8 +5,8 @@ namespace remote_touch {
 PointCloud PanelScene::cloud(int frame) const {
   PointCloud cloud;
   const std::vector<FlatPanel> all = panels(captured_s(frame));
-  for (const FlatPanel& panel : all) append(cloud, panel, grid());
-  if (all.size() == 1) cloud.grid_columns = columns(all.front(), grid());  // else rows have several widths
+  for (const FlatPanel& panel : all) append(cloud, panel, grid_);
+  if (all.size() == 1) cloud.grid_columns = columns(all.front(), grid_);  // else rows have several widths
   return cloud;
 }
 

@@ -12,9 +12,6 @@ class PanelScene : public Scenario {
  public:
   double frame_rate_hz() const override { return 30; }
   int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   // The panels as they are when the frame is captured.
   PointCloud cloud(int frame) const override;
   // Distance to the panels at time_s, also between frames. NaN for a position that is behind a panel and
@@ -26,7 +23,10 @@ class PanelScene : public Scenario {
   virtual std::vector<FlatPanel> panels(double time_s) const = 0;
 
  protected:
-  virtual PanelGrid grid() const = 0;
+  explicit PanelScene(const PanelGrid& grid) : grid_(grid) {}
+
+ private:
+  const PanelGrid grid_;
 };
 
 }  // namespace remote_touch

@@ -17,7 +17,6 @@ struct PlateColumn {
 }  // namespace
 
 Parameters parameters(Plates::Settings& s) {
-  Parameters list = parameters(s.grid);
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"plates",
@@ -32,8 +31,7 @@ Parameters parameters(Plates::Settings& s) {
       {"true_motion", &s.true_motion, 0, 1,
        "true surface: true: as it moves between frames; false: as at the last capture"},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(s.grid), more);
 }
 
 std::string validate(const Plates::Settings& s) {
@@ -43,9 +41,6 @@ std::string validate(const Plates::Settings& s) {
       return "plates: row " + std::to_string(first / Plates::kColumns + 1) + ": expected sizes above 0";
   return "";
 }
-
-Plates::Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : settings_(settings), key_(key), kernels_(kernels) {}
 
 bool Plates::moves(std::size_t number) const {
   const double* row = settings_.plates.data() + number * kColumns;
@@ -85,10 +80,6 @@ FlatPanel Plates::plate(std::size_t number, double time_s) const {
   return panel;
 }
 
-std::shared_ptr<const NeighbourSearch> Plates::points(int frame) const {
-  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
-}
-
 PointCloud Plates::cloud(int frame) const {
   std::vector<FlatPanel> panels;
   for (std::size_t i = 0; i < plate_count(); ++i) panels.push_back(plate(i, captured_s(frame)));
@@ -100,18 +91,11 @@ PointCloud Plates::cloud(int frame) const {
         height = std::max(height, panel.centre.y());
     return height;
   };
-  PointCloud cloud;
-  const Grid& grid = settings_.grid;
-  cloud.grid_columns = grid.columns;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      const double px = grid.x(column), pz = grid.z(row), height = highest_over(px, pz);
-      const bool is_seen = std::isfinite(height) && height <= settings_.max_height_m;
-      cloud.append(is_seen ? Vec3(px, height, pz) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-    }
-  add_noise(cloud, settings_.noise_sigma_m,
-            noise_stream(key_, NoiseUse::point_position, static_cast<std::uint32_t>(frame)), kernels_);
-  return cloud;
+  return sampled(frame, [&](double px, double pz) -> Vec3 {
+    const double height = highest_over(px, pz);
+    const bool is_seen = std::isfinite(height) && height <= settings_.max_height_m;
+    return is_seen ? Vec3(px, height, pz) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  });
 }
 
 double Plates::signed_distance(const Vec3& p_W, double time_s) const {

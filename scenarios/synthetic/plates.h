@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 #include "scenarios/synthetic/panel.h"
 
 namespace remote_touch {
@@ -15,7 +14,7 @@ namespace remote_touch {
 // sees the highest plate at its node. It sees nothing if there is no plate, or if that plate is above
 // max_height_m: it is then too near to be measured, but hides what is below. The points are stored row by
 // row; noise is added in the world frame. The true surface is the first plate, whether it is hidden or not.
-class Plates final : public Scenario {
+class Plates final : public GridScene {
  public:
   struct Settings {
     Grid grid{80, 80, 0.0015, 0, 0};
@@ -29,20 +28,16 @@ class Plates final : public Scenario {
   };
   static constexpr std::size_t kColumns = 9;
 
-  Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+  Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+      : GridScene(settings, key, kernels, settings.true_motion), settings_(settings) {}
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override;
   // Returns the motion of each plate that moves, in the order of their end times.
   std::vector<Phase> phases() const override;
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Distance to the first plate, positive above it. Beyond its border it is the distance to the border if p
   // is above the plane, and NaN if p is below it.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  double truth_time_s(double time_s) const override {
-    return settings_.true_motion ? time_s : captured_s(newest_frame(time_s));
-  }
   // Height of the first plate, continued beyond its border.
   double surface_height(double x, double z, double time_s) const override;
 
@@ -54,8 +49,6 @@ class Plates final : public Scenario {
   std::size_t plate_count() const { return settings_.plates.size() / kColumns; }
 
   const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
 };
 
 Parameters parameters(Plates::Settings& s);

@@ -18,19 +18,17 @@ double swing(double turns) {
 }  // namespace
 
 Parameters parameters(ShapeMotion::Settings& s) {
-  Parameters list = {
+  const Parameters tilt = {
       {"tilt_deg", &s.tilt_deg, -80, 80, "rotation about z through the origin of the shape, from x to y"}};
-  const auto add = [&list](const Parameters& more) { list.insert(list.end(), more.begin(), more.end()); };
-  add(parameters(s.lift));
-  add({
+  const Parameters more = {
       {"slide_velocity_m_per_s", &s.slide_velocity_m_per_s, -10, 10, "velocity along x, added to the lift"},
       {"shake_amplitude_m", &s.shake_amplitude_m, 0, 1, "amplitude of a vertical sine, added to the lift"},
       {"shake_hz", &s.shake_hz, 0, 1000, "frequency of the shake"},
       {"rock_deg", &s.rock_deg, 0, 45, "amplitude of the rocking about z, added to the tilt"},
       {"rock_hz", &s.rock_hz, 0, 1000, "frequency of the rocking"},
       {"motion_from_s", &s.motion_from_s, 0, 10000, "time at which slide, shake and rocking start"},
-  });
-  return list;
+  };
+  return appended(appended(tilt, parameters(s.lift)), more);
 }
 
 ShapeMotion::ShapeMotion(const Settings& settings, double frame_rate_hz)

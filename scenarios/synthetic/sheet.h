@@ -18,11 +18,9 @@ class Sheet final : public PanelScene {
     double spacing_m = 0.002;
   };
 
-  Sheet(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  Sheet(const Settings& settings, const NoiseKey&, const Kernels&)
+      : PanelScene({settings.spacing_m}), settings_(settings) {}
   std::vector<FlatPanel> panels(double time_s) const override;
-
- protected:
-  PanelGrid grid() const override { return {settings_.spacing_m}; }
 
  private:
   const Settings settings_;

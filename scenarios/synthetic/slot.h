@@ -20,11 +20,9 @@ class Slot final : public PanelScene {
     double phase_m = 0;
   };
 
-  Slot(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  Slot(const Settings& settings, const NoiseKey&, const Kernels&)
+      : PanelScene({settings.spacing_m, settings.phase_m, 0}), settings_(settings) {}
   std::vector<FlatPanel> panels(double time_s) const override;  // wall at -z, then wall at +z
-
- protected:
-  PanelGrid grid() const override { return {settings_.spacing_m, settings_.phase_m, 0}; }
 
  private:
   const Settings settings_;

@@ -7,15 +7,13 @@
 namespace remote_touch {
 
 Parameters parameters(TriangleWave::Settings& s) {
-  Parameters list = parameters(s.grid);
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"period_m", &s.period_m, 1e-3, 10, "length of one wave along x"},
       {"max_height_m", &s.max_height_m, 0, 10, "peak-to-peak height at the end of the grid; 0 at its start"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(s.grid), more);
 }
 
 // A grid of one column has no length along x, so its wave has no flank.
@@ -23,13 +21,10 @@ std::string validate(const TriangleWave::Settings& s) {
   return s.grid.columns >= 2 ? "" : "columns = 1: expected 2 or more, because the wave runs along x";
 }
 
-TriangleWave::TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : settings_(settings), key_(key), kernels_(kernels) {}
-
 // The corners are at every half period from the grid's start, at the envelope's height there: 0, +, -, +, ...
 // The wave is straight between them.
 double TriangleWave::surface_height(double x, double, double) const {
-  const double start = settings_.grid.x(0), length = settings_.grid.x(settings_.grid.columns - 1) - start;
+  const double start = grid_.x(0), length = grid_.x(grid_.columns - 1) - start;
   const double half = 0.5 * settings_.period_m;
   const double place = std::clamp(x - start, 0.0, length) / half;
   const auto corner = [&](double k) {
@@ -43,7 +38,7 @@ double TriangleWave::surface_height(double x, double, double) const {
 // Exact distance to the polyline across x; the wave does not change along z.
 double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
   constexpr double kAtEnd_m = 1e-9;
-  const double start = settings_.grid.x(0), end = settings_.grid.x(settings_.grid.columns - 1);
+  const double start = grid_.x(0), end = grid_.x(grid_.columns - 1);
   const double half = 0.5 * settings_.period_m;
   const int corners = static_cast<int>(std::ceil((end - start) / half)) + 1;
   double nearest = std::numeric_limits<double>::infinity();
@@ -61,24 +56,12 @@ double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
   }
   if (p_W.y() >= surface_height(p_W.x(), 0, time_s)) return nearest;
   // Beyond the ends of the grid in x the foot may still be on a flank.
-  const double x_m = is_at_end ? p_W.x() : settings_.grid.x(0);
-  return settings_.grid.covers(x_m, p_W.z()) ? -nearest : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::shared_ptr<const NeighbourSearch> TriangleWave::points(int frame) const {
-  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
+  const double x_m = is_at_end ? p_W.x() : grid_.x(0);
+  return grid_.covers(x_m, p_W.z()) ? -nearest : std::numeric_limits<double>::quiet_NaN();
 }
 
 PointCloud TriangleWave::cloud(int frame) const {
-  PointCloud cloud;
-  const Grid& grid = settings_.grid;
-  cloud.grid_columns = grid.columns;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      cloud.append({grid.x(column), surface_height(grid.x(column), 0, 0), grid.z(row)});
-  add_noise(cloud, settings_.noise_sigma_m,
-            noise_stream(key_, NoiseUse::point_position, static_cast<std::uint32_t>(frame)), kernels_);
-  return cloud;
+  return sampled(frame, [&](double x, double z) { return Vec3(x, surface_height(x, 0, 0), z); });
 }
 
 }  // namespace remote_touch

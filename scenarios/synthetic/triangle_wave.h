@@ -3,14 +3,13 @@
 
 #include <string>
 
-#include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 
 // The wave runs along x. Its corners lie half a period apart, alternately below and above y = 0 by an
 // amplitude that grows linearly along the grid; the flanks between them are straight.
-class TriangleWave final : public Scenario {
+class TriangleWave final : public GridScene {
  public:
   struct Settings {
     Grid grid{300, 100, 0.0015, 0, 0};
@@ -20,11 +19,10 @@ class TriangleWave final : public Scenario {
     double noise_sigma_m = 0;
   };
 
-  TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+  TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+      : GridScene(settings, key, kernels), settings_(settings) {}
 
-  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Distance to the wave, positive above it; the wave is continued along z. NaN below the wave if p lies
   // beyond the border along z, or beyond an end along x that is the nearest part of the wave.
@@ -33,8 +31,6 @@ class TriangleWave final : public Scenario {
 
  private:
   const Settings settings_;
-  const NoiseKey key_;
-  const Kernels& kernels_;
 };
 
 Parameters parameters(TriangleWave::Settings& s);

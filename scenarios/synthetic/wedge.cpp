@@ -34,7 +34,8 @@ std::string validate(const Wedge::Settings& s) {
 }
 
 Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)
-    : settings_(settings),
+    : PanelScene({settings.spacing_m}),
+      settings_(settings),
       frame_count_(1 + static_cast<int>(std::ceil(settings.open_end_s * settings.frame_rate_hz - 1e-6))) {
   const auto [s, c] = sin_cos(settings.tilt_deg * kRadiansPerDegree);
   up_ = {0, c, s}, across_ = {0, -s, c};

@@ -37,9 +37,6 @@ class Wedge final : public PanelScene {
   // Distance between the lower edges of the walls, m; linear in time while it changes.
   double gap_m(double time_s) const;
 
- protected:
-  PanelGrid grid() const override { return {settings_.spacing_m}; }
-
  private:
   const Settings settings_;
   int frame_count_;

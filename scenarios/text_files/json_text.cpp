@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -17,14 +18,11 @@ class Watch {
   explicit Watch(const std::string& label) : label_(label) {}
 
   void see(int depth, Json::parse_event_t event, const Json& parsed) {
-    if (depth > kMaxJsonDepth)
-      throw InputError(label_,
-                       "nested too deep: expected at most " + std::to_string(kMaxJsonDepth) + " levels");
+    if (depth > kMaxJsonDepth) refuse(label_, "nested too deep: expected at most ", kMaxJsonDepth, " levels");
     if (event == Json::parse_event_t::object_start) keys_.emplace_back();
     if (event == Json::parse_event_t::object_end) keys_.pop_back();
     if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
-      throw InputError(label_,
-                       "the key " + shown(parsed) + " appears twice in one object: expected each key once");
+      refuse(label_, "the key ", shown(parsed), " appears twice in one object: expected each key once");
   }
 
  private:
@@ -50,7 +48,7 @@ Json parse_json(const std::string& text, const std::string& label) {
     // "[json.exception...] parse error at line 3, column 4: ..." without the library's own prefix
     std::string what = error.what();
     if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    throw InputError(label, what + ": expected JSON with finite numbers");
+    refuse(label, what, ": expected JSON with finite numbers");
   }
 }
 

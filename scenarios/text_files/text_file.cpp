@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -46,14 +46,11 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   std::array<char, 65536> piece;
   for (;;) {
     const ssize_t size = open.read(piece.data(), piece.size());
-    if (size < 0)
-      throw InputError(file.string(),
-                       std::string("cannot be read (") + std::strerror(errno) + "): " + expected);
+    if (size < 0) refuse(file.string(), "cannot be read (", std::strerror(errno), "): ", expected);
     if (size == 0) return text;
     text.append(piece.data(), static_cast<std::size_t>(size));
     if (text.size() > kMaxTextBytes)
-      throw InputError(file.string(),
-                       "is longer than " + std::to_string(kMaxTextBytes >> 20) + " MiB: " + expected);
+      refuse(file.string(), "is longer than ", kMaxTextBytes >> 20, " MiB: ", expected);
   }
 }
 

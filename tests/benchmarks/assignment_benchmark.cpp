@@ -54,19 +54,17 @@ void add_rule(const std::string& name, const PointCloud& cloud, const Picks& pic
 }
 
 void add_search(const std::string& name, const PointCloud& cloud, bool with_radius) {
-  add(
-      "fixture_make_search/" + name, [] { return true; },
-      [&cloud, with_radius](benchmark::State& state) {
-        std::unique_ptr<NeighbourSearch> search;
-        for (auto _ : state) {
-          state.PauseTiming();
-          search.reset();
-          PointCloud frame = cloud;
-          if (with_radius) frame.fixture_radius_m.assign(frame.size(), kRadius_m);
-          state.ResumeTiming();
-          search = make_search(std::move(frame));
-        }
-      });
+  add("fixture_make_search/" + name, [&cloud, with_radius](benchmark::State& state) {
+    std::unique_ptr<NeighbourSearch> search;
+    for (auto _ : state) {
+      state.PauseTiming();
+      search.reset();
+      PointCloud frame = cloud;
+      if (with_radius) frame.fixture_radius_m.assign(frame.size(), kRadius_m);
+      state.ResumeTiming();
+      search = make_search(std::move(frame));
+    }
+  });
 }
 
 }  // namespace

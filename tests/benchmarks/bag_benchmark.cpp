@@ -64,7 +64,6 @@ void add_kind(const std::filesystem::path& file, const std::string& name) {
 int main(int argc, char** argv) {
   using namespace remote_touch;
   using namespace remote_touch::benchmarks;
-  benchmark::Initialize(&argc, argv);
   const auto folder =
       std::filesystem::temp_directory_path() / ("bag_benchmark." + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -82,7 +81,7 @@ int main(int argc, char** argv) {
           mcap_file(messages, {true, true, true, compression, 1}));
   write_db3((folder / "sqlite.db3").string(), messages);
   add_kind(folder / "sqlite.db3", "bag_cloud/sqlite.db3");
-  benchmark::RunSpecifiedBenchmarks();
+  const int code = run_benchmarks(argc, argv);
   std::filesystem::remove_all(folder);
-  return mismatch_seen() ? 1 : 0;
+  return code;
 }

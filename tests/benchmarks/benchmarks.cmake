@@ -55,7 +55,7 @@ find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)
 find_package(PCL QUIET COMPONENTS common search kdtree)
 if(PCL_FOUND AND NANOFLANN_INCLUDE_DIR)
   add_executable(peer_search_benchmark EXCLUDE_FROM_ALL
-    benchmarks/peers/peer_search_benchmark.cpp benchmarks/naive_proxy.cpp)
+    benchmarks/checked_benchmark.cpp benchmarks/peers/peer_search_benchmark.cpp benchmarks/naive_proxy.cpp)
   target_include_directories(peer_search_benchmark SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${NANOFLANN_INCLUDE_DIR})
   target_link_libraries(peer_search_benchmark PRIVATE runners benchmark::benchmark ${PCL_LIBRARIES})
 else()

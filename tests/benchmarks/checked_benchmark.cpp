@@ -26,8 +26,25 @@ void add(const std::string& name, const std::function<bool()>& is_right,
   });
 }
 
-bool mismatch_seen() {
-  return mismatch;
+void add(const std::string& name, const std::function<void(benchmark::State&)>& time) {
+  add(
+      name, [] { return true; }, time);
+}
+
+int run_benchmarks(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return mismatch ? 1 : 0;
+}
+
+void LeastTimes::count_slowest(benchmark::State& state) const {
+  std::vector<double> timed = ns;
+  std::erase(timed, std::numeric_limits<double>::infinity());
+  std::sort(timed.begin(), timed.end());
+  state.counters["p99_9_ns"] = timed[static_cast<std::size_t>(0.999 * (timed.size() - 1) + 0.5)];
+  state.counters["max_ns"] = timed.back();
 }
 
 double cpu_ns() {

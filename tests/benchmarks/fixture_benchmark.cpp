@@ -1,9 +1,7 @@
 // Forbidden regions, chapter 5: one proxy step in each state, gathering, and whole ticks.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -19,9 +17,6 @@
 
 namespace remote_touch::benchmarks {
 namespace {
-
-// A new list reaches 0.8661 of its cubes' edge beyond r3, as Neighbourhood gathers it.
-const double kListRadius_m = kSettings.r3_m * (1 + 0.8661 * 0.125);
 
 // The mean stiffness is a quotient of sums of some thousand N/m, each term on a grid of 2e-7.
 bool same(const naive::RegionStep& a, const naive::RegionStep& b) {
@@ -90,45 +85,6 @@ void time_steps(benchmark::State& state, const FixtureScene& scene, const Fixtur
   state.counters["listed"] = listed / static_cast<double>(steps.proxies.size());
 }
 
-std::vector<std::uint32_t> reached(const PointCloud& cloud, const Vec3& centre) {
-  std::vector<std::uint32_t> found;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double dx = cloud.x[i] - centre.x(), dy = cloud.y[i] - centre.y(), dz = cloud.z[i] - centre.z();
-    const double reach = kListRadius_m + (cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i]);
-    if (dx * dx + dy * dy + dz * dz <= reach * reach) found.push_back(static_cast<std::uint32_t>(i));
-  }
-  return found;
-}
-
-bool lists_agree(const FixtureScene& scene, const Kernels& kernels) {
-  GatheredPoints list;
-  list.reserve(scene.search->size(), scene.search->has_fixture_radius(), scene.search->has_stiffness());
-  for (std::size_t i = 0; i < scene.jumps.size(); i += kFixtureCheckEvery) {
-    list.clear();
-    scene.search->gather({scene.jumps[i], kListRadius_m}, kernels, list);
-    std::vector<std::uint32_t> found(list.index(), list.index() + list.size());
-    std::sort(found.begin(), found.end());
-    if (found != reached(scene.cloud, scene.jumps[i])) return false;
-  }
-  return true;
-}
-
-void time_lists(benchmark::State& state, const FixtureScene& scene, const Kernels& kernels) {
-  GatheredPoints list;
-  list.reserve(scene.search->size(), scene.search->has_fixture_radius(), scene.search->has_stiffness());
-  std::size_t i = 0;
-  double found = 0;
-  for (auto _ : state) {
-    list.clear();
-    scene.search->gather({scene.jumps[i], kListRadius_m}, kernels, list);
-    list.finish();
-    benchmark::ClobberMemory();
-    found += static_cast<double>(list.size());
-    if (++i == scene.jumps.size()) i = 0;
-  }
-  state.counters["found"] = benchmark::Counter(found, benchmark::Counter::kAvgIterations);
-}
-
 bool ticks_agree(const FixtureScene& scene, const Kernels& kernels) {
   ProxyRenderer renderer(kSettings, kTickRate_hz, kernels);
   renderer.on_frame({0, 0, 0, scene.search});
@@ -159,6 +115,7 @@ void time_ticks(benchmark::State& state, const FixtureScene& scene, const Kernel
 }  // namespace
 
 void add_fixtures(const FixtureScene& scene) {
+  add_query("fixture_gather", scene.search, scene);
   for (const Kernels* kernels : supported_kernels()) {
     const std::string of = "/" + scene.name + "/" + kernels->isa;
     for (const FixtureSteps& steps : scene.steps)
@@ -166,9 +123,6 @@ void add_fixtures(const FixtureScene& scene) {
           "fixture_" + steps.name + of,
           [&scene, &steps, kernels] { return steps_agree(scene, steps, *kernels); },
           [&scene, &steps, kernels](benchmark::State& state) { time_steps(state, scene, steps, *kernels); });
-    add(
-        "fixture_gather" + of, [&scene, kernels] { return lists_agree(scene, *kernels); },
-        [&scene, kernels](benchmark::State& state) { time_lists(state, scene, *kernels); });
     add(
         "fixture_tick" + of, [&scene, kernels] { return ticks_agree(scene, *kernels); },
         [&scene, kernels](benchmark::State& state) { time_ticks(state, scene, *kernels); });

@@ -65,29 +65,33 @@ FixtureSteps lifted(const FixtureScene& scene, const FixtureSteps& contact, Fixt
   return out;
 }
 
-// Returns positions in front of random points of the middle of the image, towards the camera.
-std::vector<Vec3> jumps_on(const PointCloud& cloud) {
+// Returns balls in front of random points of the middle of the image, towards the camera.
+std::vector<Ball> jumps_on(const PointCloud& cloud) {
+  // A new list reaches 0.8661 of its cubes' edge beyond r3, as Neighbourhood gathers it.
+  const double list_radius_m = kSettings.r3_m * (1 + 0.8661 * 0.125);
   const int width = cloud.image->camera.width, height = cloud.image->camera.height;
   std::mt19937 random(1);
-  std::vector<Vec3> jumps;
+  std::vector<Ball> jumps;
   while (jumps.size() < kSteps) {
     const std::size_t u = width / 6 + random() % (width * 2 / 3),
                       v = height / 6 + random() % (height * 2 / 3);
     const std::size_t i = v * width + u;
     const double radius = cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
-    jumps.push_back(cloud.point(i) - Vec3(0, 0, radius + kSettings.contact_radius_m()));
+    jumps.push_back({cloud.point(i) - Vec3(0, 0, radius + kSettings.contact_radius_m()), list_radius_m});
   }
   return jumps;
 }
 
 FixtureScene made_scene(std::string name, PointCloud cloud) {
-  FixtureScene scene{std::move(name), std::move(cloud)};
+  FixtureScene scene{{std::move(name), std::move(cloud)}};
   scene.search = make_search(scene.cloud);
   const FixtureSteps contact = contact_steps(scene);
   scene.steps = {contact, lifted(scene, contact, {"free", ContactState::free}, 0.0005, 0.002),
                  lifted(scene, contact, {"free_far", ContactState::free}, 0.0005, 0),
                  lifted(scene, contact, {"entrenched", ContactState::entrenched}, -0.0002, 0)};
-  scene.jumps = jumps_on(scene.cloud);
+  scene.balls = jumps_on(scene.cloud);
+  for (std::size_t i = 0; i < scene.balls.size(); i += kFixtureCheckEvery)
+    scene.expected.push_back(naive::points_within(scene.cloud, scene.balls[i]));
   // Regions farther away are not reached. The reference then takes a tenth of the time.
   std::vector<naive::RegionPoint> points;
   for (const naive::RegionPoint& point : naive::region_points_of(scene.cloud, kSettings))

@@ -25,12 +25,11 @@ constexpr std::size_t kFixtureCheckEvery = 64;
 // different sizes meet, and a rounding difference grows tenfold per tick.
 constexpr std::size_t kFixtureCheckedTicks = 10;
 
-struct FixtureScene {
-  std::string name;
-  PointCloud cloud;
+// Its queries are the lists that the renderer gathers. Each ball touches the region of a random point, so
+// branches are new.
+struct FixtureScene : naive::Queries {
   std::shared_ptr<const NeighbourSearch> search = nullptr;
   std::vector<FixtureSteps> steps = {};
-  std::vector<Vec3> jumps = {};           // each touches the region of a random point, so branches are new
   std::vector<Vec3> expected_ticks = {};  // proxies after whole ticks; the first begins and ends above
 };
 

@@ -39,13 +39,9 @@ double us_since(std::int64_t start_ns) {
 class NoDevice final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;
-  const DeviceTraits& traits() const override { return traits_; }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
   void release() noexcept override {}
-
- private:
-  DeviceTraits traits_;
 };
 
 class NoRenderer final : public Renderer {

@@ -38,36 +38,6 @@ Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   return length * goal / distance;
 }
 
-namespace {
-
-// (4.4), (4.9)
-Vec3 free_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& u,
-               const ProxyParameters& p) {
-  const double distance = u.norm();
-  if (distance == 0) return Vec3::Zero();
-  const Vec3 direction = u / distance;
-  double step = distance, near = 0, far = 0;
-  for (const Vec3& x : points) {
-    if ((x - proxy_W).dot(direction) <= 0) continue;
-    if (roots(x, proxy_W, direction, p.contact_radius_m(), near, far) && near > 0)
-      step = std::min(step, near);
-  }
-  return step * direction;
-}
-
-// (4.5), (4.10)
-Vec3 entrenched_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& normal,
-                     const ProxyParameters& p) {
-  double step = 0, near = 0, far = 0;
-  for (const Vec3& x : points) {
-    if ((x - proxy_W).norm() >= p.r1_m) continue;
-    if (roots(x, proxy_W, normal, p.contact_radius_m(), near, far)) step = std::max(step, far);
-  }
-  return step * normal;
-}
-
-}  // namespace
-
 Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& hip_W,
                 const Vec3& previous_normal, const ProxyParameters& p) {
   Step out;
@@ -81,16 +51,7 @@ Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3
   }
   const double length = sum.norm();
   out.normal = length > 1e-10 ? Vec3(sum / length) : previous_normal;
-  const Vec3 u = hip_W - proxy_W;
-  if (out.nearest_distance_m < p.r1_m) {
-    out.state = ContactState::entrenched;
-    out.step = entrenched_step(points, proxy_W, out.normal, p);
-  } else if (out.nearest_distance_m <= p.r2_m) {
-    out.state = ContactState::contact;
-    out.step = contact_step(out.normal, u, p);
-  } else {
-    out.step = free_step(points, proxy_W, u, p);
-  }
+  take_step(points, proxy_W, hip_W - proxy_W, p, out);
   return out;
 }
 
@@ -106,8 +67,8 @@ std::vector<std::uint32_t> points_within(const PointCloud& cloud, const Ball& ba
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double dx = cloud.x[i] - ball.centre.x(), dy = cloud.y[i] - ball.centre.y(),
                  dz = cloud.z[i] - ball.centre.z();
-    if (dx * dx + dy * dy + dz * dz <= ball.radius * ball.radius)
-      found.push_back(static_cast<std::uint32_t>(i));
+    const double reach = ball.radius + (cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i]);
+    if (dx * dx + dy * dy + dz * dz <= reach * reach) found.push_back(static_cast<std::uint32_t>(i));
   }
   return found;
 }

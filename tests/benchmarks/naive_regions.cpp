@@ -7,33 +7,6 @@
 namespace remote_touch::naive {
 namespace {
 
-// (5.9)
-Vec3 free_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& u,
-               const ProxyParameters& p) {
-  const double distance = u.norm();
-  if (distance == 0) return Vec3::Zero();
-  const Vec3 direction = u / distance;
-  double step = distance, near = 0, far = 0;
-  for (const RegionPoint& point : points) {
-    if ((point.x - proxy_W).dot(direction) <= 0) continue;
-    const double radius = p.contact_radius_m() + point.radius;
-    if (roots(point.x, proxy_W, direction, radius, near, far) && near > 0) step = std::min(step, near);
-  }
-  return step < distance ? Vec3(step * direction) : u;
-}
-
-// (5.11)
-Vec3 entrenched_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& normal,
-                     const ProxyParameters& p) {
-  double step = 0, near = 0, far = 0;
-  for (const RegionPoint& point : points) {
-    if ((point.x - proxy_W).norm() >= p.r1_m + point.radius) continue;
-    if (roots(point.x, proxy_W, normal, p.contact_radius_m() + point.radius, near, far))
-      step = std::max(step, far);
-  }
-  return step * normal;
-}
-
 bool is_entrenched(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const ProxyParameters& p) {
   return std::any_of(points.begin(), points.end(), [&](const RegionPoint& point) {
     return (point.x - proxy_W).norm() - point.radius < p.r1_m;
@@ -70,16 +43,7 @@ RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy
   }
   const double length = sum.norm();
   out.normal = length > 1e-10 ? Vec3(sum / length) : previous_normal;
-  const Vec3 u = hip_W - proxy_W;
-  if (out.nearest_distance_m < p.r1_m) {
-    out.state = ContactState::entrenched;
-    out.step = entrenched_step(points, proxy_W, out.normal, p);
-  } else if (out.nearest_distance_m <= p.r2_m) {
-    out.state = ContactState::contact;
-    out.step = contact_step(out.normal, u, p);
-  } else {
-    out.step = free_step(points, proxy_W, u, p);
-  }
+  take_step(points, proxy_W, hip_W - proxy_W, p, out);
   return {out, weights > 0 ? weighted / weights : p.stiffness_N_per_m};
 }
 

@@ -13,6 +13,12 @@ struct RegionPoint {
   double radius;     // r_f of (5.2)
   double stiffness;  // k_s of (5.3)
 };
+inline const Vec3& place_of(const RegionPoint& point) {
+  return point.x;
+}
+inline double region_radius_of(const RegionPoint& point) {
+  return point.radius;
+}
 
 // Missing columns of the cloud count as 0 and as the renderer's own stiffness.
 std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyParameters& p);

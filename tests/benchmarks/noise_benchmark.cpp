@@ -79,8 +79,7 @@ void time_standard_normals(benchmark::State& state) {
 }  // namespace
 
 void add_normals() {
-  add(
-      "normals_standard_library", [] { return true; }, time_standard_normals);
+  add("normals_standard_library", time_standard_normals);
   for (const Kernels* kernels : supported_kernels())
     add(
         std::string("normals/") + kernels->isa, [kernels] { return normals_agree(*kernels); },

@@ -143,9 +143,5 @@ int main(int argc, char** argv) {
       if (device.is_usable())
         add_processor(name, scene, device.address), add_live(live, sensed[i], device.address);
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

@@ -32,9 +32,5 @@ int main(int argc, char** argv) {
   for (const FixtureScene& each : fixtures) add_fixtures(each);
   add_assignments();
 
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

@@ -1,6 +1,8 @@
 // The parts of proxy_benchmark. Their arguments must live until the benchmarks have run.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "tests/benchmarks/fixture_scene.h"
@@ -18,6 +20,8 @@ void add_ticks(const Slide& slide);
 // Radius queries around centres that slide and centres that jump, on every available cloud.
 std::vector<naive::Queries> query_sets();
 void add_queries(const naive::Queries& queries);
+void add_query(const std::string& name, const std::shared_ptr<const NeighbourSearch>& search,
+               const naive::Queries& queries);
 
 // Steps, lists and ticks among forbidden regions.
 void add_fixtures(const FixtureScene& scene);

@@ -20,12 +20,18 @@
 namespace remote_touch::benchmarks {
 namespace {
 
-bool finds_expected(const NeighbourSearch& search, const naive::Queries& queries, const Kernels& kernels) {
+GatheredPoints list_for(const NeighbourSearch& search) {
   GatheredPoints list;
-  list.reserve(search.size(), false, false);
-  for (std::size_t i = 0; i < queries.balls.size(); ++i) {
+  list.reserve(search.size(), search.has_fixture_radius(), search.has_stiffness());
+  return list;
+}
+
+bool finds_expected(const NeighbourSearch& search, const naive::Queries& queries, const Kernels& kernels) {
+  GatheredPoints list = list_for(search);
+  const std::size_t every = queries.balls.size() / queries.expected.size();
+  for (std::size_t i = 0; i < queries.expected.size(); ++i) {
     list.clear();
-    search.gather(queries.balls[i], kernels, list);
+    search.gather(queries.balls[i * every], kernels, list);
     std::vector<std::uint32_t> found(list.index(), list.index() + list.size());
     std::sort(found.begin(), found.end());
     if (found != queries.expected[i]) return false;
@@ -35,8 +41,7 @@ bool finds_expected(const NeighbourSearch& search, const naive::Queries& queries
 
 void time_queries(benchmark::State& state, const NeighbourSearch& search, const naive::Queries& queries,
                   const Kernels& kernels) {
-  GatheredPoints list;
-  list.reserve(search.size(), false, false);
+  GatheredPoints list = list_for(search);
   std::size_t i = 0;
   double found = 0;
   for (auto _ : state) {
@@ -50,15 +55,6 @@ void time_queries(benchmark::State& state, const NeighbourSearch& search, const 
   state.counters["found"] = benchmark::Counter(found, benchmark::Counter::kAvgIterations);
 }
 
-void add_query(const std::string& name, const std::shared_ptr<const NeighbourSearch>& search,
-               const naive::Queries& queries) {
-  for (const Kernels* kernels : supported_kernels())
-    add(
-        name + "/" + queries.name + "/" + kernels->isa,
-        [=, &queries] { return finds_expected(*search, queries, *kernels); },
-        [=, &queries](benchmark::State& state) { time_queries(state, *search, queries, *kernels); });
-}
-
 // Returns the first frame of a recording, if there is one: a real surface, with holes.
 std::optional<PointCloud> recorded_cloud() {
   const char* named = std::getenv("REMOTE_TOUCH_DATA");
@@ -69,6 +65,15 @@ std::optional<PointCloud> recorded_cloud() {
 }
 
 }  // namespace
+
+void add_query(const std::string& name, const std::shared_ptr<const NeighbourSearch>& search,
+               const naive::Queries& queries) {
+  for (const Kernels* kernels : supported_kernels())
+    add(
+        name + "/" + queries.name + "/" + kernels->isa,
+        [=, &queries] { return finds_expected(*search, queries, *kernels); },
+        [=, &queries](benchmark::State& state) { time_queries(state, *search, queries, *kernels); });
+}
 
 std::vector<naive::Queries> query_sets() {
   std::vector<naive::Queries> queries;

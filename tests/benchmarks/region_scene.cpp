@@ -111,22 +111,6 @@ SphereTool arm_of_leaves(int leaves) {
   return {body, tree, body->reach_m};
 }
 
-std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
-                                  double margin_m) {
-  const Eigen::Matrix3d R_WT = pose.q_WT.toRotationMatrix();
-  std::vector<LeafPair> pairs;
-  for (std::uint32_t i = 0; i < tool.leaves().size(); ++i) {
-    const Sphere& leaf = tool.leaves()[i];
-    const Vec3 centre_W = pose.p_W + R_WT * leaf.centre;
-    for (std::uint32_t j = 0; j < regions.leaves().size(); ++j) {
-      const Sphere& region = regions.leaves()[j];
-      const double gap_m = (centre_W - region.centre).norm() - leaf.radius_m - region.radius_m;
-      if (gap_m <= margin_m) pairs.push_back({i, j, gap_m});
-    }
-  }
-  return pairs;
-}
-
 ToolPose device_around_wheel(int tick) {
   const double a = 2 * std::numbers::pi * tick / kRoundTicks;
   const double pressed_m = 0.01;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/sphere_tree/tree_collision.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/point_cloud.h"
@@ -29,10 +28,6 @@ struct SphereTool {
 SphereTool generated_sphere_tool(const std::string& name, int max_leaves);
 // Three links of 0.27 m length and 30 mm radius, one after the other, with leaves of 12 mm all around them.
 SphereTool arm_of_leaves(int leaves);
-
-// Every pair of leaves with a gap of margin_m or less, by a plain loop over all pairs.
-std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
-                                  double margin_m);
 
 // Pose of the device on its way around the first wheel at 0.1 m/s. It turns on the way, 10 mm inside the
 // regions.

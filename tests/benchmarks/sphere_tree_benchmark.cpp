@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
 #include "tests/support/formatted.h"
+#include "tests/support/leaf_pairs.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -96,13 +98,8 @@ bool detection_right(const SphereTool& tool, const PointCloud& cloud, const Tool
   const std::vector<LeafPair> expected = naive_pairs(*tool.leaves, pose, regions, kLookAhead_m);
   TreeCollision collision(*tool.leaves, kernels);
   collision.on_frame(regions);
-  std::vector<LeafPair> buffer(expected.size() + 1);
-  if (collision.near_pairs(pose, kLookAhead_m, buffer) != expected.size()) return false;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    if (buffer[i].tool != expected[i].tool || buffer[i].region != expected[i].region ||
-        buffer[i].gap_m != expected[i].gap_m)
-      return false;
-  return contacts.near(pose, 0).deepest_m == deepest_m(expected);
+  return near_pairs(collision, pose, kLookAhead_m) == expected &&
+         contacts.near(pose, 0).deepest_m == deepest_m(expected);
 }
 
 void add_detection(const std::string& name, const PointCloud& cloud, const NamedPose& named) {
@@ -119,22 +116,19 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Named
           collision.on_frame(contacts.regions().spheres());
           std::size_t chosen = 0;
           for (auto _ : state) chosen = contacts.near(pose, 0).contacts.size();
-          state.counters["pairs"] = static_cast<double>(collision.near_pairs(pose, kLookAhead_m, {}));
+          state.counters["pairs"] = static_cast<double>(near_pairs(collision, pose, kLookAhead_m).size());
           state.counters["leaves"] = static_cast<double>(contacts.regions().points().size());
           state.counters["contacts"] = static_cast<double>(chosen);
         });
-  add(
-      "region_contacts_naive/" + named.name, [] { return true; },
-      [=, &cloud](benchmark::State& state) {
-        const SphereTool& tool = tool_of(name, kLeaves);
-        RegionTree regions;
-        regions.assign(cloud);
-        for (auto _ : state) {
-          const std::vector<LeafPair> pairs =
-              naive_pairs(*tool.leaves, pose, regions.spheres(), kLookAhead_m);
-          benchmark::DoNotOptimize(pairs.data());
-        }
-      });
+  add("region_contacts_naive/" + named.name, [=, &cloud](benchmark::State& state) {
+    const SphereTool& tool = tool_of(name, kLeaves);
+    RegionTree regions;
+    regions.assign(cloud);
+    for (auto _ : state) {
+      const std::vector<LeafPair> pairs = naive_pairs(*tool.leaves, pose, regions.spheres(), kLookAhead_m);
+      benchmark::DoNotOptimize(pairs.data());
+    }
+  });
 }
 
 // --- whole ticks ---
@@ -222,11 +216,9 @@ bool ride_right(const SphereTool& tool, const Course& course, const Kernels& ker
   return touching > 0;
 }
 
-// Every ride is the same, so the least time of a tick among many rides is that of the work.
 void time_ride(benchmark::State& state, const SphereTool& tool, const Course& course,
                const Kernels& kernels) {
-  const auto ticks = static_cast<std::size_t>(course.ticks);
-  std::vector<double> min_ns(ticks, std::numeric_limits<double>::infinity());
+  LeastTimes least(course.ticks);
   double detections = 0, max = 0, rides = 0;
   for (auto _ : state) {
     state.PauseTiming();
@@ -234,20 +226,13 @@ void time_ride(benchmark::State& state, const SphereTool& tool, const Course& co
     state.ResumeTiming();
     for (int tick = 0; tick < course.ticks; ++tick) {
       ride.begin(tick);
-      const double start_ns = cpu_ns();
-      const ToolMotionReport report = ride.step(tick);
-      const double ns = cpu_ns() - start_ns;
-      min_ns[static_cast<std::size_t>(tick)] = std::min(min_ns[static_cast<std::size_t>(tick)], ns);
+      const ToolMotionReport report = least.time(tick, [&] { return ride.step(tick); });
       detections += report.detections, max = std::max(max, double(report.detections));
     }
     ++rides;
   }
-  double sum = 0;
-  for (const double ns : min_ns) sum += ns;
-  std::sort(min_ns.begin(), min_ns.end());
-  state.counters["mean_ns"] = sum / course.ticks;
-  state.counters["p99_9_ns"] = min_ns[static_cast<std::size_t>(0.999 * (min_ns.size() - 1) + 0.5)];
-  state.counters["max_ns"] = min_ns.back();
+  state.counters["mean_ns"] = std::accumulate(least.ns.begin(), least.ns.end(), 0.0) / course.ticks;
+  least.count_slowest(state);
   state.counters["detections"] = detections / rides / course.ticks;
   state.counters["max_detections"] = max;
 }
@@ -273,9 +258,5 @@ int main(int argc, char** argv) {
   }
   for (const int leaves : {28, 56, 250, 500, 1000}) add_ride("husky", leaves, "slide", kSlide);
   add_ride("arm", 2000, "slide", kSlide);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

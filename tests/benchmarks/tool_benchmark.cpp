@@ -3,8 +3,6 @@
 // and ticks are compared, bit for bit, with those of the slowest instruction set level.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -62,15 +60,13 @@ void add_list(const ToolScene& scene, const std::string& where, const ToolPose& 
           state.counters["found"] = static_cast<double>(found);
         });
   }
-  add(
-      "tool_list_naive/" + scene.name + "_" + where, [] { return true; },
-      [=, &scene](benchmark::State& state) {
-        int i = 0;
-        for (auto _ : state) {
-          const auto found = naive_list(*scene.tool, scene.cloud, shaken(pose, i++));
-          benchmark::DoNotOptimize(found.data());
-        }
-      });
+  add("tool_list_naive/" + scene.name + "_" + where, [=, &scene](benchmark::State& state) {
+    int i = 0;
+    for (auto _ : state) {
+      const auto found = naive_list(*scene.tool, scene.cloud, shaken(pose, i++));
+      benchmark::DoNotOptimize(found.data());
+    }
+  });
 }
 
 // --- one step ---
@@ -173,30 +169,23 @@ bool rides_same(const ToolScene& scene, const ToolParameters& parameters, const 
   return touching == kSlideTicks;
 }
 
-// A slide is the same every time, so the least time of a tick among many slides is that of the work. Least
-// times above the mean are also due to the work, not to the machine.
+// Least times above the mean are also due to the work, not to the machine.
 void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParameters& parameters,
                const Kernels& kernels) {
   Ride ride(scene, parameters, kernels);
   for (int tick = 0; tick < kSlideTicks; ++tick) ride.step(tick);  // first slide; all later ones are alike
-  std::vector<double> min_ns(kSlideTicks, std::numeric_limits<double>::infinity());
+  LeastTimes least(kSlideTicks);
   double detections = 0, steps = 0;
   int tick = 0;
   for (auto _ : state) {
-    const double start_ns = cpu_ns();
-    const RenderOutput out = ride.step(tick);
-    const double ns = cpu_ns() - start_ns;
-    min_ns[static_cast<std::size_t>(tick)] = std::min(min_ns[static_cast<std::size_t>(tick)], ns);
+    const RenderOutput out = least.time(tick, [&] { return ride.step(tick); });
     detections += out.tool->detections, steps += out.steps;
     tick = (tick + 1) % kSlideTicks;
   }
-  std::erase(min_ns, std::numeric_limits<double>::infinity());
-  std::sort(min_ns.begin(), min_ns.end());
   using Counter = benchmark::Counter;
   state.counters["detections"] = Counter(detections, Counter::kAvgIterations);
   state.counters["steps"] = Counter(steps, Counter::kAvgIterations);
-  state.counters["p99_9_ns"] = min_ns[static_cast<std::size_t>(0.999 * (min_ns.size() - 1) + 0.5)];
-  state.counters["max_ns"] = min_ns.back();
+  least.count_slowest(state);
 }
 
 void add_ride(const ToolScene& scene, TouchRule rule) {
@@ -239,9 +228,5 @@ int main(int argc, char** argv) {
     add_ride(scene, TouchRule::continuous);
     add_landing(scene, settings(TouchRule::continuous), name_of(TouchRule::continuous));
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

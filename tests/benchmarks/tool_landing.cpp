@@ -74,16 +74,11 @@ bool lands_same(const ToolScene& scene, const ToolParameters& parameters, const 
 void time_landing(benchmark::State& state, const ToolScene& scene, const ToolParameters& parameters,
                   const Kernels& kernels) {
   Landing landing(scene, parameters, kernels);
-  std::vector<double> min_ns(kTicks, std::numeric_limits<double>::infinity());
+  LeastTimes least(kTicks);
   for (auto _ : state)
-    for (int tick = 0; tick < kTicks; ++tick) {
-      const double start_ns = cpu_ns();
-      landing.tick(tick);
-      double& least_ns = min_ns[static_cast<std::size_t>(tick)];
-      least_ns = std::min(least_ns, cpu_ns() - start_ns);
-    }
-  state.counters["landing_ns"] = min_ns.front();
-  state.counters["after_ns"] = *std::max_element(min_ns.begin() + 1, min_ns.begin() + kTicksUp);
+    for (int tick = 0; tick < kTicks; ++tick) least.time(tick, [&] { return landing.tick(tick); });
+  state.counters["landing_ns"] = least.ns.front();
+  state.counters["after_ns"] = *std::max_element(least.ns.begin() + 1, least.ns.begin() + kTicksUp);
 }
 
 }  // namespace

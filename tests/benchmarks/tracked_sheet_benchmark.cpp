@@ -10,7 +10,6 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -170,30 +169,23 @@ bool sheet_right(const Lift& lift) {
 
 // --- times ---
 
-// The least time of each frame, and of all ticks between it and the next frame. Every lift is the same, so
-// the least of many times is that of the work alone. It is kept from one repetition to the next.
-struct LeastTimes {
-  std::array<double, kFrames> frame_ns, ticks_ns;
-  LeastTimes() {
-    frame_ns.fill(std::numeric_limits<double>::infinity());
-    ticks_ns = frame_ns;
-  }
+// The times of each frame, and of all ticks between it and the next frame. They are kept from one repetition
+// to the next.
+struct LiftTimes {
+  LeastTimes frames{kFrames}, ticks{kFrames};
 };
 
-void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& min) {
+void time_lift(const Lift& lift, Renderer& renderer, LiftTimes& least) {
   for (int f = 0; f < kFrames; ++f) {
-    const auto i = static_cast<std::size_t>(f);
     const Frame frame = frame_of(lift, f);
     const DeviceState device = device_at(lift, f);
-    const double start_ns = cpu_ns();
-    renderer.on_frame(frame);
-    const double taken_ns = cpu_ns();
-    for (int tick = first_tick_of(f); tick < first_tick_of(f + 1); ++tick) {
-      const RenderOutput out = renderer.step(device, time_of(tick));
-      benchmark::DoNotOptimize(&out);
-    }
-    min.ticks_ns[i] = std::min(min.ticks_ns[i], cpu_ns() - taken_ns);
-    min.frame_ns[i] = std::min(min.frame_ns[i], taken_ns - start_ns);
+    least.frames.time(f, [&] { renderer.on_frame(frame); });
+    least.ticks.time(f, [&] {
+      for (int tick = first_tick_of(f); tick < first_tick_of(f + 1); ++tick) {
+        const RenderOutput out = renderer.step(device, time_of(tick));
+        benchmark::DoNotOptimize(&out);
+      }
+    });
   }
 }
 
@@ -210,31 +202,31 @@ void count_work(benchmark::State& state, const std::vector<RenderOutput>& output
   state.counters["in_contact"] = in_contact / ticks;
 }
 
-void time_lifts(benchmark::State& state, const Lift& lift, const Method& method, LeastTimes& min) {
+void time_lifts(benchmark::State& state, const Lift& lift, const Method& method, LiftTimes& least) {
   const Kernels& kernels = kernels_for(best_isa());
   for (auto _ : state) {
     state.PauseTiming();
     const std::unique_ptr<Renderer> renderer = method.renderer(kernels);
     state.ResumeTiming();
-    time_lift(lift, *renderer, min);
+    time_lift(lift, *renderer, least);
   }
   const auto sum = [](const auto& ns, int first) {
     return std::accumulate(ns.begin() + first, ns.end(), 0.0);
   };
   const int ticks = first_tick_of(kFrames) - first_tick_of(kPressFrame);
-  state.counters["frame_ns"] = sum(min.frame_ns, kFirstTimedFrame) / (kFrames - kFirstTimedFrame);
-  state.counters["tick_ns"] = sum(min.ticks_ns, kPressFrame) / ticks;
+  state.counters["frame_ns"] = sum(least.frames.ns, kFirstTimedFrame) / (kFrames - kFirstTimedFrame);
+  state.counters["tick_ns"] = sum(least.ticks.ns, kPressFrame) / ticks;
   count_work(state, answers(lift, method, kernels));
 }
 
 void add_lift(const std::shared_ptr<const Lift>& lift, const Method& method, bool (*is_right)(const Lift&)) {
   char noise[16];
   std::snprintf(noise, sizeof noise, "%g", lift->noise_rc);
-  const auto min = std::make_shared<LeastTimes>();
+  const auto least = std::make_shared<LiftTimes>();
   add(
       "sheet_lift/" + method.name + "/" + noise + "/" + kernels_for(best_isa()).isa,
       [=] { return is_right(*lift); },
-      [=, &method](benchmark::State& state) { time_lifts(state, *lift, method, *min); });
+      [=, &method](benchmark::State& state) { time_lifts(state, *lift, method, *least); });
 }
 
 }  // namespace
@@ -247,9 +239,5 @@ int main(int argc, char** argv) {
     add_lift(lift, kProxy, proxy_right);
     add_lift(lift, kSheet, sheet_right);
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

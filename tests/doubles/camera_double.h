@@ -25,6 +25,8 @@ namespace remote_touch {
 
 class CameraDouble {
  public:
+  static constexpr const char* kExport = "camera_double";
+
   struct State {
     std::vector<std::string> serials = {"000123", "CL2F"};
     int held_by_others = -1;  // the number of a camera that cannot be opened

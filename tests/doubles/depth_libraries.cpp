@@ -1,10 +1,5 @@
 #include "tests/doubles/depth_libraries.h"
 
-#include <dlfcn.h>
-
-#include <cstdlib>
-#include <stdexcept>
-
 #include "runners/live/sensors/k4a_camera.h"
 #include "runners/live/sensors/realsense_camera.h"
 
@@ -35,20 +30,11 @@ void PrintTo(const DepthLibrary* library, std::ostream* out) {
   *out << library->name;
 }
 
-CameraInstalled::CameraInstalled(const DepthLibrary& library, SimulatedClock* clock)
-    : variable_(library.variable) {
-  void* loaded = dlopen(library.double_file, RTLD_NOW | RTLD_LOCAL);
-  if (loaded == nullptr) throw std::runtime_error(dlerror());
-  camera_ = reinterpret_cast<CameraDouble* (*)()>(dlsym(loaded, "camera_double"))();
-  camera_->reset();
-  camera_->follow(clock);
-  setenv(variable_, library.double_file, 1);
-}
-
-CameraInstalled::~CameraInstalled() {
-  camera_->reset();
-  camera_->follow(nullptr);
-  unsetenv(variable_);
+void CameraInstalled::expect_all_given_back() const {
+  const CameraDouble& camera = **this;
+  EXPECT_EQ(camera.held(), 0u);
+  EXPECT_TRUE(camera.misuse().empty()) << camera.misuse().front();
+  EXPECT_FALSE(camera.is_started());
 }
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 #include "runners/live/devices/availability.h"
 #include "runners/live/sensors/depth_source.h"
 #include "tests/doubles/camera_double.h"
+#include "tests/doubles/installed_double.h"
 
 namespace remote_touch {
 
@@ -26,21 +27,11 @@ void PrintTo(const DepthLibrary* library, std::ostream* out);  // NOLINT(readabi
 // kOldRealSense lacks what older versions of librealsense lack.
 extern const DepthLibrary kK4a, kRealSense, kOldRealSense;
 
-// The library is replaced by its double, newly reset, as long as this object lives. The double uses a
-// simulated clock, or the steady one.
-class CameraInstalled {
+class CameraInstalled : public InstalledDouble<CameraDouble> {
  public:
-  explicit CameraInstalled(const DepthLibrary& library, SimulatedClock* clock = nullptr);
-  ~CameraInstalled();
-  CameraInstalled(const CameraInstalled&) = delete;
-  CameraInstalled& operator=(const CameraInstalled&) = delete;
-
-  CameraDouble* operator->() const { return camera_; }
-  CameraDouble& operator*() const { return *camera_; }
-
- private:
-  const char* variable_;
-  CameraDouble* camera_;
+  using InstalledDouble::InstalledDouble;
+  ~CameraInstalled() { expect_all_given_back(); }
+  void expect_all_given_back() const;
 };
 
 }  // namespace remote_touch

@@ -20,6 +20,8 @@ namespace remote_touch {
 
 class DeviceDouble {
  public:
+  static constexpr const char* kExport = "device_double";
+
   // All values are in the vendor's units and axes.
   struct State {
     std::array<double, 3> position{}, velocity{}, turning{};

@@ -42,14 +42,13 @@ struct HaplyService::Inside {
   HaplyWorld world;
   std::vector<HaplyCommand> commands;
   Vec3 given_N = Vec3::Zero();
-  int connection = -1, connections = 0;
-  enum class Mood { answers, hangs, hangs_in_the_middle, pings, is_dead } mood = Mood::answers;
+  int connection = -1;
+  Mood mood = Mood::answers;
   std::thread thread;
 
   void serve();
   void talk(Web& web);
   void note(const std::string& text);
-  void set_mood(Mood next);
   bool is(Mood asked);
   bool misbehaves = false;
   std::string answer(bool is_inventory);
@@ -64,7 +63,6 @@ void HaplyService::Inside::serve() {
       const std::lock_guard<std::mutex> lock(mutex);
       if (mood == Mood::is_dead || ec) return;
       connection = socket.native_handle();
-      ++connections;
     }
     Web web(std::move(socket));
     web.next_layer().set_option(tcp::no_delay(true));
@@ -124,13 +122,13 @@ bool HaplyService::Inside::is(Mood asked) {
   return mood == asked;
 }
 
-void HaplyService::Inside::set_mood(Mood next) {
-  const std::lock_guard<std::mutex> lock(mutex);
-  mood = next;
-  changed.notify_all();
+void HaplyService::set(Mood mood) {
+  const std::lock_guard<std::mutex> lock(inside_->mutex);
+  inside_->mood = mood;
+  inside_->changed.notify_all();
   if (mood != Mood::is_dead) return;
-  ::shutdown(listener, SHUT_RDWR);
-  if (connection >= 0) ::shutdown(connection, SHUT_RDWR);
+  ::shutdown(inside_->listener, SHUT_RDWR);
+  if (inside_->connection >= 0) ::shutdown(inside_->connection, SHUT_RDWR);
 }
 
 HaplyService::HaplyService(const HaplyWorld& world) : inside_(std::make_unique<Inside>()) {
@@ -139,41 +137,12 @@ HaplyService::HaplyService(const HaplyWorld& world) : inside_(std::make_unique<I
 }
 
 HaplyService::~HaplyService() {
-  die();
+  set(Mood::is_dead);
   inside_->thread.join();
 }
 
 int HaplyService::port() const {
   return inside_->port;
-}
-
-std::string HaplyService::address(const std::string& settings) const {
-  return "ws://127.0.0.1:" + std::to_string(port()) + settings;
-}
-
-void HaplyService::set(const HaplyWorld& world) {
-  const std::lock_guard<std::mutex> lock(inside_->mutex);
-  inside_->world = world;
-}
-
-void HaplyService::hang() {
-  inside_->set_mood(Inside::Mood::hangs);
-}
-
-void HaplyService::hang_in_the_middle() {
-  inside_->set_mood(Inside::Mood::hangs_in_the_middle);
-}
-
-void HaplyService::ping_without_end() {
-  inside_->set_mood(Inside::Mood::pings);
-}
-
-void HaplyService::resume() {
-  inside_->set_mood(Inside::Mood::answers);
-}
-
-void HaplyService::die() {
-  inside_->set_mood(Inside::Mood::is_dead);
 }
 
 bool HaplyService::misbehaves() const {
@@ -184,11 +153,6 @@ bool HaplyService::misbehaves() const {
 std::vector<HaplyCommand> HaplyService::commands() const {
   const std::lock_guard<std::mutex> lock(inside_->mutex);
   return inside_->commands;
-}
-
-int HaplyService::connections() const {
-  const std::lock_guard<std::mutex> lock(inside_->mutex);
-  return inside_->connections;
 }
 
 HaplyServiceProcess::HaplyServiceProcess() {
@@ -207,10 +171,6 @@ HaplyServiceProcess::HaplyServiceProcess() {
   ::close(ends[1]);
   if (::read(ends[0], &port_, sizeof port_) != sizeof port_) port_ = 0;
   ::close(ends[0]);
-}
-
-std::string HaplyServiceProcess::address(const std::string& settings) const {
-  return "ws://127.0.0.1:" + std::to_string(port_) + settings;
 }
 
 void HaplyServiceProcess::kill() {

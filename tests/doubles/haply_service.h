@@ -18,21 +18,15 @@ class HaplyService {
   ~HaplyService();
 
   int port() const;
-  std::string address(const std::string& settings = "") const;
+  std::string address() const { return "ws://127.0.0.1:" + std::to_string(port()); }
 
-  void set(const HaplyWorld& world);
-  // The service sends no answer to a command from now on, or half of one, or control frames instead. The
-  // connection stays.
-  void hang();
-  void hang_in_the_middle();
-  void ping_without_end();
-  void resume();
+  // How it answers a command from now on: with no answer, or half of one, or control frames instead; the
+  // connection stays. is_dead: it ends the connection and accepts no other.
+  enum class Mood { answers, hangs, hangs_in_the_middle, pings, is_dead };
+  void set(Mood mood);
   bool misbehaves() const;  // half an answer or a control frame has been sent
-  // Ends the connection and accepts no other.
-  void die();
 
   std::vector<HaplyCommand> commands() const;
-  int connections() const;
 
  private:
   struct Inside;
@@ -44,7 +38,9 @@ class HaplyServiceProcess {
  public:
   HaplyServiceProcess();
   ~HaplyServiceProcess() { kill(); }
-  std::string address(const std::string& settings = "") const;
+  std::string address(const std::string& settings = "") const {
+    return "ws://127.0.0.1:" + std::to_string(port_) + settings;
+  }
   void kill();
 
  private:

@@ -1,11 +1,7 @@
 // Settings by which a test makes the double of the OpenCL library fail: which call fails, and in which way.
 #pragma once
 
-#include <dlfcn.h>
-
 #include <atomic>
-#include <cstdio>
-#include <cstdlib>
 #include <type_traits>
 
 namespace remote_touch {
@@ -38,15 +34,5 @@ struct OpenClDouble {
   }
 };
 static_assert(std::is_trivially_destructible_v<OpenClDouble>);
-
-// The library exports extern "C" remote_touch::OpenClDouble* opencl_double(). It stays loaded.
-inline OpenClDouble& loaded_opencl_double(const char* file) {
-  void* const loaded = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-  if (loaded == nullptr) {
-    std::fprintf(stderr, "%s\n", dlerror());
-    std::abort();
-  }
-  return *reinterpret_cast<OpenClDouble* (*)()>(dlsym(loaded, "opencl_double"))();
-}
 
 }  // namespace remote_touch

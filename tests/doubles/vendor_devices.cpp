@@ -1,10 +1,5 @@
 #include "tests/doubles/vendor_devices.h"
 
-#include <dlfcn.h>
-
-#include <cstdlib>
-#include <stdexcept>
-
 #include "runners/live/devices/entact.h"
 #include "runners/live/devices/force_dimension.h"
 #include "runners/live/devices/open_haptics.h"
@@ -75,22 +70,6 @@ const VendorDevice kEntact{.name = "entact",
 
 void PrintTo(const VendorDevice* vendor, std::ostream* out) {
   *out << vendor->name;
-}
-
-DoubleInstalled::DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock)
-    : variable_(vendor.variable) {
-  void* library = dlopen(vendor.double_file, RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw std::runtime_error(dlerror());
-  const auto access = reinterpret_cast<DeviceDouble* (*)()>(dlsym(library, "device_double"));
-  device_ = access();
-  device_->reset();
-  device_->follow(clock);
-  setenv(variable_, vendor.double_file, 1);
-}
-
-DoubleInstalled::~DoubleInstalled() {
-  device_->follow(nullptr);
-  unsetenv(variable_);
 }
 
 void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick) {

@@ -9,6 +9,7 @@
 #include "runners/live/devices/availability.h"
 #include "runners/live/devices/haptic_device.h"
 #include "tests/doubles/device_double.h"
+#include "tests/doubles/installed_double.h"
 
 namespace remote_touch {
 
@@ -33,22 +34,7 @@ void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readabil
 
 extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
 
-// The library of the vendor is replaced by its double, newly reset, as long as this object lives. The double
-// uses a simulated clock, or the steady one.
-class DoubleInstalled {
- public:
-  explicit DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock = nullptr);
-  ~DoubleInstalled();
-  DoubleInstalled(const DoubleInstalled&) = delete;
-  DoubleInstalled& operator=(const DoubleInstalled&) = delete;
-
-  DeviceDouble* operator->() const { return device_; }
-  DeviceDouble& operator*() const { return *device_; }
-
- private:
-  const char* variable_;
-  DeviceDouble* device_;
-};
+using DoubleInstalled = InstalledDouble<DeviceDouble>;
 
 // A cycle whose ticks are calls.
 class CallCycle : public DeviceCycle {

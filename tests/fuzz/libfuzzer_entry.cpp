@@ -1,9 +1,10 @@
-// The entry points that libFuzzer calls. They run the one target that is linked.
+// The entry points that libFuzzer calls. They run the target after which the program is named: fuzz_TARGET.
 #include <pthread.h>
 #include <sanitizer/common_interface_defs.h>
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
@@ -16,6 +17,8 @@ using remote_touch::fuzz::targets;
 namespace {
 
 constexpr time_t kMaxTime_s = 1;
+
+void (*read_input)(std::string_view bytes) = nullptr;
 
 // A child process may crash, hang and run out of memory, and its parent has to answer then. A child's failure
 // is therefore no finding, and the child does not write one.
@@ -38,7 +41,14 @@ void limit_time(time_t seconds) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
+extern "C" int LLVMFuzzerInitialize(int*, char*** arguments) {
+  const std::string program = (*arguments)[0];
+  const auto is_own = [&](const auto& target) {
+    return program.ends_with(std::string("fuzz_") + target.name);
+  };
+  const auto found = std::find_if(targets().begin(), targets().end(), is_own);
+  if (found == targets().end()) std::abort();
+  read_input = found->read;
   std::signal(SIGPROF, on_too_long);
   static remote_touch::fuzz::LastingChild child;
   remote_touch::fuzz::run_in_child() = std::ref(child);
@@ -47,7 +57,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   limit_time(kMaxTime_s);
-  targets().front().read({reinterpret_cast<const char*>(data), size});
+  read_input({reinterpret_cast<const char*>(data), size});
   limit_time(0);
   return 0;
 }

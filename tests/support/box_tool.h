@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/dissertation/tool/shape/outer_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/point_cloud.h"
 
@@ -59,6 +60,13 @@ inline std::shared_ptr<const VoxelTool> box_tool(const Vec3& half_m, double voxe
   tool->inertia_m2 /= 12;
   tool->reach_m = half_m.norm();
   return tool;
+}
+
+// The same with the field that the continuous rule and the god-object need.
+inline std::shared_ptr<const VoxelTool> outer_box_tool(const Vec3& half_m) {
+  VoxelTool tool = *box_tool(half_m);
+  tool.distance_m = outer_field(tool.mesh, tool.grid, tool.distance_m);
+  return std::make_shared<const VoxelTool>(std::move(tool));
 }
 
 // Points so dense that one disk can replace many: 100 x 100 in the plane y = 0, 0.3 mm apart, with normals.

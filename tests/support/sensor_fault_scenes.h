@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,6 +15,8 @@
 #include "tests/support/scenes.h"
 
 namespace remote_touch {
+
+using scenes::same_points;
 
 inline const NoiseKey kKey{5, 2, 3};
 
@@ -37,13 +38,6 @@ inline std::unique_ptr<Scenario> camera() {
 inline FaultySensor faulty(const SensorFaults& faults, std::unique_ptr<Scenario> scenario = bare(),
                            const NoiseKey& key = kKey) {
   return FaultySensor(std::move(scenario), faults, key, scenes::kernels());
-}
-
-inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-inline bool same_points(const PointCloud& a, const PointCloud& b) {
-  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 
 inline std::size_t measured(const PointCloud& cloud) {

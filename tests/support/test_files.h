@@ -78,6 +78,9 @@ std::string pcd_header(const std::string& fields, const std::string& size, const
 // Header of an unorganised cloud of the float fields x, y, z.
 std::string xyz_header(const std::string& points, const std::string& data);
 
+// Returns a PCD file of pcd_header() with another line VIEWPOINT.
+std::string seen_from(std::string pcd, const std::string& viewpoint);
+
 // An LZF block of literal runs only, as a compressor writes data that does not repeat.
 std::string lzf_literals(const std::string& bytes);
 

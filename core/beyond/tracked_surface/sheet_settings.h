@@ -14,7 +14,6 @@ struct SheetSettings {
 };
 
 Parameters parameters(SheetSettings& s);
-// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const SheetSettings& s);
 
 }  // namespace remote_touch

@@ -10,16 +10,12 @@ namespace {
 // The velocity is measured, so it is not estimated, and the radii are fixed, because r_c is the tracker's
 // unit of length.
 Parameters of_a_sheet(Parameters list) {
-  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
-  return with_fixed_radii(std::move(list));
+  return with_fixed_radii(without(std::move(list), {"velocity_estimate"}));
 }
 }  // namespace
 
 Parameters parameters(TrackedSheetParameters& p) {
-  Parameters list = of_a_sheet(parameters(p.proxy));
-  const Parameters more = parameters(p.sheet);
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(of_a_sheet(parameters(p.proxy)), parameters(p.sheet));
 }
 
 std::string validate(const TrackedSheetParameters& p) {

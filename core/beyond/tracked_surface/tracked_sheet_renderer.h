@@ -24,11 +24,6 @@ struct TrackedSheetParameters {
 
 Parameters parameters(TrackedSheetParameters& p);
 std::string validate(const TrackedSheetParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover the damper, nor points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const TrackedSheetParameters& p) {
-  return max_stiffness_N_per_m(p.proxy);
-}
 
 class TrackedSheetRenderer final : public Renderer {
  public:

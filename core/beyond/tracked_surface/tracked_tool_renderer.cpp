@@ -7,25 +7,15 @@
 
 namespace remote_touch {
 
-namespace {
 // The velocity is measured, so it is not estimated.
-Parameters of_a_tracked_tool(Parameters list) {
-  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
-  return list;
-}
-}  // namespace
-
 Parameters parameters(TrackedToolParameters& p) {
-  Parameters list = of_a_tracked_tool(parameters(p.tool));
-  const Parameters more = parameters(p.sheet);
-  list.insert(list.end(), more.begin(), more.end());
-  list.push_back(
+  const Parameters own = {
       {"sheet_unit_m", &p.sheet_unit_m, 1e-3, 0.05,
-       "unit of length of the sheets, like the contact radius in tracked-sheet; a patch has a radius of 8 units"});
-  list.push_back(
+       "unit of length of the sheets, like the contact radius in tracked-sheet; a patch has a radius of 8 units"},
       {"max_patches", &p.max_patches, 1, 16,
-       "maximum number of sheet patches: one for each part of the tool, the others for further surfaces in contact"});
-  return list;
+       "maximum number of sheet patches: one for each part of the tool, the others for further surfaces in contact"},
+  };
+  return appended(appended(without(parameters(p.tool), {"velocity_estimate"}), parameters(p.sheet)), own);
 }
 
 std::string validate(const TrackedToolParameters& p) {
@@ -42,7 +32,7 @@ TrackedToolRenderer::TrackedToolRenderer(const TrackedToolParameters& p,
       patches_(p.sheet, p.sheet_unit_m, static_cast<std::size_t>(p.max_patches), *tool, kernels) {}
 
 Parameters TrackedToolRenderer::live_parameters() {
-  return live_ones(of_a_tracked_tool(tool_.live_parameters()));
+  return live_ones(without(tool_.live_parameters(), {"velocity_estimate"}));
 }
 
 void TrackedToolRenderer::prepare(Frame& frame) const {

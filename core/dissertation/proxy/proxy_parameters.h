@@ -48,8 +48,6 @@ struct ProxyParameters {
 };
 
 Parameters parameters(ProxyParameters& p);
-// Returns one line that describes the first invalid combination of settings; an empty string if there is
-// none.
 std::string validate(const ProxyParameters& p);
 // Returns the list with r1, r2 and r3 fixed during a run, for methods that derive lengths from these radii.
 Parameters with_fixed_radii(Parameters list);
@@ -57,6 +55,14 @@ Parameters with_fixed_radii(Parameters list);
 // of the HIP, N/m. It does not cover the damper, nor points that have a stiffness of their own.
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {
   return p.stiffness_N_per_m;
+}
+// The same for the settings of a method that has a proxy.
+template <class Settings>
+requires requires(const Settings& s) {
+  s.proxy.stiffness_N_per_m;
+}
+double max_stiffness_N_per_m(const Settings& s) {
+  return max_stiffness_N_per_m(s.proxy);
 }
 
 }  // namespace remote_touch

@@ -25,15 +25,9 @@ ContactState state_of(double gap_m) {
 }  // namespace
 
 Parameters region_parameters(ToolParameters& p) {
-  Parameters all = parameters(p);
-  std::erase_if(all, [](const Parameter& parameter) {
-    for (const char* other :
-         {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio", "merged_disk_m",
-          "frame_reach_m", "velocity_estimate", "max_prediction_s", "velocity_force"})
-      if (parameter.name == other) return true;
-    return false;
-  });
-  return all;
+  return without(parameters(p),
+                 {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio", "merged_disk_m",
+                  "frame_reach_m", "velocity_estimate", "max_prediction_s", "velocity_force"});
 }
 
 Parameters SphereTreeRenderer::live_parameters() {

@@ -1,6 +1,5 @@
 #include "core/dissertation/sphere_tree/tree_collision.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace remote_touch {
@@ -18,13 +17,6 @@ bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
   const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRoundingOfSums;
   const Vec3 beyond = (box.low - a.centre).cwiseMax(a.centre - box.high).cwiseMax(0);
   return reach_m >= 0 && beyond.squaredNorm() <= reach_m * reach_m;
-}
-
-bool by_number(const LeafPair& a, const LeafPair& b) {
-  return a.tool != b.tool ? a.tool < b.tool : a.region < b.region;
-}
-bool is_deeper(const LeafPair& a, const LeafPair& b) {
-  return a.gap_m != b.gap_m ? a.gap_m < b.gap_m : by_number(a, b);
 }
 
 }  // namespace
@@ -106,28 +98,6 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
       found.count = kernels_.regions.append_near_regions(regions_->run(patches_[i]), columns, margin_m,
                                                          found.regions, found.count);
   return found;
-}
-
-// When `pairs` is full, it becomes a heap with the shallowest of the kept pairs on top.
-std::size_t TreeCollision::near_pairs(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
-  std::size_t count = 0;
-  for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {
-    const Found found = regions_near(leaf, margin_m);
-    for (std::size_t i = 0; i < found.count; ++i, ++count) {
-      const LeafPair pair{leaf.number, found.regions.number[i], found.regions.gap[i]};
-      if (count < pairs.size()) {
-        pairs[count] = pair;
-        if (count + 1 == pairs.size()) std::make_heap(pairs.begin(), pairs.end(), is_deeper);
-      } else if (!pairs.empty() && is_deeper(pair, pairs.front())) {
-        std::pop_heap(pairs.begin(), pairs.end(), is_deeper);
-        pairs.back() = pair;
-        std::push_heap(pairs.begin(), pairs.end(), is_deeper);
-      }
-    }
-  }
-  std::sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size())),
-            by_number);
-  return count;
 }
 
 }  // namespace remote_touch

@@ -11,11 +11,6 @@
 
 namespace remote_touch {
 
-struct LeafPair {
-  std::uint32_t tool, region;  // numbers of the leaves
-  double gap_m;                // gap between their surfaces, negative where they overlap
-};
-
 // A leaf of the tool at a pose, world frame, and the patches of regions near the node that it belongs to.
 struct CloseLeaf {
   std::uint32_t number;
@@ -45,11 +40,6 @@ class TreeCollision {
     std::size_t count;
   };
   Found regions_near(const CloseLeaf& leaf, double margin_m);
-
-  // Writes all pairs with gaps of margin_m or less, sorted by the leaf of the tool, then by the region. If
-  // `pairs` is too short, the deepest pairs are written; pairs with smaller numbers come first among equally
-  // deep ones. Returns the number of all pairs.
-  std::size_t near_pairs(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
 
  private:
   void meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops);

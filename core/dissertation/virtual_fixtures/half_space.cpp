@@ -3,13 +3,13 @@
 namespace remote_touch {
 
 Parameters parameters(HalfSpace::Settings& s) {
-  Parameters list = parameters(s.values);
-  list.push_back({"point_m", &s.point_m, -100, 100, "a point of the plane, world frame"});
-  list.push_back({"normal", &s.normal, -1e6, 1e6, "direction into the half-space; any length"});
-  list.push_back(
+  const Parameters own = {
+      {"point_m", &s.point_m, -100, 100, "a point of the plane, world frame"},
+      {"normal", &s.normal, -1e6, 1e6, "direction into the half-space; any length"},
       {"transition_m", &s.transition_m, 0, 100,
-       "the weight of the rule rises linearly from 0 to 1 over this distance from the plane; 0: a step"});
-  return list;
+       "the weight of the rule rises linearly from 0 to 1 over this distance from the plane; 0: a step"},
+  };
+  return appended(parameters(s.values), own);
 }
 
 std::string validate(const HalfSpace::Settings& s) {

@@ -6,16 +6,14 @@
 namespace remote_touch {
 
 Parameters parameters(HueRange::Settings& s) {
-  Parameters list = parameters(s.values);
-  const Parameters more = {
+  const Parameters own = {
       {"from_deg", &s.from_deg, 0, 360, "first hue: 0 red, 120 green, 240 blue"},
       {"to_deg", &s.to_deg, 0, 360, "last hue; below from_deg the range goes through 0"},
       {"min_saturation", &s.min_saturation, 0, 1, "minimum saturation; grey points have no hue"},
       {"min_lightness", &s.min_lightness, 0, 1, "minimum lightness; the hue of dark points is noise"},
       {"max_lightness", &s.max_lightness, 0, 1, "maximum lightness"},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(s.values), own);
 }
 
 std::string validate(const HueRange::Settings& s) {

@@ -7,8 +7,7 @@
 namespace remote_touch {
 
 Parameters parameters(NearPoint::Settings& s) {
-  Parameters list = parameters(s.values);
-  const Parameters more = {
+  const Parameters own = {
       {"point_m", &s.point_m, -100, 100, "centre of the selection, world frame"},
       {"row", &s.row, -1, 4095, "image row of the centre of the selection; -1: use point_m"},
       {"column", &s.column, -1, 4095, "image column of the centre; -1: use point_m"},
@@ -17,8 +16,7 @@ Parameters parameters(NearPoint::Settings& s) {
       {"falloff_m", &s.falloff_m, 0, 100,
        "beyond inner_radius_m the weight falls linearly to 0 over this distance"},
   };
-  list.insert(list.end(), more.begin(), more.end());
-  return list;
+  return appended(parameters(s.values), own);
 }
 
 std::string validate(const NearPoint::Settings& s) {

@@ -31,4 +31,9 @@ auto filled(const Entry& entry, const FillSettings& fill) {
   return factory;
 }
 
+template <class Entry>
+void its_defaults_are_valid(const Entry& entry, const FillSettings& fill) {
+  check_settings(*filled(entry, fill));
+}
+
 }  // namespace remote_touch

@@ -30,10 +30,6 @@ PointCloud coloured_image() {
   return cloud;
 }
 
-void the_defaults_of_a_rule_are_valid(const FixtureEntry& entry, const FillSettings& fill) {
-  check_settings(*filled(entry, fill));
-}
-
 void weights_are_one_a_point_and_from_nothing_to_one(const FixtureEntry& entry, const FillSettings& fill) {
   const PointCloud cloud = coloured_image();
   const std::vector<double> weights = filled(entry, fill)->build()->weights(cloud);
@@ -105,7 +101,7 @@ void settings_survive_a_round_trip_through_an_experiment(const FixtureEntry& ent
 }
 
 constexpr ContractCheck<FixtureEntry> kFixtureChecks[] = {
-    {"ItsDefaultsAreValid", the_defaults_of_a_rule_are_valid},
+    {"ItsDefaultsAreValid", its_defaults_are_valid},
     {"WeightsAreOneAPointAndFromNothingToOne", weights_are_one_a_point_and_from_nothing_to_one},
     {"NothingIsPickedOfAFrameThatSawNothing", nothing_is_picked_of_a_frame_that_saw_nothing},
     {"WeightsArePure", weights_are_pure},

@@ -39,10 +39,6 @@ std::vector<RenderOutput> press(const RendererEntry& entry, Renderer& renderer) 
   return outputs;
 }
 
-void the_defaults_of_a_renderer_are_valid(const RendererEntry& entry, const FillSettings& fill) {
-  check_settings(*filled(entry, fill));
-}
-
 void no_force_in_free_space(const RendererEntry& entry, const FillSettings& fill) {
   const auto renderer = build(entry, fill);
   renderer->on_frame(scenes::frame(grid_for(entry, 40)));
@@ -290,7 +286,7 @@ void a_device_that_is_not_finite_gets_no_force_and_does_no_harm(const RendererEn
 }
 
 constexpr ContractCheck<RendererEntry> kRendererChecks[] = {
-    {"ItsDefaultsAreValid", the_defaults_of_a_renderer_are_valid},
+    {"ItsDefaultsAreValid", its_defaults_are_valid},
     {"NoForceInFreeSpace", no_force_in_free_space},
     {"HasAsManyDegreesOfFreedomAsItsEntrySays", has_as_many_degrees_of_freedom_as_its_entry_says},
     {"PushesTheHandOutOfTheSurface", pushes_the_hand_out_of_the_surface},

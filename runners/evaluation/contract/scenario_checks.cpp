@@ -21,10 +21,6 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
-void its_defaults_are_valid(const ScenarioEntry& entry, const FillSettings& fill) {
-  check_settings(*filled(entry, fill));
-}
-
 // A result holds the hashes of all files that it was made from.
 void files_that_settings_name_are_told(const ScenarioEntry& entry, const FillSettings& fill) {
   const auto factory = filled(entry, fill);

@@ -14,10 +14,6 @@ std::unique_ptr<Scenario> scene_for_hands() {
   return find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
 }
 
-void the_defaults_of_a_hand_are_valid(const TrajectoryEntry& entry, const FillSettings& fill) {
-  check_settings(*filled(entry, fill));
-}
-
 void poses_are_pure_and_finite(const TrajectoryEntry& entry, const FillSettings& fill) {
   const auto scene = scene_for_hands();
   const auto factory = filled(entry, fill);
@@ -43,7 +39,7 @@ void is_at_rest_after_the_end(const TrajectoryEntry& entry, const FillSettings& 
 }
 
 constexpr ContractCheck<TrajectoryEntry> kTrajectoryChecks[] = {
-    {"ItsDefaultsAreValid", the_defaults_of_a_hand_are_valid},
+    {"ItsDefaultsAreValid", its_defaults_are_valid},
     {"PosesArePureAndFinite", poses_are_pure_and_finite},
     {"IsAtRestAfterTheEnd", is_at_rest_after_the_end},
 };

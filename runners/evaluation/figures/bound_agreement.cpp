@@ -37,22 +37,19 @@ Criterion criterion_of(const LiftMap& lifts, double low, double high) {
 Table criterion_table(const LiftMap& lifts) {
   // The first range is noise-free, the others are half an r_c wide. No node of the map lies on an edge.
   constexpr double kEdges[] = {0, 0.01, 0.51, 1.01, 1.51, 2.01, 2.51, 3.01};
-  std::vector<double> from, holds_stays, holds_pops, fails_stays, fails_pops, agreement;
+  TableRows rows;
   for (std::size_t i = 0; i + 1 < std::size(kEdges); ++i) {
-    const Criterion count = criterion_of(lifts, kEdges[i], kEdges[i + 1]);
-    from.push_back(kEdges[i]);
-    holds_stays.push_back(count.holds_stays), holds_pops.push_back(count.holds_pops);
-    fails_stays.push_back(count.fails_stays), fails_pops.push_back(count.fails_pops);
-    agreement.push_back(count.agreement());
+    const Criterion c = criterion_of(lifts, kEdges[i], kEdges[i + 1]);
+    rows.push_back({kEdges[i], c.holds_stays, c.holds_pops, c.fails_stays, c.fails_pops, c.agreement()});
   }
-  Table table{"criterion", "(4.17) at each of the ten updates of every lift, and what happened"};
-  table.add("noise_from", "r_c", "lower edge of the range of noise", from);
-  table.add("holds_and_stays", "1", "(4.17) holds and the proxy stays above", holds_stays);
-  table.add("holds_but_pops", "1", "(4.17) holds but the proxy pops through", holds_pops);
-  table.add("fails_but_stays", "1", "(4.17) does not hold but the proxy stays above", fails_stays);
-  table.add("fails_and_pops", "1", "(4.17) does not hold and the proxy pops through", fails_pops);
-  table.add("agreement", "1", "share in which they agree", agreement);
-  return table;
+  return table_of("criterion", "(4.17) at each of the ten updates of every lift, and what happened",
+                  {{"noise_from", "r_c", "lower edge of the range of noise"},
+                   {"holds_and_stays", "1", "(4.17) holds and the proxy stays above"},
+                   {"holds_but_pops", "1", "(4.17) holds but the proxy pops through"},
+                   {"fails_but_stays", "1", "(4.17) does not hold but the proxy stays above"},
+                   {"fails_and_pops", "1", "(4.17) does not hold and the proxy pops through"},
+                   {"agreement", "1", "share in which they agree"}},
+                  rows);
 }
 
 std::vector<AccelerationBound> bounds(const MeasuredNoise& noise) {
@@ -101,25 +98,27 @@ Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table&
   constexpr double kFittedNoise = kFitted_m / kContactRadius_m + 0.01;
   Column names{"bound", "1", "which bound", {}, 1, {}};
   std::vector<std::int32_t> number;
-  std::vector<double> cells, low, high, safe, unsafe, fitted, fitted_safe;
+  TableRows rows;
   for (const AccelerationBound& bound : bounds) {
     number.push_back(static_cast<std::int32_t>(number.size()));
     names.value_names.push_back(bound.name);
     const Agreement all = agreement_of(bound, map), inside = agreement_of(bound, map, kFittedNoise);
-    const auto interval = wilson_interval(all.agree, all.cells);
-    cells.push_back(all.fraction()), low.push_back(interval.first), high.push_back(interval.second);
-    safe.push_back(all.safe_popped), unsafe.push_back(all.unsafe_survived);
-    fitted.push_back(inside.fraction()), fitted_safe.push_back(inside.safe_popped);
+    const auto [low, high] = wilson_interval(all.agree, all.cells);
+    rows.push_back({all.fraction(), low, high, all.safe_popped, all.unsafe_survived, inside.fraction(),
+                    inside.safe_popped});
   }
   names.values = number;
-  Table table{"agreement", "bounds against the outcome of 5396 lifts", {names}};
-  table.add("cells", "1", "share of cells in which bound and outcome agree", cells);
-  table.add("cells_low", "1", "lower end of its 95 % Wilson interval", low);
-  table.add("cells_high", "1", "upper end of its 95 % Wilson interval", high);
-  table.add("safe_popped", "1", "share of the bound's safe cells that popped through", safe);
-  table.add("unsafe_survived", "1", "share of the bound's unsafe cells that survived", unsafe);
-  table.add("fitted_cells", "1", "share that agrees up to 2 r_c of noise, where the fits are meant", fitted);
-  table.add("fitted_safe_popped", "1", "share of the safe cells there that popped through", fitted_safe);
+  Table table =
+      table_of("agreement", "bounds against the outcome of 5396 lifts",
+               {{"cells", "1", "share of cells in which bound and outcome agree"},
+                {"cells_low", "1", "lower end of its 95 % Wilson interval"},
+                {"cells_high", "1", "upper end of its 95 % Wilson interval"},
+                {"safe_popped", "1", "share of the bound's safe cells that popped through"},
+                {"unsafe_survived", "1", "share of the bound's unsafe cells that survived"},
+                {"fitted_cells", "1", "share that agrees up to 2 r_c of noise, where the fits are meant"},
+                {"fitted_safe_popped", "1", "share of the safe cells there that popped through"}},
+               rows);
+  table.columns.insert(table.columns.begin(), names);
   return table;
 }
 

@@ -7,7 +7,7 @@
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/geometry/point_cloud.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 
 namespace remote_touch {
@@ -82,11 +82,9 @@ std::vector<ScenePart> proxy_in_cloud(const std::string& name, double point_m) {
 
 // Returns the indices of the points of a cloud in a box around a position, up to reach_m along each axis.
 std::vector<std::size_t> points_near(const PointCloud& cloud, const Vec3& place_W, const Vec3& reach_m) {
-  std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.is_measured(i) && ((cloud.point(i) - place_W).cwiseAbs().array() <= reach_m.array()).all())
-      near.push_back(i);
-  return near;
+  return chosen_points(cloud, [&](std::size_t i) {
+    return cloud.is_measured(i) && ((cloud.point(i) - place_W).cwiseAbs().array() <= reach_m.array()).all();
+  });
 }
 
 constexpr double kInstant_4_10_s = 2.5;  // middle of the phase below the points
@@ -119,13 +117,13 @@ Figure figure_4_10(const FigureContext& context) {
   const double sinks_m =
       kContactRadius_m - std::sqrt(kContactRadius_m * kContactRadius_m - spacing_m * spacing_m / 2);
   const double spring_m = (proxy_W - hip_W).norm() - kContactRadius_m;
-  figure.claims = {
-      claim_between("4.10", "height of the proxy's centre over the points",
-                    "r_c = 0.005, or less between the points", proxy_W.y(),
-                    kContactRadius_m - sinks_m - kShell_4_10_m, kContactRadius_m + kShell_4_10_m, "m"),
-      claim_between("4.10", "force, against k_s (distance of HIP and proxy - r_c)", "(4.15), (4.16)",
-                    trace.force_N[tick].norm() / (kSpring_4_10_N_per_m * spring_m), 1 - 1e-9, 1 + 1e-9, "1"),
-  };
+  const Claims claims(figure);
+  claims.between("height of the proxy's centre over the points", proxy_W.y(),
+                 kContactRadius_m - sinks_m - kShell_4_10_m, kContactRadius_m + kShell_4_10_m, "m",
+                 "r_c = 0.005, or less between the points");
+  claims.between("force, against k_s (distance of HIP and proxy - r_c)",
+                 trace.force_N[tick].norm() / (kSpring_4_10_N_per_m * spring_m), 1 - 1e-9, 1 + 1e-9, "1",
+                 "(4.15), (4.16)");
   return figure;
 }
 
@@ -145,12 +143,11 @@ Figure figure_5_9(const FigureContext& context) {
   const Scene scene{proxy_W + Vec3(0.10, 0.06, 0.19), proxy_W - Vec3(0, 0.012, 0), Vec3::UnitY(), 0.12, 0.75,
                     proxy_in_cloud("held", 0.001)};
   figure.panels = {scene_panel("After 12 s", 0, 0, scene)};
-  figure.claims = {
-      set_up(claim_between("5.9", "time of the picture", "-", trace.time_s[tick], kInstant_5_9_s,
-                           kInstant_5_9_s, "s")),
-      claim_between("5.9", "distance of the proxy's centre to the nearest point - r_f", "r_1 to r_2",
-                    trace.nearest_distance_m[tick], kShell_5_9_m[0], kShell_5_9_m[1], "m"),
-  };
+  const Claims claims(figure);
+  Claims(figure, "", &Claim::set_up)
+      .between("time of the picture", trace.time_s[tick], kInstant_5_9_s, kInstant_5_9_s, "s");
+  claims.between("distance of the proxy's centre to the nearest point - r_f", trace.nearest_distance_m[tick],
+                 kShell_5_9_m[0], kShell_5_9_m[1], "m", "r_1 to r_2");
   return figure;
 }
 

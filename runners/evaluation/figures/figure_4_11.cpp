@@ -1,10 +1,10 @@
 // Fig 4.11: the HIP moves above, below and above a flat grid.
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/measures/contact_point.h"
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -19,35 +19,28 @@ std::size_t jump_tick(const Trace& trace) {
   return i;
 }
 
-Table heights(const Trace& trace) {
-  std::vector<double> time, hip, proxy;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    time.push_back(trace.time_s[i]);
-    hip.push_back(trace.hip_position_m[i].y()), proxy.push_back(trace.proxy_position_m[i].y());
-  }
-  Table table{"heights", "height of HIP and proxy"};
-  table.add("time", "s", "simulated time", time);
-  table.add("hip_y", "m", "height of the HIP", hip);
-  table.add("proxy_y", "m", "height of the proxy's centre", proxy);
-  return table;
+Table heights(const Trace& t) {
+  TableRows rows;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    rows.push_back({t.time_s[i], t.hip_position_m[i].y(), t.proxy_position_m[i].y()});
+  return table_of("heights", "height of HIP and proxy",
+                  {{"time", "s", "simulated time"},
+                   {"hip_y", "m", "height of the HIP"},
+                   {"proxy_y", "m", "height of the proxy's centre"}},
+                  rows);
 }
 
 // The contact point while the HIP presses, from the first tick after the jump.
 Table contact_heights(const Trace& trace) {
-  std::vector<double> time, height;
-  for (std::size_t i = jump_tick(trace) + 1; i < trace.length(); ++i) {
-    if (!pressing(trace, i, kContactRadius_m)) continue;
-    time.push_back(trace.time_s[i]);
-    height.push_back(contact_point(trace, i, kContactRadius_m).y());
-  }
-  Table table{"contact", "height of the contact point"};
-  table.add("time", "s", "simulated time", time);
-  table.add("contact_y", "m", "height of the contact point", height);
-  return table;
+  TableRows rows;
+  for (std::size_t i = jump_tick(trace) + 1; i < trace.length(); ++i)
+    if (pressing(trace, i, kContactRadius_m))
+      rows.push_back({trace.time_s[i], contact_point(trace, i, kContactRadius_m).y()});
+  return table_of("contact", "height of the contact point",
+                  {{"time", "s", "simulated time"}, {"contact_y", "m", "height of the contact point"}}, rows);
 }
 
-double peak_to_peak(const Table& table) {
-  const auto& values = std::get<std::vector<double>>(table.columns[1].values);
+double peak_to_peak(const std::vector<double>& values) {
   return max_of(values) - min_of(values);
 }
 
@@ -68,34 +61,24 @@ Figure figure_4_11(const FigureContext& context) {
   const std::size_t jump = jump_tick(trace);
 
   Figure figure{
-      "4.11",
-      "Flat point cloud",
+      "4.11", "Flat point cloud",
       "A flat 100 x 100 grid. The HIP moves at 2 r_c per second along the plane, for 1 s above it, 3 s "
-      "below and 1 s above. Bottom: the contact point sinks a little between the points.",
-      {heights(trace), contact_heights(trace)}};
-  figure.panels = {{"Height of HIP and proxy",
-                    "time (s)",
-                    "y (m)",
-                    false,
-                    {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
-                     {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}},
-                   {"Height of the contact point",
-                    "time (s)",
-                    "y (m)",
-                    false,
-                    {{"contact", "time", "contact_y", CurveStyle::line, ""}},
-                    {},
-                    {}}};
-  figure.claims = {
-      claim_between("4.11", "ripple of the contact point, peak to peak", "5e-5",
-                    peak_to_peak(figure.tables[1]), 4.0e-5, 5.7e-5, "m"),
-      claim_at_most("4.11", "distance of the proxy from contact at the end of the tick of the HIP's jump",
-                    "0", std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
-      claim_at_most("4.11", "the same after a single proxy step", "1 - 2 steps",
-                    std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
-      claim_between("4.11", "proxy steps from the HIP's jump until contact", "1 - 2",
-                    steps_to_contact(single), 1, 2, "steps"),
-  };
+      "below and 1 s above. Bottom: the contact point sinks a little between the points."};
+  figure.tables = {heights(trace), contact_heights(trace)};
+  figure.panels = {plot("Height of HIP and proxy", "time (s)", "y (m)",
+                        {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
+                         {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}),
+                   plot("Height of the contact point", "time (s)", "y (m)",
+                        {{"contact", "time", "contact_y", CurveStyle::line, ""}})};
+  const Claims claims(figure);
+  claims.between("ripple of the contact point, peak to peak",
+                 peak_to_peak(numbers(figure.tables[1], "contact_y")), 4.0e-5, 5.7e-5, "m", "5e-5");
+  claims.at_most("distance of the proxy from contact at the end of the tick of the HIP's jump",
+                 std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "0");
+  claims.at_most("the same after a single proxy step",
+                 std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "1 - 2 steps");
+  claims.between("proxy steps from the HIP's jump until contact", steps_to_contact(single), 1, 2, "steps",
+                 "1 - 2");
   return figure;
 }
 

@@ -1,7 +1,5 @@
 // Fig 4.12: a noisy cloud is lifted with acceleration.
-#include <numeric>
 
-#include "analysis/measures/measures.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -11,18 +9,18 @@ namespace {
 
 // Height of proxy and plane at the last tick of each frame.
 Table heights_per_update(const Trace& trace) {
-  std::vector<double> frame, proxy, plane;
+  TableRows rows;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (i + 1 < trace.length() && !trace.frame_update(i + 1)) continue;
-    frame.push_back(trace.frame_index[i]);
-    proxy.push_back(trace.proxy_position_m[i].y());
-    plane.push_back(trace.proxy_position_m[i].y() - trace.signed_distance_m[i]);
+    const double proxy_y = trace.proxy_position_m[i].y();
+    rows.push_back(
+        {static_cast<double>(trace.frame_index[i]), proxy_y, proxy_y - trace.signed_distance_m[i]});
   }
-  Table table{"updates", "height before each update of the cloud"};
-  table.add("frame", "1", "number of the frame", frame);
-  table.add("proxy_y", "m", "height of the proxy's centre", proxy);
-  table.add("plane_y", "m", "height of the true plane in the newest frame", plane);
-  return table;
+  return table_of("updates", "height before each update of the cloud",
+                  {{"frame", "1", "number of the frame"},
+                   {"proxy_y", "m", "height of the proxy's centre"},
+                   {"plane_y", "m", "height of the true plane in the newest frame"}},
+                  rows);
 }
 
 // Returns the share of lifts that did not pop through, over seeds 1 .. count.
@@ -30,11 +28,10 @@ double survival(const FigureContext& context, int count, const std::vector<std::
   std::vector<Experiment> lifts;
   for (int seed = 1; seed <= count; ++seed) {
     std::vector<std::string> settings = overrides;
-    settings.push_back("seed=" + std::to_string(seed));
+    settings.push_back(seed_setting(seed));
     lifts.push_back(Experiment::load("fig4.12", settings));
   }
-  const std::vector<double> popped = context.measure(lifts, popped_through);
-  return 1 - std::accumulate(popped.begin(), popped.end(), 0.0) / count;
+  return survived_share(context, lifts);
 }
 
 // Returns the share of lifts without noise that did not pop through, over 16 positions of the grid under the
@@ -51,8 +48,7 @@ double survival_over_phases(const FigureContext& context, double acceleration,
            std::string("scenario.phase_x=") + x, std::string("scenario.phase_z=") + z});
       lifts.push_back(Experiment::load("fig4.12", settings));
     }
-  const std::vector<double> popped = context.measure(lifts, popped_through);
-  return 1 - std::accumulate(popped.begin(), popped.end(), 0.0) / static_cast<double>(lifts.size());
+  return survived_share(context, lifts);
 }
 
 }  // namespace
@@ -61,20 +57,13 @@ Figure figure_4_12(const FigureContext& context) {
   constexpr int kSeeds = 300;
   const Trace trace = context.run(Experiment::load("fig4.12"));
   Figure figure{
-      "4.12",
-      "Lifted point cloud",
+      "4.12", "Lifted point cloud",
       "A 200 x 200 cloud with noise sigma = 0.6 r_c rises at 20 r_c/s and then accelerates with 600 "
-      "r_c/s^2 for ten updates. Height of the proxy and of the true plane just before each update.",
-      {heights_per_update(trace)}};
-  figure.panels = {{"Height before each update",
-                    "frame",
-                    "y (m)",
-                    false,
-                    {{"updates", "frame", "plane_y", CurveStyle::dashed, "true plane"},
-                     {"updates", "frame", "proxy_y", CurveStyle::dots, "proxy"}},
-                    {},
-                    {}}};
-  const std::string noisy = "lifts at a = 3 m/s^2, sigma = 0.003 m that did not pop through, 300 seeds";
+      "r_c/s^2 for ten updates. Height of the proxy and of the true plane just before each update."};
+  figure.tables = {heights_per_update(trace)};
+  figure.panels = {plot("Height before each update", "frame", "y (m)",
+                        {{"updates", "frame", "plane_y", CurveStyle::dashed, "true plane"},
+                         {"updates", "frame", "proxy_y", CurveStyle::dots, "proxy"}})};
   const std::vector<std::string> without = {"renderer.velocity_estimate=false"};
   const auto second = [](const std::string& what) {
     return second_number("chapter_4", "/lifts/noisy/" + what);
@@ -84,21 +73,21 @@ Figure figure_4_12(const FigureContext& context) {
   // The last update decides if there is no velocity estimate: it moves the plane by (v_0 + 10 a / f_c) / f_c.
   // The proxy pops through if that is more than r_1 less the depth by which it sinks in the middle of four
   // points, up to 0.113 mm. So the limit is from 0.139 to 0.149 m/s^2.
-  figure.claims = {
-      claim_agrees("4.12", noisy, "1 of 1", survival(context, kSeeds, {}), other, kSeeds),
-      claim_at_least("4.12", "lifts at sigma = 0, a = 4.3 m/s^2 that did not pop through, 16 grid phases",
-                     "a < 4.491 (4.14)", survival_over_phases(context, 4.3), 1, "fraction"),
-      claim_at_most("4.12", "the same at a = 4.6 m/s^2", "a < 4.491 (4.14)",
-                    survival_over_phases(context, 4.6), 0, "fraction"),
-      claim_at_least("4.12", "without the velocity estimate: the same at a = 0.138 m/s^2", "-",
-                     survival_over_phases(context, 0.138, without), 1, "fraction"),
-      claim_at_most("4.12", "without the velocity estimate: the same at a = 0.15 m/s^2", "-",
-                    survival_over_phases(context, 0.15, without), 0, "fraction"),
-      claim_differs(
-          "4.12", "lifts at a = 0, sigma = 2 r_c that popped through, 300 seeds", "never up to 2 r_c (4.4.2)",
-          1 - survival(context, kSeeds, {"scenario.acceleration_m_per_s2=0", "scenario.noise_sigma_m=0.01"}),
-          1.0 / kSeeds, 0.06, "fraction"),
-  };
+  const Claims claims(figure);
+  claim_agrees(claims, "lifts at a = 3 m/s^2, sigma = 0.003 m that did not pop through, 300 seeds",
+               survival(context, kSeeds, {}), other, kSeeds, "1 of 1");
+  claims.at_least("lifts at sigma = 0, a = 4.3 m/s^2 that did not pop through, 16 grid phases",
+                  survival_over_phases(context, 4.3), 1, "fraction", "a < 4.491 (4.14)");
+  claims.at_most("the same at a = 4.6 m/s^2", survival_over_phases(context, 4.6), 0, "fraction",
+                 "a < 4.491 (4.14)");
+  claims.at_least("without the velocity estimate: the same at a = 0.138 m/s^2",
+                  survival_over_phases(context, 0.138, without), 1, "fraction");
+  claims.at_most("without the velocity estimate: the same at a = 0.15 m/s^2",
+                 survival_over_phases(context, 0.15, without), 0, "fraction");
+  claims.differs(
+      "lifts at a = 0, sigma = 2 r_c that popped through, 300 seeds",
+      1 - survival(context, kSeeds, {"scenario.acceleration_m_per_s2=0", "scenario.noise_sigma_m=0.01"}),
+      1.0 / kSeeds, 0.06, "fraction", "never up to 2 r_c (4.4.2)");
   return figure;
 }
 

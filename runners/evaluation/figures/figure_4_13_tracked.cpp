@@ -1,16 +1,12 @@
 // Fig 4.13 again for the tracked sheet, and checks of what this must not cost. Not in the dissertation.
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
-#include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {
@@ -23,14 +19,6 @@ constexpr int kReportedSeeds[] = {101, 102, 103};
 
 const std::string kPaper = R"(renderer={"name": "proxy"})",
                   kTracked = R"(renderer={"name": "tracked-sheet"})";
-
-std::string seed(int number) {
-  return "seed=" + std::to_string(number);
-}
-
-std::string noise(double sigma) {
-  return "scenario.noise_sigma_m=" + std::to_string(sigma * kContactRadius_m);
-}
 
 // --- lifts ---
 
@@ -100,7 +88,7 @@ std::vector<Slide> slides(const FigureContext& context, const std::string& rende
   for (const double sigma : kSlideNoise)
     for (const int number : kReportedSeeds)
       runs.push_back(Experiment::load(
-          "fig4.11", {renderer, noise(sigma), seed(number),
+          "fig4.11", {renderer, noise_setting(sigma), seed_setting(number),
                       "trajectory.waypoints=[[0,0.01,0,0],[0,-0.005,0,0.05],[0.02,-0.005,0.01,0.02]]"}));
   const std::vector<Slide> each = context.measure(runs, slide_of);
   constexpr std::size_t kSeeds = std::size(kReportedSeeds);
@@ -114,19 +102,16 @@ std::vector<Slide> slides(const FigureContext& context, const std::string& rende
 }
 
 Table slide_table(const std::string& name, const std::vector<Slide>& slides) {
-  std::vector<double> sigma(std::begin(kSlideNoise), std::end(kSlideNoise)), height, sd, jump, lateral, most;
-  for (const Slide& s : slides) {
-    height.push_back(s.mean), sd.push_back(s.sd), jump.push_back(s.jump_N);
-    lateral.push_back(s.lateral), most.push_back(s.lateral_95);
-  }
   Table table{name, "a proxy that slides on a flat noisy cloud"};
-  table.add("noise", "r_c", "standard deviation of the noise", sigma);
-  table.add("height", "r_c", "mean height above where it rests without noise", height);
-  table.add("height_sd", "r_c", "standard deviation of that height", sd);
-  table.add("force_jump", "N", "rms change of the force at frame updates", jump);
-  table.add("lateral_force", "1", "mean ratio of the force along the surface to that along its normal",
-            lateral);
-  table.add("lateral_force_95", "1", "95th percentile of this ratio", most);
+  table.add("noise", "r_c", "standard deviation of the noise",
+            {std::begin(kSlideNoise), std::end(kSlideNoise)});
+  add_columns<Slide>(table, slides,
+                     {{"height", "r_c", "mean height above where it rests without noise", &Slide::mean},
+                      {"height_sd", "r_c", "standard deviation of that height", &Slide::sd},
+                      {"force_jump", "N", "rms change of the force at frame updates", &Slide::jump_N},
+                      {"lateral_force", "1",
+                       "mean ratio of the force along the surface to that along its normal", &Slide::lateral},
+                      {"lateral_force_95", "1", "95th percentile of this ratio", &Slide::lateral_95}});
   return table;
 }
 
@@ -150,11 +135,9 @@ const Slide& at_noise(const std::vector<Slide>& slides, double sigma) {
 
 // The force acts along the normal without noise; noise turns the normal that a renderer estimates. The ranges
 // state what was measured: 3.3 standard errors of a mean of three seeds, around the mean of seeds 1 to 40.
-std::vector<Claim> lateral_claims(const std::string& figure, const std::vector<Slide>& ours,
-                                  const std::vector<Slide>& paper) {
-  struct Range {
-    double low, high;
-  };
+void add_lateral_claims(const Claims& claims, const std::vector<Slide>& ours,
+                        const std::vector<Slide>& paper) {
+  using Range = std::pair<double, double>;
   const struct {
     const char* who;
     const std::vector<Slide>& slides;
@@ -164,16 +147,13 @@ std::vector<Claim> lateral_claims(const std::string& figure, const std::vector<S
                    {"proxy", paper, 1, {0.202, 0.298}, {0.367, 0.584}},
                    {"tracked sheet", ours, 0.2, {0.034, 0.049}, {0.058, 0.106}},
                    {"tracked sheet", ours, 1, {0.068, 0.097}, {0.113, 0.221}}};
-  std::vector<Claim> claims;
   for (const auto& [who, slides, noise, mean, most] : kMeasured) {
     const std::string run = std::string(", ") + who + ", noise " + (noise == 1 ? "r_c" : "0.2 r_c");
     const Slide& slide = at_noise(slides, noise);
-    claims.push_back(claim_between(figure, "mean ratio of lateral to normal force" + run, "-", slide.lateral,
-                                   mean.low, mean.high, "ratio"));
-    claims.push_back(claim_between(figure, "95th percentile of this ratio" + run, "-", slide.lateral_95,
-                                   most.low, most.high, "ratio"));
+    claims.between("mean ratio of lateral to normal force" + run, slide.lateral, mean.first, mean.second,
+                   "ratio");
+    claims.between("95th percentile of this ratio" + run, slide.lateral_95, most.first, most.second, "ratio");
   }
-  return claims;
 }
 
 // --- runs without noise, and runs with two sheets ---
@@ -194,49 +174,42 @@ double success_on_two_sheets(const FigureContext& context, double sigma) {
   constexpr int kRuns = 40;
   std::vector<Experiment> runs;
   for (int i = 0; i < kRuns; ++i)
-    runs.push_back(
-        Experiment::load("parallel-sheets", {kTracked, noise(sigma), seed(kReportedSeeds[0] + i)}));
-  const std::vector<double> popped = context.measure(runs, popped_through);
-  return 1 - mean(popped);
+    runs.push_back(Experiment::load("parallel-sheets",
+                                    {kTracked, noise_setting(sigma), seed_setting(kReportedSeeds[0] + i)}));
+  return survived_share(context, runs);
 }
 
-std::vector<Claim> claims(const FigureContext& context, const Lifts& lifts, const std::vector<Slide>& ours,
-                          const std::vector<Slide>& paper) {
-  const std::string f = "4.13-tracked", three = ", least of 3 seeds";
+void add_claims(Figure& figure, const FigureContext& context, const Lifts& lifts,
+                const std::vector<Slide>& ours, const std::vector<Slide>& paper) {
+  const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
+  const std::string three = ", least of 3 seeds";
   constexpr double kAll = 1e9;
-  return {
-      of_map(claim_at_least(f, "success over the whole map" + three, "-", lifts.survived, 0.995, "fraction")),
-      of_map(claim_at_least(f, "success of the worst of 25 regions" + three, "-", lifts.worst_region, 0.98,
-                            "fraction")),
-      of_map(claim_at_least(f, "success with noise up to 2 r_c" + three, "-", lifts.survived_to_2, 0.999,
-                            "fraction")),
-      of_map(claim_at_least(f, "lifts that end more than r_c / 2 above the surface" + three, "-",
-                            lifts.well_above, 0.98, "fraction")),
-      claim_at_most(f, "ticks of fig4.11, without noise, that differ from the proxy of chapter 4", "-",
-                    ticks_that_differ(context, "fig4.11"), 0, "ticks"),
-      claim_at_most(f, "ticks of fig4.14, without noise, that differ from the proxy of chapter 4", "-",
-                    ticks_that_differ(context, "fig4.14"), 0, "ticks"),
-      claim_at_most(f, "largest mean height over a flat cloud, noise to 3 r_c", "-", max_height(ours), 0.1,
-                    "r_c"),
-      claim_at_most(f, "height's standard deviation to the proxy's, noise from 0.6 r_c", "1",
-                    max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio"),
-      claim_at_most(f, "force jump at updates to the proxy's, noise to 0.2 r_c", "1",
-                    max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio"),
-      claim_at_most(f, "force jump at updates to the proxy's, noise from 0.6 r_c", "1",
-                    max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio"),
-      claim_at_least(f, "the upper of two sheets 3 r_c apart is held, noise 0.3 r_c, 40 seeds", "-",
-                     success_on_two_sheets(context, 0.3), 0.95, "fraction"),
-      claim_at_least(f, "the same, noise 0.4 r_c", "-", success_on_two_sheets(context, 0.4), 0.9, "fraction"),
-  };
+  map_claims.at_least("success over the whole map" + three, lifts.survived, 0.995, "fraction");
+  map_claims.at_least("success of the worst of 25 regions" + three, lifts.worst_region, 0.98, "fraction");
+  map_claims.at_least("success with noise up to 2 r_c" + three, lifts.survived_to_2, 0.999, "fraction");
+  map_claims.at_least("lifts that end more than r_c / 2 above the surface" + three, lifts.well_above, 0.98,
+                      "fraction");
+  claims.at_most("ticks of fig4.11, without noise, that differ from the proxy of chapter 4",
+                 ticks_that_differ(context, "fig4.11"), 0, "ticks");
+  claims.at_most("ticks of fig4.14, without noise, that differ from the proxy of chapter 4",
+                 ticks_that_differ(context, "fig4.14"), 0, "ticks");
+  claims.at_most("largest mean height over a flat cloud, noise to 3 r_c", max_height(ours), 0.1, "r_c");
+  claims.at_most("height's standard deviation to the proxy's, noise from 0.6 r_c",
+                 max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio", "1");
+  claims.at_most("force jump at updates to the proxy's, noise to 0.2 r_c",
+                 max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio", "1");
+  claims.at_most("force jump at updates to the proxy's, noise from 0.6 r_c",
+                 max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio", "1");
+  claims.at_least("the upper of two sheets 3 r_c apart is held, noise 0.3 r_c, 40 seeds",
+                  success_on_two_sheets(context, 0.3), 0.95, "fraction");
+  claims.at_least("the same, noise 0.4 r_c", success_on_two_sheets(context, 0.4), 0.9, "fraction");
+  add_lateral_claims(claims, ours, paper);
 }
 
 Panel slide_panel(const char* title, const char* y_label, const char* column) {
-  return {title,
-          "noise (r_c)",
-          y_label,
-          false,
-          {{"slide_paper", "noise", column, CurveStyle::dashed, "proxy of chapter 4"},
-           {"slide_tracked", "noise", column, CurveStyle::line, "tracked sheet"}}};
+  return plot(title, "noise (r_c)", y_label,
+              {{"slide_paper", "noise", column, CurveStyle::dashed, "proxy of chapter 4"},
+               {"slide_tracked", "noise", column, CurveStyle::line, "tracked sheet"}});
 }
 
 }  // namespace
@@ -245,39 +218,35 @@ Figure figure_4_13_tracked(const FigureContext& context) {
   Lifts lifts;
   Table map;
   for (const int number : kReportedSeeds) {
-    const SweepResult result = context.sweep(context.map("fig4.13-tracked", {seed(number)}));
+    const SweepResult result = context.sweep(context.map("fig4.13-tracked", {seed_setting(number)}));
     const Table of_seed = map_table("map", result);
     add_seed(lifts, result, of_seed);
     if (number == kReportedSeeds[0]) map = of_seed;
   }
   const Table paper_map =
-      map_table("map_paper", context.sweep(context.map("fig4.13", {seed(kReportedSeeds[0])})));
+      map_table("map_paper", context.sweep(context.map("fig4.13", {seed_setting(kReportedSeeds[0])})));
   const std::vector<Slide> ours = slides(context, kTracked), paper = slides(context, kPaper);
   Figure figure{
-      "4.13-tracked",
-      "Pop-through map of the tracked sheet",
+      "4.13-tracked", "Pop-through map of the tracked sheet",
       "The lifts of Fig 4.13 under the proxy of chapter 4 and under the tracked sheet, the same noise. A "
       "filled square is a lift that did not pop through. Parameters were fixed with seeds 1 to 40; shown is "
       "seed 101, the claims state the smallest value of the seeds 101, 102 and 103. Below: what noise does to "
-      "a proxy that slides on a flat cloud.",
-      {map, survivors("survived", map), region_table("regions", map), paper_map,
-       survivors("survived_paper", paper_map), bound_table(), slide_table("slide_tracked", ours),
-       slide_table("slide_paper", paper)}};
-  const Curve bound{"bound", "noise", "printed", CurveStyle::line, "bound (4.25) as printed"};
-  const char* const words = "did not pop through";
-  figure.panels = {
-      map_panel("Proxy of chapter 4",
-                {{"survived_paper", "noise", "acceleration", CurveStyle::squares, words}, bound}),
-      map_panel("Tracked sheet", {{"survived", "noise", "acceleration", CurveStyle::squares, words}, bound}),
-      slide_panel("Height above the flat cloud", "mean height (r_c)", "height"),
-      slide_panel("Force jump at frame updates", "rms (N)", "force_jump"),
-      slide_panel("Force along the surface", "mean ratio to the normal force", "lateral_force")};
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const std::size_t row = i / 2, column = i % 2;
-    figure.panels[i].grid_position = {static_cast<double>(row), static_cast<double>(column)};
-  }
-  figure.claims = claims(context, lifts, ours, paper);
-  for (Claim& claim : lateral_claims(figure.name, ours, paper)) figure.claims.push_back(std::move(claim));
+      "a proxy that slides on a flat cloud."};
+  figure.tables = {map,
+                   survivors("survived", map),
+                   region_table("regions", map),
+                   paper_map,
+                   survivors("survived_paper", paper_map),
+                   bound_table(),
+                   slide_table("slide_tracked", ours),
+                   slide_table("slide_paper", paper)};
+  figure.panels = {survivor_panel("Proxy of chapter 4", "survived_paper"),
+                   survivor_panel("Tracked sheet", "survived"),
+                   slide_panel("Height above the flat cloud", "mean height (r_c)", "height"),
+                   slide_panel("Force jump at frame updates", "rms (N)", "force_jump"),
+                   slide_panel("Force along the surface", "mean ratio to the normal force", "lateral_force")};
+  place_in_rows(figure, 2);
+  add_claims(figure, context, lifts, ours, paper);
   return figure;
 }
 

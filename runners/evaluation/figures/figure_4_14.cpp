@@ -7,6 +7,7 @@
 #include "analysis/theory/ball_closing.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -32,25 +33,23 @@ struct Oracle {
 };
 
 struct Contact {
-  std::vector<double> x, y, error, shell;
+  double x, y, error, shell;
 };
 
-Contact contacts(const Trace& trace, const Oracle& oracle, double from, double to) {
-  Contact contact;
+std::vector<Contact> contacts(const Trace& trace, const Oracle& oracle, double from, double to) {
+  std::vector<Contact> contacts;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const Vec3 p = contact_point(trace, i, kContactRadius_m);
     if (!pressing(trace, i, kContactRadius_m) || p.x() < from || p.x() > to) continue;
-    contact.x.push_back(p.x()), contact.y.push_back(p.y());
-    contact.error.push_back(p.y() - oracle.at(p.x()));
-    contact.shell.push_back(trace.nearest_distance_m[i] - kContactRadius_m);
+    contacts.push_back(
+        {p.x(), p.y(), p.y() - oracle.at(p.x()), trace.nearest_distance_m[i] - kContactRadius_m});
   }
-  return contact;
+  return contacts;
 }
 
 double max_magnitude(const std::vector<double>& values) {
-  double max = values.empty() ? std::nan("") : 0;
-  for (const double v : values) max = max_or_nan(max, std::abs(v));
-  return max;
+  return max_where(
+      values.size(), [](std::size_t) { return true; }, [&](std::size_t i) { return std::abs(values[i]); });
 }
 
 double rms(const std::vector<double>& values) {
@@ -59,33 +58,31 @@ double rms(const std::vector<double>& values) {
   return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-Table contact_table(const Contact& contact) {
-  Table table{"contact", "contact point"};
-  table.add("x", "m", "position of the contact point", contact.x);
-  table.add("y", "m", "height of the contact point", contact.y);
-  table.add("error", "m", "height over the exact closing with a ball of r_c", contact.error);
-  table.add("shell", "m", "distance of the nearest point less r_c", contact.shell);
-  return table;
+Table contact_table(const std::vector<Contact>& contacts) {
+  return table_over<Contact>(
+      "contact", "contact point", contacts,
+      {{"x", "m", "position of the contact point", &Contact::x},
+       {"y", "m", "height of the contact point", &Contact::y},
+       {"error", "m", "height over the exact closing with a ball of r_c", &Contact::error},
+       {"shell", "m", "distance of the nearest point less r_c", &Contact::shell}});
 }
 
 Table profile_table(const Oracle& oracle) {
-  Table table{"profile", "exact profile and its closing"};
-  std::vector<double> x, height, closing;
-  for (std::size_t i = 0; i < oracle.heights.size(); i += 20) {
-    x.push_back(oracle.low + static_cast<double>(i) * kSampling_m);
-    height.push_back(oracle.heights[i]), closing.push_back(oracle.closing[i]);
-  }
-  table.add("x", "m", "position", x);
-  table.add("surface_y", "m", "true height", height);
-  table.add("closing_y", "m", "height that a ball of r_c can reach", closing);
-  return table;
+  TableRows rows;
+  for (std::size_t i = 0; i < oracle.heights.size(); i += 20)
+    rows.push_back({oracle.low + static_cast<double>(i) * kSampling_m, oracle.heights[i], oracle.closing[i]});
+  return table_of("profile", "exact profile and its closing",
+                  {{"x", "m", "position"},
+                   {"surface_y", "m", "true height"},
+                   {"closing_y", "m", "height that a ball of r_c can reach"}},
+                  rows);
 }
 
 Table surface_table(const PointCloud& cloud) {
   Table table{"surface", "the points"};
-  table.add("x", "m", "x of the point", std::vector<double>(cloud.x.begin(), cloud.x.end()));
-  table.add("y", "m", "height, y", std::vector<double>(cloud.y.begin(), cloud.y.end()));
-  table.add("z", "m", "z of the point", std::vector<double>(cloud.z.begin(), cloud.z.end()));
+  table.add("x", "m", "x of the point", {cloud.x.begin(), cloud.x.end()});
+  table.add("y", "m", "height, y", {cloud.y.begin(), cloud.y.end()});
+  table.add("z", "m", "z of the point", {cloud.z.begin(), cloud.z.end()});
   return table;
 }
 
@@ -93,20 +90,18 @@ Table surface_table(const PointCloud& cloud) {
 // valley_x, the last full valley.
 std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace, double valley_x) {
   const PointCloud cloud = scenario.cloud(0);
-  std::vector<double> x, y;
+  TableRows points;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (std::abs(cloud.z[i] - trace.hip_position_m[0].z()) < 1e-6)
-      x.push_back(cloud.x[i]), y.push_back(cloud.y[i]);
+    if (std::abs(cloud.z[i] - trace.hip_position_m[0].z()) < 1e-6) points.push_back({cloud.x[i], cloud.y[i]});
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (std::abs(trace.proxy_position_m[i].x() - valley_x) <
         std::abs(trace.proxy_position_m[nearest].x() - valley_x))
       nearest = i;
-  Table points{"points", "one row of the grid"}, ball{"ball", "the proxy in a valley"};
-  points.add("x", "m", "position", x), points.add("y", "m", "height", y);
-  ball.add("x", "m", "position", {trace.proxy_position_m[nearest].x()}),
-      ball.add("y", "m", "height", {trace.proxy_position_m[nearest].y()});
-  return {points, ball};
+  const Vec3& ball = trace.proxy_position_m[nearest];
+  const std::vector<ColumnName> columns = {{"x", "m", "position"}, {"y", "m", "height"}};
+  return {table_of("points", "one row of the grid", columns, points),
+          table_of("ball", "the proxy in a valley", columns, {{ball.x(), ball.y()}})};
 }
 
 }  // namespace
@@ -117,42 +112,31 @@ Figure figure_4_14(const FigureContext& context) {
   const Trace trace = context.run(experiment);
   constexpr double kFrom = -0.2, kTo = 0.2;  // the ends of the grid have no neighbours on one side
   const Oracle oracle(*scenario, -0.22, 0.22);
-  const Contact contact = contacts(trace, oracle, kFrom, kTo);
+  const std::vector<Contact> contact = contacts(trace, oracle, kFrom, kTo);
 
-  Figure figure{"4.14",
-                "Sharp corners",
+  Figure figure{"4.14", "Sharp corners",
                 "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
                 "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
                 "with the points and a circle of radius r_c. Convex corners are rendered sharp; in a valley "
-                "the proxy rests on both flanks.",
-                {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))}};
+                "the proxy rests on both flanks."};
+  figure.tables = {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))};
   for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
   const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
   const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
-  figure.panels = {{"The point cloud, x, y and z equally scaled",
-                    "x (m)",
-                    "z (m)",
-                    false,
-                    {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}},
-                   {"The whole wave",
-                    "x (m)",
-                    "y (m)",
-                    false,
-                    {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}},
-                   {"A part of it",
-                    "x (m)",
-                    "y (m)",
-                    true,
-                    {points, line, {"ball", "x", "y", CurveStyle::circle, "r_c", kContactRadius_m}},
-                    std::pair(0.095, 0.175),
-                    std::pair(-0.02, 0.02)}};
-  figure.claims = {
-      claim_at_most("4.14", "contact point against the exact closing with a ball of r_c, rms", "very well",
-                    rms(contact.error), 1e-4, "m"),
-      claim_at_most("4.14", "the same, largest", "-", max_magnitude(contact.error), 5e-4, "m"),
-      claim_at_most("4.14", "distance of the nearest point to the proxy less r_c, largest magnitude", "1e-5",
-                    max_magnitude(contact.shell), 2e-5, "m"),
-  };
+  figure.panels = {plot("The point cloud, x, y and z equally scaled", "x (m)", "z (m)",
+                        {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}),
+                   plot("The whole wave", "x (m)", "y (m)",
+                        {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}),
+                   plot("A part of it", "x (m)", "y (m)",
+                        {points, line, {"ball", "x", "y", CurveStyle::circle, "r_c", kContactRadius_m}},
+                        {.x_range = {{0.095, 0.175}}, .y_range = {{-0.02, 0.02}}, .equal_aspect = true})};
+  const Claims claims(figure);
+  const std::vector<double>& error = numbers(figure.tables[0], "error");
+  claims.at_most("contact point against the exact closing with a ball of r_c, rms", rms(error), 1e-4, "m",
+                 "very well");
+  claims.at_most("the same, largest", max_magnitude(error), 5e-4, "m");
+  claims.at_most("distance of the nearest point to the proxy less r_c, largest magnitude",
+                 max_magnitude(numbers(figure.tables[0], "shell")), 2e-5, "m", "1e-5");
   return figure;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "scenarios/camera/camera_scene.h"
 
@@ -24,12 +25,10 @@ std::uint32_t colour_of_height(double height_m) {
 }
 
 std::vector<std::size_t> points_of_4_15(const PointCloud& cloud) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  return chosen_points(cloud, [&](std::size_t i) {
     const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
-    if (std::abs(p.x()) < kAcross_4_15_m && p.z() > kFrom_4_15_m && p.z() < kTo_4_15_m) chosen.push_back(i);
-  }
-  return chosen;
+    return std::abs(p.x()) < kAcross_4_15_m && p.z() > kFrom_4_15_m && p.z() < kTo_4_15_m;
+  });
 }
 
 // Returns the rms distance of the points to the true surface, in units of the standard deviation of their
@@ -68,11 +67,10 @@ Figure figure_4_15(const FigureContext& context) {
   const ScenePart points{ScenePart::Kind::points, "scene_cloud", 0x808080, 0.002};
   figure.panels = {scene_panel("The point cloud", 0, 0,
                                {{0.55, 0.45, 0.62}, {0, -0.02, -0.03}, Vec3::UnitY(), 0.74, 0.62, {points}})};
-  figure.claims = {
-      claim_at_most("4.15",
-                    "rms distance of the points to the true surface, in standard deviations of the "
-                    "sensor's error along the ray",
-                    "-", error_in_sigmas(*scenario, cloud), 1.01, "1")};
+  Claims(figure).at_most(
+      "rms distance of the points to the true surface, in standard deviations of the "
+      "sensor's error along the ray",
+      error_in_sigmas(*scenario, cloud), 1.01, "1");
   return figure;
 }
 

@@ -1,49 +1,45 @@
 // Fig 4.16: the proxy over a ramp and a box seen by a depth camera, simulated and recorded.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/measures/contact_point.h"
 #include "analysis/measures/measures.h"
 #include "core/kernels/isa.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
 namespace {
 
 // Positions along one axis and heights along another, of HIP and proxy, and the force.
-Table path_table(const std::string& name, const Trace& trace, int along, int up) {
-  std::vector<double> proxy_along, proxy_up, hip_along, hip_up, force;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    proxy_along.push_back(trace.proxy_position_m[i][along]),
-        proxy_up.push_back(trace.proxy_position_m[i][up]);
-    hip_along.push_back(trace.hip_position_m[i][along]), hip_up.push_back(trace.hip_position_m[i][up]);
-    force.push_back(trace.force_N[i].norm());
-  }
-  Table table{name, "paths of HIP and proxy, and the force"};
-  table.add("time", "s", "simulated time", trace.time_s);
-  table.add("proxy_along", "m", "proxy along the scan", proxy_along);
-  table.add("proxy_up", "m", "proxy across the scan", proxy_up);
-  table.add("hip_along", "m", "HIP along the scan", hip_along);
-  table.add("hip_up", "m", "HIP across the scan", hip_up);
-  table.add("force", "N", "magnitude of the force", force);
-  table.add("signed_distance", "m", "distance of the proxy's centre to the true surface",
-            trace.signed_distance_m);
-  return table;
+Table path_table(const std::string& name, const Trace& t, int along, int up) {
+  TableRows rows;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    rows.push_back({t.time_s[i], t.proxy_position_m[i][along], t.proxy_position_m[i][up],
+                    t.hip_position_m[i][along], t.hip_position_m[i][up], t.force_N[i].norm(),
+                    t.signed_distance_m[i]});
+  return table_of(name, "paths of HIP and proxy, and the force",
+                  {{"time", "s", "simulated time"},
+                   {"proxy_along", "m", "proxy along the scan"},
+                   {"proxy_up", "m", "proxy across the scan"},
+                   {"hip_along", "m", "HIP along the scan"},
+                   {"hip_up", "m", "HIP across the scan"},
+                   {"force", "N", "magnitude of the force"},
+                   {"signed_distance", "m", "distance of the proxy's centre to the true surface"}},
+                  rows);
 }
 
 // The first frame's points within a slice around the scan.
 template <class InSlice>
 Table slice_table(const std::string& name, const PointCloud& cloud, int along, int up, InSlice&& in_slice) {
-  std::vector<double> x, y;
+  TableRows rows;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p = cloud.point(i);
-    if (p.allFinite() && in_slice(p)) x.push_back(p[along]), y.push_back(p[up]);
+    if (p.allFinite() && in_slice(p)) rows.push_back({p[along], p[up]});
   }
-  Table table{name, "points of the first frame near the scan"};
-  table.add("along", "m", "along the scan", x), table.add("up", "m", "across the scan", y);
-  return table;
+  return table_of(name, "points of the first frame near the scan",
+                  {{"along", "m", "along the scan"}, {"up", "m", "across the scan"}}, rows);
 }
 
 // Returns the share of the ticks in which the HIP is held back and the true side is known, among all ticks in
@@ -60,15 +56,10 @@ double known_fraction(const Trace& trace) {
 
 void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
   const std::string prefix = where.empty() ? "" : where + ": ";
-  const auto none = [&](const std::string& what, double fraction) {
-    figure.claims.push_back(claim_at_most(figure.name, prefix + what, "none", fraction, 0, "fraction"));
-  };
-  none("ticks with the proxy on the wrong side of the surface", wrong_side_fraction(trace));
-  none("ticks with a number that is not finite", non_finite_fraction(trace));
-  none("ticks in which the HIP was held back without force", no_force_fraction(trace, kContactRadius_m));
-  figure.claims.push_back(
-      set_up(claim_at_least(figure.name, prefix + "touching ticks in which the true side is known", "-",
-                            known_fraction(trace), 0.7, "fraction")));
+  add_side_claim(figure, prefix, trace);
+  add_sound_claims(figure, prefix, trace);
+  Claims(figure, prefix, &Claim::set_up)
+      .at_least("touching ticks in which the true side is known", known_fraction(trace), 0.7, "fraction");
 }
 
 // Returns the limits of an axis around a path, so that points far away do not shrink the path in the picture.
@@ -83,15 +74,13 @@ std::pair<double, double> around(const Trace& trace, int axis) {
 
 void add_panels(Figure& figure, const std::string& title, const std::string& table, const std::string& slice,
                 const std::string& along, const std::string& up) {
-  figure.panels.push_back({title,
-                           along,
-                           up,
-                           true,
-                           {{slice, "along", "up", CurveStyle::dots, "points, first frame"},
-                            {table, "hip_along", "hip_up", CurveStyle::dashed, "HIP"},
-                            {table, "proxy_along", "proxy_up", CurveStyle::line, "proxy"}}});
+  figure.panels.push_back(plot(title, along, up,
+                               {{slice, "along", "up", CurveStyle::dots, "points, first frame"},
+                                {table, "hip_along", "hip_up", CurveStyle::dashed, "HIP"},
+                                {table, "proxy_along", "proxy_up", CurveStyle::line, "proxy"}},
+                               {.equal_aspect = true}));
   figure.panels.push_back(
-      {"Force", along, "force (N)", false, {{table, "hip_along", "force", CurveStyle::line, ""}}});
+      plot("Force", along, "force (N)", {{table, "hip_along", "force", CurveStyle::line, ""}}));
 }
 
 }  // namespace
@@ -101,21 +90,19 @@ Figure figure_4_16(const FigureContext& context) {
   const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
   Figure figure{
-      "4.16",
-      "Ramp and box, simulated depth camera",
+      "4.16", "Ramp and box, simulated depth camera",
       "A simulated depth camera (quantised, noisy, with holes at depth edges) looks at a ramp and a box "
       "on a table; the HIP moves along z, 1 cm below the true surface, and lifts off over the two steps. "
-      "Top: paths of HIP and proxy. Bottom: force.",
-      {path_table("path", trace, 2, 1),
-       slice_table("slice", cloud, 2, 1, [](const Vec3& p) { return std::abs(p.x()) < 0.0015; })}};
+      "Top: paths of HIP and proxy. Bottom: force."};
+  figure.tables = {path_table("path", trace, 2, 1),
+                   slice_table("slice", cloud, 2, 1, [](const Vec3& p) { return std::abs(p.x()) < 0.0015; })};
   add_panels(figure, "Paths over the table", "path", "slice", "z (m)", "y (m)");
   figure.panels[0].x_range = figure.panels[1].x_range = around(trace, 2);
   add_claims(figure, "", trace);
   // The same run with a budget of two steps a tick: the share of the ticks in which two steps are enough.
   const Trace two = context.run(Experiment::load("fig4.16", {"renderer.steps_per_tick=2"}));
-  figure.claims.push_back(claim_differs("4.16", "ticks that converge (4.8) in two proxy steps",
-                                        "typically in 1 - 2 (4.3.4)", 1 - unconverged_fraction(two), 0.3, 0.5,
-                                        "fraction"));
+  Claims(figure).differs("ticks that converge (4.8) in two proxy steps", 1 - unconverged_fraction(two), 0.3,
+                         0.5, "fraction", "typically in 1 - 2 (4.3.4)");
   return figure;
 }
 
@@ -133,13 +120,9 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
   figure.tables.push_back(slice_table(
       table + "_slice", cloud, 0, 2, [&](const Vec3& p) { return std::abs(p.y() - slope * p.z()) < 0.001; }));
   add_panels(figure, title, table, table + "_slice", "x (m)", "z (m)");
-  figure.panels.push_back({"Proxy to measured surface",
-                           "x (m)",
-                           "distance (m)",
-                           false,
-                           {{table, "hip_along", "signed_distance", CurveStyle::line, ""}},
-                           {},
-                           std::pair(-0.002, 0.03)});
+  figure.panels.push_back(plot("Proxy to measured surface", "x (m)", "distance (m)",
+                               {{table, "hip_along", "signed_distance", CurveStyle::line, ""}},
+                               {.y_range = {{-0.002, 0.03}}}));
   const std::size_t first = figure.panels.size() - 3;
   for (std::size_t i = first; i < figure.panels.size(); ++i) figure.panels[i].x_range = around(trace, 0);
   figure.panels[first].y_range = around(trace, 2);
@@ -150,26 +133,22 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
 // Places the panels from `first` on below each other in a column.
 void place_in_column(Figure& figure, std::size_t first, int column) {
   for (std::size_t i = first; i < figure.panels.size(); ++i)
-    figure.panels[i].grid_position = std::pair(static_cast<double>(i - first), static_cast<double>(column));
+    figure.panels[i].grid_position = {i - first, column};
 }
 
 // The HIP presses at one pixel while the camera moves.
 void add_moving(Figure& figure, const FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig4.16-moving"));
   figure.tables.push_back(path_table("moving", trace, 0, 2));
-  figure.panels.push_back({"organ model, moving camera",
-                           "time (s)",
-                           "z (m)",
-                           false,
-                           {{"moving", "time", "hip_up", CurveStyle::dashed, "HIP"},
-                            {"moving", "time", "proxy_up", CurveStyle::line, "proxy"}}});
-  figure.panels.push_back(
-      {"Force", "time (s)", "force (N)", false, {{"moving", "time", "force", CurveStyle::line, ""}}});
-  figure.panels.push_back({"Proxy to measured surface",
-                           "time (s)",
-                           "distance (m)",
-                           false,
-                           {{"moving", "time", "signed_distance", CurveStyle::line, ""}}});
+  const auto add = [&](const char* title, const char* y_label, const std::vector<Curve>& curves) {
+    figure.panels.push_back(plot(title, "time (s)", y_label, curves));
+  };
+  add("organ model, moving camera", "z (m)",
+      {{"moving", "time", "hip_up", CurveStyle::dashed, "HIP"},
+       {"moving", "time", "proxy_up", CurveStyle::line, "proxy"}});
+  add("Force", "force (N)", {{"moving", "time", "force", CurveStyle::line, ""}});
+  add("Proxy to measured surface", "distance (m)",
+      {{"moving", "time", "signed_distance", CurveStyle::line, ""}});
   add_claims(figure, "organ model, moving camera", trace);
 }
 

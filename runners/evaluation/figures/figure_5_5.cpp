@@ -4,6 +4,7 @@
 
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -14,18 +15,17 @@ constexpr double kStiffness_N_per_m = 600;
 constexpr double kShell_5_5_m = 1e-5;  // r_2 - r_c: a proxy in contact may rest anywhere in this shell
 
 // The point is the origin, so distances to it are lengths.
-Table distances(const Trace& trace) {
-  std::vector<double> proxy, hip, force;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    proxy.push_back(trace.proxy_position_m[i].norm()), hip.push_back(trace.hip_position_m[i].norm());
-    force.push_back(trace.force_N[i].norm());
-  }
-  Table table{"distances", "distances to the point, and the force"};
-  table.add("time", "s", "simulated time", trace.time_s);
-  table.add("proxy", "m", "distance of the proxy's centre to the point", proxy);
-  table.add("hip", "m", "distance of the HIP to the point", hip);
-  table.add("force", "N", "magnitude of the force", force);
-  return table;
+Table distances(const Trace& t) {
+  TableRows rows;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    rows.push_back(
+        {t.time_s[i], t.proxy_position_m[i].norm(), t.hip_position_m[i].norm(), t.force_N[i].norm()});
+  return table_of("distances", "distances to the point, and the force",
+                  {{"time", "s", "simulated time"},
+                   {"proxy", "m", "distance of the proxy's centre to the point"},
+                   {"hip", "m", "distance of the HIP to the point"},
+                   {"force", "N", "magnitude of the force"}},
+                  rows);
 }
 
 double entrenched_ticks(const Trace& trace) {
@@ -55,32 +55,28 @@ double max_force_error(const Trace& trace) {
 
 Figure figure_5_5(const FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig5.5"));
-  Figure figure{"5.5",
-                "Single point virtual fixture",
+  Figure figure{"5.5", "Single point virtual fixture",
                 "One point at the origin with r_f = 0.1 m. The HIP passes through its region, leaves it and "
                 "crosses its rim. The proxy's centre stays r_f + r_c away; the force is k_s times the depth "
-                "of the HIP in the region.",
-                {distances(trace)}};
+                "of the HIP in the region."};
+  figure.tables = {distances(trace)};
   figure.panels = {
-      {"Distance to the point",
-       "time (s)",
-       "distance (m)",
-       false,
-       {{"distances", "time", "hip", CurveStyle::dashed, "HIP"},
-        {"distances", "time", "proxy", CurveStyle::line, "proxy"}}},
-      {"Force", "time (s)", "force (N)", false, {{"distances", "time", "force", CurveStyle::line, ""}}}};
-  figure.claims = {
-      claim_between("5.5", "smallest distance of the proxy's centre to the point", ">= 0.105",
-                    min_of(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
-      claim_at_most("5.5", "ticks that end with the proxy entrenched", "-", entrenched_ticks(trace), 0,
-                    "ticks"),
-      claim_at_most("5.5", "distance of the proxy from the HIP while that is outside", "0",
-                    max_gap_outside(trace), kShell_5_5_m, "m"),
-      claim_at_most("5.5", "force against k_s times the HIP's depth in the region", "-",
-                    max_force_error(trace), kStiffness_N_per_m * kShell_5_5_m, "N"),
-      set_up(claim_at_most("5.5", "smallest distance of the HIP to the point: it does go inside", "-",
-                           min_of(numbers(figure.tables[0], "hip")), kBoundary_m, "m")),
-  };
+      plot("Distance to the point", "time (s)", "distance (m)",
+           {{"distances", "time", "hip", CurveStyle::dashed, "HIP"},
+            {"distances", "time", "proxy", CurveStyle::line, "proxy"}}),
+      plot("Force", "time (s)", "force (N)", {{"distances", "time", "force", CurveStyle::line, ""}})};
+  const Claims claims(figure);
+  claims.between("smallest distance of the proxy's centre to the point",
+                 min_of(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m",
+                 ">= 0.105");
+  claims.at_most("ticks that end with the proxy entrenched", entrenched_ticks(trace), 0, "ticks");
+  claims.at_most("distance of the proxy from the HIP while that is outside", max_gap_outside(trace),
+                 kShell_5_5_m, "m", "0");
+  claims.at_most("force against k_s times the HIP's depth in the region", max_force_error(trace),
+                 kStiffness_N_per_m * kShell_5_5_m, "N");
+  Claims(figure, "", &Claim::set_up)
+      .at_most("smallest distance of the HIP to the point: it does go inside",
+               min_of(numbers(figure.tables[0], "hip")), kBoundary_m, "m");
   return figure;
 }
 

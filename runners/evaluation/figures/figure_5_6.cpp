@@ -1,11 +1,13 @@
 // Fig 5.6: the proxy climbs onto a fixture of larger radius; and a stiffness that varies across a plane.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/measures/contact_point.h"
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
+#include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/settings/second_implementation.h"
 
 namespace remote_touch {
@@ -50,7 +52,7 @@ template <class Condition>
 double first_x(const Crossing& c, Condition&& holds) {
   for (std::size_t i = 0; i < c.hip_x.size(); ++i)
     if (holds(i)) return c.hip_x[i];
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNoValue;
 }
 
 std::size_t row_of_max_force(const Crossing& c) {
@@ -59,42 +61,32 @@ std::size_t row_of_max_force(const Crossing& c) {
 
 // Returns the mean force over the rows with the HIP between from_x and to_x; NaN if there are none.
 double mean_force(const Crossing& c, double from_x, double to_x) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < c.hip_x.size(); ++i)
-    if (c.hip_x[i] >= from_x && c.hip_x[i] <= to_x) sum += c.force[i], ++count;
-  return sum / count;
+  return mean(values_where(
+      c.hip_x.size(), [&](std::size_t i) { return c.hip_x[i] >= from_x && c.hip_x[i] <= to_x; },
+      [&](std::size_t i) { return c.force[i]; }));
 }
 
 // Returns two tables: the points of the cloud near the step, and the first point with r_f = 0.01 m.
 std::vector<Table> point_tables() {
-  std::vector<double> x, y;
-  for (int i = -20; i < 20; ++i) x.push_back(0.0015 * (i + 0.5)), y.push_back(0);
-  Table points{"points", "points of the cloud near the step"};
-  points.add("x", "m", "along the plane", x), points.add("y", "m", "height", y);
-  Table first{"first_region", "the first point with a region"};
-  first.add("x", "m", "along the plane", {0.00075}), first.add("y", "m", "height", {0});
-  return {points, first};
+  TableRows points;
+  for (int i = -20; i < 20; ++i) points.push_back({0.0015 * (i + 0.5), 0});
+  const std::vector<ColumnName> columns = {{"x", "m", "along the plane"}, {"y", "m", "height"}};
+  return {table_of("points", "points of the cloud near the step", columns, points),
+          table_of("first_region", "the first point with a region", columns, {{0.00075, 0}})};
 }
 
 Panel path_panel(const std::string& title, const std::string& table) {
-  Panel panel{title,
-              "x (m)",
-              "y (m)",
-              true,
+  return plot(title, "x (m)", "y (m)",
               {{"points", "x", "y", CurveStyle::dots, "points"},
                {"first_region", "x", "y", CurveStyle::circle, "first region", kRegionRadius_m},
                {table, "hip_x", "hip_y", CurveStyle::dashed, "HIP"},
-               {table, "contact_x", "contact_y", CurveStyle::line, "contact point"}}};
-  panel.x_range = std::pair(-0.03, 0.03);
-  return panel;
+               {table, "contact_x", "contact_y", CurveStyle::line, "contact point"}},
+              {.x_range = {{-0.03, 0.03}}, .equal_aspect = true});
 }
 
 Panel force_panel(const std::string& table) {
-  Panel panel{
-      "Force", "x of the HIP (m)", "force (N)", false, {{table, "hip_x", "force", CurveStyle::line, ""}}};
-  panel.x_range = std::pair(-0.03, 0.03);
-  return panel;
+  return plot("Force", "x of the HIP (m)", "force (N)", {{table, "hip_x", "force", CurveStyle::line, ""}},
+              {.x_range = {{-0.03, 0.03}}});
 }
 
 // The stiffness that the experiment fixture-stiffness gives to a point.
@@ -104,13 +96,14 @@ double assigned_N_per_m(double x) {
 }
 
 Table stiffness_table(const Crossing& c) {
-  Table table{"stiffness", "stiffness that is felt, and that of the points under the contact point"};
-  std::vector<double> assigned;
-  for (const double x : c.contact_x) assigned.push_back(assigned_N_per_m(x));
-  table.add("contact_x", "m", "contact point along the plane", c.contact_x);
-  table.add("felt", "N/m", "force over the stretch of the virtual coupling", c.stiffness);
-  table.add("assigned", "N/m", "stiffness of a point under the contact point", assigned);
-  return table;
+  TableRows rows;
+  for (std::size_t i = 0; i < c.contact_x.size(); ++i)
+    rows.push_back({c.contact_x[i], c.stiffness[i], assigned_N_per_m(c.contact_x[i])});
+  return table_of("stiffness", "stiffness that is felt, and that of the points under the contact point",
+                  {{"contact_x", "m", "contact point along the plane"},
+                   {"felt", "N/m", "force over the stretch of the virtual coupling"},
+                   {"assigned", "N/m", "stiffness of a point under the contact point"}},
+                  rows);
 }
 
 // Returns the largest relative error of the felt stiffness, over contact points that are farther from the
@@ -130,11 +123,11 @@ double max_stiffness_error(const Crossing& c) {
 constexpr double kForceAgrees_N = 1e-4, kPlaceAgrees_m = 1.1e-5;
 
 // Claims that a value agrees with the second implementation.
-Claim claim_second(const std::string& claim, double measured, const std::string& name) {
+void claim_second(const Claims& claims, const std::string& claim, double measured, const std::string& name) {
   const double expected = second_number("chapter_5", "/crossing/" + name);
   const bool is_force = name.ends_with("_N");
   const double slack = is_force ? kForceAgrees_N : kPlaceAgrees_m;
-  return claim_between("5.6", claim, "-", measured, expected - slack, expected + slack, is_force ? "N" : "m");
+  claims.between(claim, measured, expected - slack, expected + slack, is_force ? "N" : "m");
 }
 
 }  // namespace
@@ -159,48 +152,36 @@ Figure figure_5_6(const FigureContext& context) {
                    force_panel("at_zero"),
                    path_panel("HIP at y = -5 mm", "below"),
                    force_panel("below"),
-                   {"Stiffness",
-                    "x of the contact point (m)",
-                    "stiffness (N/m)",
-                    false,
-                    {{"stiffness", "contact_x", "assigned", CurveStyle::dashed, "assigned to points"},
-                     {"stiffness", "contact_x", "felt", CurveStyle::line, "felt"}},
-                    {},
-                    std::pair(100.0, 1300.0)},
-                   {"Force",
-                    "x of the HIP (m)",
-                    "force (N)",
-                    false,
-                    {{"stiffness_run", "hip_x", "force", CurveStyle::line, ""}}}};
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const std::size_t row = i % 2, column = i / 2;
-    figure.panels[i].grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
-  }
+                   plot("Stiffness", "x of the contact point (m)", "stiffness (N/m)",
+                        {{"stiffness", "contact_x", "assigned", CurveStyle::dashed, "assigned to points"},
+                         {"stiffness", "contact_x", "felt", CurveStyle::line, "felt"}},
+                        {.y_range = {{100, 1300}}}),
+                   plot("Force", "x of the HIP (m)", "force (N)",
+                        {{"stiffness_run", "hip_x", "force", CurveStyle::line, ""}})};
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].grid_position = {i % 2, i / 2};
 
   const std::size_t peak = row_of_max_force(at_zero), peak_below = row_of_max_force(below);
   const auto on_fixture = [&](std::size_t i) {
     return at_zero.proxy_y[i] >= 0.99 * (kRegionRadius_m + kContactRadius_m);
   };
-  figure.claims = {
-      claim_second("y = 0: x of the HIP where force begins",
-                   first_x(at_zero, [&](std::size_t i) { return at_zero.force[i] > kMin_N; }),
-                   "force_begins_m"),
-      claim_second("y = 0: largest force", at_zero.force[peak], "max_force_N"),
-      claim_second("y = 0: x of the HIP at the largest force", at_zero.hip_x[peak], "max_force_at_m"),
-      claim_second("y = 0: x of the HIP where the proxy is on the fixture, within 1 % of r_f + r_c",
-                   first_x(at_zero, on_fixture), "on_fixture_at_m"),
-      claim_second("y = 0: force on the fixture, k_s r_f", mean_force(at_zero, 0.02, 0.03),
-                   "force_on_fixture_N"),
-      claim_second("y = -5 mm: force before the fixture", mean_force(below, -0.035, -0.025),
-                   "below_force_before_N"),
-      claim_second("y = -5 mm: largest force", below.force[peak_below], "below_max_force_N"),
-      claim_second("y = -5 mm: x of the HIP where the proxy pops up", below.hip_x[peak_below],
-                   "below_pops_up_at_m"),
-      claim_second("y = -5 mm: force on the fixture", mean_force(below, 0.02, 0.03),
-                   "below_force_on_fixture_N"),
-      claim_at_most("5.6", "felt stiffness against that of the points, away from kinks and steps", "-",
-                    max_stiffness_error(stiffness), 0.01, "fraction"),
-  };
+  const Claims claims(figure);
+  claim_second(claims, "y = 0: x of the HIP where force begins",
+               first_x(at_zero, [&](std::size_t i) { return at_zero.force[i] > kMin_N; }), "force_begins_m");
+  claim_second(claims, "y = 0: largest force", at_zero.force[peak], "max_force_N");
+  claim_second(claims, "y = 0: x of the HIP at the largest force", at_zero.hip_x[peak], "max_force_at_m");
+  claim_second(claims, "y = 0: x of the HIP where the proxy is on the fixture, within 1 % of r_f + r_c",
+               first_x(at_zero, on_fixture), "on_fixture_at_m");
+  claim_second(claims, "y = 0: force on the fixture, k_s r_f", mean_force(at_zero, 0.02, 0.03),
+               "force_on_fixture_N");
+  claim_second(claims, "y = -5 mm: force before the fixture", mean_force(below, -0.035, -0.025),
+               "below_force_before_N");
+  claim_second(claims, "y = -5 mm: largest force", below.force[peak_below], "below_max_force_N");
+  claim_second(claims, "y = -5 mm: x of the HIP where the proxy pops up", below.hip_x[peak_below],
+               "below_pops_up_at_m");
+  claim_second(claims, "y = -5 mm: force on the fixture", mean_force(below, 0.02, 0.03),
+               "below_force_on_fixture_N");
+  claims.at_most("felt stiffness against that of the points, away from kinks and steps",
+                 max_stiffness_error(stiffness), 0.01, "fraction");
   return figure;
 }
 

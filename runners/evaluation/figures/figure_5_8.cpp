@@ -1,12 +1,11 @@
 // Fig 5.8: a beating organ is touched, and then kept at a distance by a fixture that grows.
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/polynomial_fit.h"
 #include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -124,7 +123,7 @@ Summary summary(const FixtureRun& run) {
 
 Table path_table(const std::string& name, const std::string& title, const FixtureRun& run) {
   const Trace& trace = run.trace;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
     rows.push_back({trace.time_s[i], trace.hip_position_m[i].y(), trace.proxy_position_m[i].y(),
                     surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
@@ -147,83 +146,75 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
 }
 
 Table deviation_table(const Summary& a, const Summary& b) {
-  QuantityTable rows({"noise_free", "with_noise"});
-  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
-    rows.add(what, unit, {of(a), of(b)});
-  };
   const std::string beyond = " of distance - r_f - r_c, ";
-  add("rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
-      [](const Summary& s) { return s.seen.rms_m; });
-  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.seen.max_m; });
-  add("rms" + beyond + "surface as it moves, ticks in which a frame came in", "m",
-      [](const Summary& s) { return s.at_update.rms_m; });
-  add("rms" + beyond + "surface as it moves, all ticks", "m",
-      [](const Summary& s) { return s.moving.rms_m; });
-  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.moving.max_m; });
-  add("smallest distance of the proxy - r_f", "m", [](const Summary& s) { return s.min_beyond_fixture_m; });
-  add("smallest distance of the slave's command - r_f", "m",
-      [](const Summary& s) { return s.min_slave_beyond_fixture_m; });
-  add("mean distance, r_f = 0", "m", [](const Summary& s) { return s.touching_m; });
-  add("slope of the distance while r_f grows", "m/s", [](const Summary& s) { return s.growth_m_per_s; });
-  add("mean distance, r_f = 0.02 m", "m", [](const Summary& s) { return s.held_m; });
-  add("largest speed of the surface over the proxy", "m/s",
-      [](const Summary& s) { return s.max_speed_m_per_s; });
-  return rows.table("deviations", "how far the proxy is from where r_f and r_c put it, from 1 s on");
+  using S = const Summary&;
+  return quantity_table<Summary>(
+      "deviations", "how far the proxy is from where r_f and r_c put it, from 1 s on",
+      {"noise_free", "with_noise"}, {a, b},
+      {{"rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
+        [](S s) { return s.seen.rms_m; }},
+       {"largest" + beyond + "the same", "m", [](S s) { return s.seen.max_m; }},
+       {"rms" + beyond + "surface as it moves, ticks in which a frame came in", "m",
+        [](S s) { return s.at_update.rms_m; }},
+       {"rms" + beyond + "surface as it moves, all ticks", "m", [](S s) { return s.moving.rms_m; }},
+       {"largest" + beyond + "the same", "m", [](S s) { return s.moving.max_m; }},
+       {"smallest distance of the proxy - r_f", "m", &Summary::min_beyond_fixture_m},
+       {"smallest distance of the slave's command - r_f", "m", &Summary::min_slave_beyond_fixture_m},
+       {"mean distance, r_f = 0", "m", &Summary::touching_m},
+       {"slope of the distance while r_f grows", "m/s", &Summary::growth_m_per_s},
+       {"mean distance, r_f = 0.02 m", "m", &Summary::held_m},
+       {"largest speed of the surface over the proxy", "m/s", &Summary::max_speed_m_per_s}});
+}
+
+// Returns a panel over time of curves of both runs, noise first.
+Panel of_both_runs(const char* title, const char* y_label, const char* column) {
+  return plot(title, "time (s)", y_label,
+              {{"with_noise", "time", column, CurveStyle::line, "with the sensor's noise"},
+               {"noise_free", "time", column, CurveStyle::line, "noise-free camera"}},
+              {.x_range = {{0, 15}}});
 }
 
 std::vector<Panel> panels() {
-  const auto axis = [](const char* title, const char* y_label) {
-    return Panel{title, "time (s)", y_label, false, {}, std::pair(0.0, 15.0)};
-  };
-  Panel hip_distance = axis("Distance between HIP and proxy, as in the dissertation", "|HIP - proxy| (m)");
-  hip_distance.curves = {{"with_noise", "time", "hip_distance", CurveStyle::line, "with the sensor's noise"},
-                         {"noise_free", "time", "hip_distance", CurveStyle::line, "noise-free camera"}};
-  Panel height = axis("Height", "y (m)"), distance = axis("Distance to the true surface", "distance (m)");
-  Panel deviation = axis("Distance - r_f - r_c: moving true surface", "deviation (m)");
-  Panel force = axis("Force", "force (N)");
-  height.curves = {{"noise_free", "time", "hip_y", CurveStyle::dashed, "HIP"},
-                   {"noise_free", "time", "surface_y", CurveStyle::line, "true surface under the proxy"},
-                   {"noise_free", "time", "proxy_y", CurveStyle::line, "proxy"}};
-  height.y_range = std::pair(0.045, 0.095);
-  distance.curves = {{"with_noise", "time", "distance", CurveStyle::line, "with the sensor's noise"},
-                     {"noise_free", "time", "distance", CurveStyle::line, "noise-free camera"},
-                     {"noise_free", "time", "boundary", CurveStyle::dashed, "r_f + r_c"}};
-  distance.y_range = std::pair(0.0, 0.03);
-  deviation.curves = {{"with_noise", "time", "deviation", CurveStyle::line, "with the sensor's noise"},
-                      {"noise_free", "time", "deviation", CurveStyle::line, "noise-free camera"},
-                      {"noise_free", "time", "deviation_in_frame", CurveStyle::line,
-                       "noise-free, surface of the newest frame"}};
-  deviation.y_range = std::pair(-0.003, 0.004);
-  force.curves = {{"with_noise", "time", "force", CurveStyle::line, "with the sensor's noise"},
-                  {"noise_free", "time", "force", CurveStyle::line, "noise-free camera"}};
-  return {hip_distance, height, distance, deviation, force};
+  Panel distance = of_both_runs("Distance to the true surface", "distance (m)", "distance");
+  Panel deviation = of_both_runs("Distance - r_f - r_c: moving true surface", "deviation (m)", "deviation");
+  distance.curves.push_back({"noise_free", "time", "boundary", CurveStyle::dashed, "r_f + r_c"});
+  distance.y_range = {0, 0.03};
+  deviation.curves.push_back({"noise_free", "time", "deviation_in_frame", CurveStyle::line,
+                              "noise-free, surface of the newest frame"});
+  deviation.y_range = {-0.003, 0.004};
+  return {of_both_runs("Distance between HIP and proxy, as in the dissertation", "|HIP - proxy| (m)",
+                       "hip_distance"),
+          plot("Height", "time (s)", "y (m)",
+               {{"noise_free", "time", "hip_y", CurveStyle::dashed, "HIP"},
+                {"noise_free", "time", "surface_y", CurveStyle::line, "true surface under the proxy"},
+                {"noise_free", "time", "proxy_y", CurveStyle::line, "proxy"}},
+               {.x_range = {{0, 15}}, .y_range = {{0.045, 0.095}}}),
+          distance, deviation, of_both_runs("Force", "force (N)", "force")};
 }
 
 void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, double frame_s) {
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string& name = figure.name;
+  const Claims claims(figure);
   constexpr double kMean_m = kSinks_m + kPartOfBeat_m;
-  claim(claim_at_most(name, "rms of distance - r_f - r_c, surface as the newest frame shows it, no noise",
-                      "0", clean.seen.rms_m, kSinks_m, "m"));
-  claim(claim_at_most(name, "the same, surface as it moves, in the ticks in which a frame came in", "0",
-                      clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m"));
-  claim(claim_at_most(
-      name,
+  claims.at_most("rms of distance - r_f - r_c, surface as the newest frame shows it, no noise",
+                 clean.seen.rms_m, kSinks_m, "m", "0");
+  claims.at_most("the same, surface as it moves, in the ticks in which a frame came in",
+                 clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m", "0");
+  claims.at_most(
       "largest distance - r_f - r_c, surface as it moves on between frames, against its largest "
       "speed times the frame interval",
-      "-", clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m"));
-  claim(claim_at_least(name, "smallest distance to the moving surface - r_f, all ticks, no noise", ">= 0",
-                       clean.min_beyond_fixture_m, 0, "m"));
-  claim(claim_between(name, "mean distance while r_f = 0", "r_c = 0.005", clean.touching_m, 0.005 - kMean_m,
-                      0.005 + kMean_m, "m"));
-  claim(claim_between(name, "slope of the distance while r_f grows", "0.004", clean.growth_m_per_s,
-                      0.98 * kGrowth_m_per_s, 1.02 * kGrowth_m_per_s, "m/s"));
-  claim(claim_between(name, "mean distance while r_f = 0.02 m", "0.025", clean.held_m, 0.025 - kMean_m,
-                      0.025 + kMean_m, "m"));
-  claim(claim_at_least(name, "noise-free: smallest distance of the slave's command - r_f", ">= 0",
-                       clean.min_slave_beyond_fixture_m, 0, "m"));
-  claim(claim_at_least(name, "with noise: smallest distance of the slave's command - r_f", ">= 0",
-                       noisy.min_slave_beyond_fixture_m, 0, "m"));
+      clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m");
+  claims.at_least("smallest distance to the moving surface - r_f, all ticks, no noise",
+                  clean.min_beyond_fixture_m, 0, "m", ">= 0");
+  claims.between("mean distance while r_f = 0", clean.touching_m, 0.005 - kMean_m, 0.005 + kMean_m, "m",
+                 "r_c = 0.005");
+  claims.between("slope of the distance while r_f grows", clean.growth_m_per_s, 0.98 * kGrowth_m_per_s,
+                 1.02 * kGrowth_m_per_s, "m/s", "0.004");
+  claims.between("mean distance while r_f = 0.02 m", clean.held_m, 0.025 - kMean_m, 0.025 + kMean_m, "m",
+                 "0.025");
+  claims.at_least("noise-free: smallest distance of the slave's command - r_f",
+                  clean.min_slave_beyond_fixture_m, 0, "m", ">= 0");
+  claims.at_least("with noise: smallest distance of the slave's command - r_f",
+                  noisy.min_slave_beyond_fixture_m, 0, "m", ">= 0");
 }
 
 }  // namespace
@@ -235,22 +226,22 @@ Figure figure_5_8(const FigureContext& context) {
   const std::vector<FixtureRun> runs = run_fixtures(context, experiments);
   const Summary clean = summary(runs[0]), noisy = summary(runs[1]);
   Figure figure{
-      "5.8",
-      "A fixture that grows on a beating organ, simulated depth camera",
+      "5.8", "A fixture that grows on a beating organ, simulated depth camera",
       "Simulated: a depth camera (30 Hz) looks down on three ellipsoids that beat 75 times a minute, in "
       "place of the recorded pig's heart, and the HIP rests just inside. r_f is 0 for 5 s, grows to 0.02 "
       "m in 5 s and then stays constant. Distances are from the proxy's centre to the true surface: as it "
       "is in that tick, or as it was when the frame in use was captured. The renderer knows only the "
       "second; since then the organ has moved for up to one frame interval. r_f is that of the frame in "
-      "use. Curves show every fifth tick; measures use all ticks, from 1 s on.",
-      {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
-       path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
-       deviation_table(clean, noisy)},
-      panels()};
+      "use. Curves show every fifth tick; measures use all ticks, from 1 s on."};
+  figure.tables = {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
+                   path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
+                   deviation_table(clean, noisy)};
+  figure.panels = panels();
   add_claims(figure, clean, noisy, 1 / runs[0].scenario->frame_rate_hz());
-  for (const auto& [where, run] : {std::pair("noise-free", &runs[0]), std::pair("with noise", &runs[1])}) {
-    add_side_claim(figure, where, *run);
-    add_sound_claims(figure, where, *run);
+  for (const auto& [where, run] :
+       {std::pair("noise-free: ", &runs[0]), std::pair("with noise: ", &runs[1])}) {
+    add_side_claim(figure, where, run->trace);
+    add_sound_claims(figure, where, run->trace);
   }
   return figure;
 }

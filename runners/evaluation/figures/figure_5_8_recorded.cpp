@@ -1,14 +1,13 @@
 // Fig 5.8 on recorded depth images: the camera at rest, and moved by hand.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
-#include <utility>
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
+#include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/recorded_fixture.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -18,7 +17,6 @@ constexpr double kContactShell_m = 1e-5;  // r_2 - r_c: a proxy in contact may r
 const char* const kTrackedSheet =
     R"(renderer={"name": "tracked-sheet", "exit_rule": "out_of_contact", "xi": 0.3333333333333333, "theta_deg": 1})";
 constexpr double kRecordedGrown_s = 10, kRecordedSteady_s = 0.1;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct RecordedRun {
   std::string table, title;
@@ -28,7 +26,7 @@ struct RecordedRun {
 };
 
 Table frame_table(const RecordedRun& r) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const FrameOutcome& frame : r.frames) {
     const std::size_t i = frame.tick;
     const Trace& trace = r.run.trace;
@@ -82,11 +80,11 @@ double min_beyond_fixture_m(const RecordedRun& r) {
 }
 
 double mean_deviation_m(const RecordedRun& r) {
-  double sum = 0, count = 0;
+  std::vector<double> deviations_m;
   for (const FrameOutcome& frame : r.frames)
     if (r.run.trace.time_s[frame.tick] >= kRecordedGrown_s + kRecordedSteady_s)
-      sum += frame.nearest_distance_m - r.run.boundary_m(frame.tick), ++count;
-  return sum / count;
+      deviations_m.push_back(frame.nearest_distance_m - r.run.boundary_m(frame.tick));
+  return mean(deviations_m);
 }
 
 double min_motion_m(const RecordedRun& r) {
@@ -105,90 +103,80 @@ double max_motion_m(const RecordedRun& r, double FrameOutcome::*of) {
 Table violation_table(const std::vector<RecordedRun>& runs) {
   std::vector<std::string> names;
   for (const RecordedRun& r : runs) names.push_back(r.table);
-  QuantityTable rows(names);
-  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
-    std::vector<double> values;
-    for (const RecordedRun& r : runs) values.push_back(of(r));
-    rows.add(what, unit, values);
-  };
   using R = const RecordedRun&;
-  add("ticks in which the side is known", "fraction", known_side_fraction);
-  add("of those, ticks on the wrong side", "fraction", [](R r) { return wrong_side_fraction(r.run.trace); });
-  add("deepest behind the surface", "m", [](R r) { return max_penetration_m(r.run.trace); });
-  add("pop-throughs", "1", [](R r) { return static_cast<double>(r.pops.size()); });
-  add("time of the first", "s",
-      [](R r) { return r.pops.empty() ? kUnknown : r.run.trace.time_s[r.pops[0].tick]; });
-  add("r_f at the first", "m",
-      [](R r) { return r.pops.empty() ? kUnknown : r.run.radius_m[r.pops[0].tick]; });
-  add("least motion of the surface past the proxy in a frame that popped it through", "m", min_motion_m);
-  add("frames whose pixel at the proxy measured something", "fraction", visible_fraction);
-  add("frames in which the proxy is hidden behind that pixel", "fraction", hidden_fraction);
-  add("frames with a measured point nearer than r_f", "fraction", [](R r) {
-    return frame_fraction(
-        r, [&](const FrameOutcome& f) { return f.nearest_distance_m < r.run.radius_m[f.tick]; });
-  });
-  add("smallest distance to a measured point - r_f", "m", min_beyond_fixture_m);
-  add("mean of distance - r_f - r_c from 10.1 s on", "m", mean_deviation_m);
-  add("largest camera motion in a frame", "m",
-      [](R r) { return max_motion_m(r, &FrameOutcome::camera_motion_m); });
-  add("largest surface motion in a frame", "m",
-      [](R r) { return max_motion_m(r, &FrameOutcome::surface_motion_m); });
-  return rows.table("violations", "how often and how far the fixture was violated");
+  return quantity_table<RecordedRun>(
+      "violations", "how often and how far the fixture was violated", names, runs,
+      {{"ticks in which the side is known", "fraction", known_side_fraction},
+       {"of those, ticks on the wrong side", "fraction",
+        [](R r) { return wrong_side_fraction(r.run.trace); }},
+       {"deepest behind the surface", "m", [](R r) { return max_penetration_m(r.run.trace); }},
+       {"pop-throughs", "1", [](R r) { return static_cast<double>(r.pops.size()); }},
+       {"time of the first", "s",
+        [](R r) { return r.pops.empty() ? kNoValue : r.run.trace.time_s[r.pops[0].tick]; }},
+       {"r_f at the first", "m",
+        [](R r) { return r.pops.empty() ? kNoValue : r.run.radius_m[r.pops[0].tick]; }},
+       {"least motion of the surface past the proxy in a frame that popped it through", "m", min_motion_m},
+       {"frames whose pixel at the proxy measured something", "fraction", visible_fraction},
+       {"frames in which the proxy is hidden behind that pixel", "fraction", hidden_fraction},
+       {"frames with a measured point nearer than r_f", "fraction",
+        [](R r) {
+          return frame_fraction(
+              r, [&](const FrameOutcome& f) { return f.nearest_distance_m < r.run.radius_m[f.tick]; });
+        }},
+       {"smallest distance to a measured point - r_f", "m", min_beyond_fixture_m},
+       {"mean of distance - r_f - r_c from 10.1 s on", "m", mean_deviation_m},
+       {"largest camera motion in a frame", "m",
+        [](R r) { return max_motion_m(r, &FrameOutcome::camera_motion_m); }},
+       {"largest surface motion in a frame", "m",
+        [](R r) { return max_motion_m(r, &FrameOutcome::surface_motion_m); }}});
 }
 
 // Adds a column of panels for one run.
 void add_panels(Figure& figure, const RecordedRun& r, int column) {
-  const auto axis = [&](const std::string& title, const char* y_label, int row) {
-    return Panel{title,   "time (s)",
-                 y_label, false,
-                 {},      std::pair(0.0, 15.0),
-                 {},      std::pair(static_cast<double>(row), static_cast<double>(column))};
+  int row = 0;
+  const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
+                       const std::vector<Curve>& curves) {
+    figure.panels.push_back(
+        plot(title, "time (s)", y_label, curves, {{{row++, column}}, {{0, 15}}, y_range}));
   };
   const std::string& t = r.table;
-  Panel depth = axis(r.title, "z (m)", 0), distance = axis("Proxy to surface", "distance (m)", 1);
-  Panel motion = axis("Motion in a frame", "motion (m)", 2), force = axis("Force", "force (N)", 3);
-  depth.curves = {{t, "time", "hip_z", CurveStyle::dashed, "HIP"},
-                  {t, "time", "proxy_z", CurveStyle::line, "proxy"}};
-  depth.y_range = std::pair(0.5, 0.67);
-  distance.curves = {{t, "time", "nearest", CurveStyle::line, "nearest measured point"},
-                     {t, "time", "signed_distance", CurveStyle::dots, "plane, negative behind"},
-                     {t, "time", "boundary", CurveStyle::dashed, "r_f + r_c"}};
-  distance.y_range = std::pair(-0.04, 0.13);
-  motion.curves = {{t, "time", "camera_motion", CurveStyle::line, "median over the image"},
-                   {t, "time", "surface_motion", CurveStyle::line, "where the HIP presses, to the camera"}};
-  motion.y_range = std::pair(-0.065, 0.03);
-  force.curves = {{t, "time", "force", CurveStyle::line, ""}};
-  force.y_range = std::pair(0.0, 50.0);
-  for (Panel* panel : {&depth, &distance, &motion, &force}) figure.panels.push_back(*panel);
+  add(r.title, "z (m)", {0.5, 0.67},
+      {{t, "time", "hip_z", CurveStyle::dashed, "HIP"}, {t, "time", "proxy_z", CurveStyle::line, "proxy"}});
+  add("Proxy to surface", "distance (m)", {-0.04, 0.13},
+      {{t, "time", "nearest", CurveStyle::line, "nearest measured point"},
+       {t, "time", "signed_distance", CurveStyle::dots, "plane, negative behind"},
+       {t, "time", "boundary", CurveStyle::dashed, "r_f + r_c"}});
+  add("Motion in a frame", "motion (m)", {-0.065, 0.03},
+      {{t, "time", "camera_motion", CurveStyle::line, "median over the image"},
+       {t, "time", "surface_motion", CurveStyle::line, "where the HIP presses, to the camera"}});
+  add("Force", "force (N)", {0, 50}, {{t, "time", "force", CurveStyle::line, ""}});
 }
 
 void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& moving, const RecordedRun& held,
                 const RecordedRun& tracked) {
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string& name = figure.name;
+  const Claims claims(figure), checks(figure, "", &Claim::set_up);
   for (const RecordedRun* r : {&still, &held}) {
-    add_side_claim(figure, r->title, r->run);
-    claim(claim_at_most(name, r->title + ": frames in which the proxy is hidden behind that pixel", "none",
-                        hidden_fraction(*r), 0, "fraction"));
+    add_side_claim(figure, r->title + ": ", r->run.trace);
+    claims.at_most(r->title + ": frames in which the proxy is hidden behind that pixel", hidden_fraction(*r),
+                   0, "fraction", "none");
   }
-  claim(claim_differs(name, moving.title + ": ticks with a known side with the proxy on the wrong one",
-                      "none (with the camera at rest)", wrong_side_fraction(moving.run.trace), 0.7, 0.8,
-                      "fraction"));
-  add_side_claim(figure, tracked.title, tracked.run);
-  claim(claim_between(name, still.title + ": mean of distance - r_f - r_c while r_f = 0.02 m", "0",
-                      mean_deviation_m(still), -kContactShell_m, kContactShell_m, "m"));
+  claims.differs(moving.title + ": ticks with a known side with the proxy on the wrong one",
+                 wrong_side_fraction(moving.run.trace), 0.7, 0.8, "fraction",
+                 "none (with the camera at rest)");
+  add_side_claim(figure, tracked.title + ": ", tracked.run.trace);
+  claims.between(still.title + ": mean of distance - r_f - r_c while r_f = 0.02 m", mean_deviation_m(still),
+                 -kContactShell_m, kContactShell_m, "m", "0");
   for (const RecordedRun* r : {&still, &moving, &held}) {
-    claim(claim_at_least(name, r->title + ": smallest distance to a measured point - r_f", ">= 0",
-                         min_beyond_fixture_m(*r), 0, "m"));
-    add_sound_claims(figure, r->title, r->run);
+    claims.at_least(r->title + ": smallest distance to a measured point - r_f", min_beyond_fixture_m(*r), 0,
+                    "m", ">= 0");
+    add_sound_claims(figure, r->title + ": ", r->run.trace);
   }
   // The plane is unknown at edges, but the measurement of the proxy's own pixel is nearly always known.
   for (const RecordedRun* r : {&still, &held})
-    claim(
-        set_up(claim_at_least(name, r->title + ": frames in which the pixel at the proxy measured something",
-                              "-", visible_fraction(*r), 0.9, "fraction")));
-  claim(set_up(claim_at_least(name, tracked.title + ": ticks in which the side is known", "-",
-                              known_side_fraction(tracked), 0.5, "fraction")));
+    checks.at_least(r->title + ": frames in which the pixel at the proxy measured something",
+                    visible_fraction(*r), 0.9, "fraction");
+  checks.at_least(tracked.title + ": ticks in which the side is known", known_side_fraction(tracked), 0.5,
+                  "fraction");
 }
 
 // Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "analysis/statistics/extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/numeric/noise.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -58,14 +58,12 @@ NormalCount count_normals(const PointCloud& cloud) {
 
 // Returns the points of the hand and its forearm, without the person behind.
 std::vector<std::size_t> hand_points(const PointCloud& cloud, double max_depth_m) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.z[i] < max_depth_m && cloud.x[i] < kRight_m) chosen.push_back(i);
-  return chosen;
+  return chosen_points(cloud,
+                       [&](std::size_t i) { return cloud.z[i] < max_depth_m && cloud.x[i] < kRight_m; });
 }
 
 Table normal_table(const PointCloud& cloud, const std::vector<std::size_t>& points) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t k = 0; k < points.size(); k += 100) {
     const Vec3 p = cloud.point(points[k]), end = p + kNormal_m * cloud.normal(points[k]);
     if (end.allFinite()) rows.push_back({p.x(), p.y(), p.z(), end.x(), end.y(), end.z()});
@@ -130,16 +128,15 @@ StepMeasurement measure_step(double sigma_f_m, const Kernels& kernels) {
 }
 
 Table step_table(const StepMeasurement& wide, const StepMeasurement& narrow) {
-  Table table{"step", "a step of 25 mm at 0.8 m, after the filter"};
-  table.add("sigma_f", "m", "standard deviation of the filter, (7.2)", {kWide_m, kNarrow_m});
-  table.add("smear", "m", "largest error at the step, without noise", {wide.smear_m, narrow.smear_m});
-  table.add("noise_gain", "1", "noise left on the walls, share of 1.5 mm",
-            {wide.noise_gain, narrow.noise_gain});
-  return table;
+  return table_of("step", "a step of 25 mm at 0.8 m, after the filter",
+                  {{"sigma_f", "m", "standard deviation of the filter, (7.2)"},
+                   {"smear", "m", "largest error at the step, without noise"},
+                   {"noise_gain", "1", "noise left on the walls, share of 1.5 mm"}},
+                  {{kWide_m, wide.smear_m, wide.noise_gain}, {kNarrow_m, narrow.smear_m, narrow.noise_gain}});
 }
 
 Table profile_table(const StepMeasurement& wide, const StepMeasurement& narrow) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (int u = 320 - kEdge_px; u < 320 + kEdge_px; ++u) {
     const auto i = static_cast<std::size_t>(u);
     rows.push_back({u - 319.5, u < 320 ? kWall_m : kWall_m + kStep_m, wide.across_m[i], narrow.across_m[i]});
@@ -153,13 +150,13 @@ Table profile_table(const StepMeasurement& wide, const StepMeasurement& narrow) 
 }
 
 Table count_table(const NormalCount& counted) {
-  Table table{"counts", "normals of the whole frame"};
-  table.add("points", "1", "measured points", {counted.points});
-  table.add("with_neighbours", "1", "measured points with 10 others within the window and the radius",
-            {counted.with_neighbours});
-  table.add("wrong", "1", "of these, points without a unit normal towards the sensor", {counted.wrong});
-  table.add("without_normal", "1", "measured points without a normal", {counted.without_normal});
-  return table;
+  return table_over<NormalCount>(
+      "counts", "normals of the whole frame", {counted},
+      {{"points", "1", "measured points", &NormalCount::points},
+       {"with_neighbours", "1", "measured points with 10 others within the window and the radius",
+        &NormalCount::with_neighbours},
+       {"wrong", "1", "of these, points without a unit normal towards the sensor", &NormalCount::wrong},
+       {"without_normal", "1", "measured points without a normal", &NormalCount::without_normal}});
 }
 
 void add_panels(Figure& figure) {
@@ -167,20 +164,13 @@ void add_panels(Figure& figure) {
   ScenePart points{ScenePart::Kind::points, "raw", 0xB98B6B, 0.0017}, filtered = points;
   filtered.table = "hand";
   ScenePart normals{ScenePart::Kind::segments, "normals", 0x1F4E79};
-  Panel step{"A step of 25 mm seen by a camera",
-             "pixel from the step",
-             "depth (m)",
-             false,
-             {{"profile", "pixel", "truth", CurveStyle::dashed, "walls"},
-              {"profile", "pixel", "wide", CurveStyle::line, "sigma_f = 0.025 m"},
-              {"profile", "pixel", "narrow", CurveStyle::line, "sigma_f = 0.010 m"}}};
-  step.grid_position = std::pair(1.0, 0.0);
-  Panel gain{"Noise left on the walls",
-             "sigma_f (m)",
-             "share of the noise",
-             false,
-             {{"step", "sigma_f", "noise_gain", CurveStyle::bars, ""}}};
-  gain.grid_position = std::pair(1.0, 1.0);
+  const Panel step = plot("A step of 25 mm seen by a camera", "pixel from the step", "depth (m)",
+                          {{"profile", "pixel", "truth", CurveStyle::dashed, "walls"},
+                           {"profile", "pixel", "wide", CurveStyle::line, "sigma_f = 0.025 m"},
+                           {"profile", "pixel", "narrow", CurveStyle::line, "sigma_f = 0.010 m"}},
+                          {{{1, 0}}});
+  const Panel gain = plot("Noise left on the walls", "sigma_f (m)", "share of the noise",
+                          {{"step", "sigma_f", "noise_gain", CurveStyle::bars, ""}}, {{{1, 1}}});
   const auto seen = [&](const std::vector<ScenePart>& parts) {
     return Scene{eye, target, -Vec3::UnitY(), 0.20, 1.05, parts};
   };
@@ -190,11 +180,12 @@ void add_panels(Figure& figure) {
 
 void add_claims(Figure& figure, const NormalCount& counted, const StepMeasurement& wide,
                 const StepMeasurement& narrow) {
-  const std::string n = figure.name;
+  const Claims claims(figure), checks(figure, "", &Claim::set_up);
   const auto second = [](const std::string& what) { return second_number("chapter_6", "/filter/" + what); };
-  const auto as_second = [&](const std::string& claim, const std::string& paper, double measured,
-                             double expected, double slack, const std::string& unit) {
-    return claim_between(n, claim, paper, measured, expected - slack, expected + slack, unit);
+  const auto as_second = [&](const std::string& claim, double measured, double expected, double slack,
+                             const std::string& unit) {
+    claims.between(claim + ", as the second implementation has it", measured, expected - slack,
+                   expected + slack, unit);
   };
   const double smears_m = second("wide/smear_m"),
                gain = second("narrow/noise_gain") / second("wide/noise_gain");
@@ -202,18 +193,15 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
   // Pixels within a window share their noise, so the walls hold 300 000 / 81 independent values. The standard
   // error of an rms over them is 1.2 %; that of the ratio of two filters on the same noise is smaller.
   constexpr double kAgrees = 0.012;
-  figure.claims = {
-      claim_differs(n, "error at a 25 mm step, sigma_f = 0.025 m", "discontinuities are preserved (6.2.1)",
-                    wide.smear_m, smears_m - kAgrees_m, smears_m + kAgrees_m, "m"),
-      as_second("the same, sigma_f = 0.010 m, as the second implementation has it", "-", narrow.smear_m,
-                second("narrow/smear_m"), kAgrees_m, "m"),
-      as_second("noise left on a wall: sigma_f = 0.010 m over 0.025 m, as the second implementation has it",
-                "-", narrow.noise_gain / wide.noise_gain, gain, kAgrees, "1"),
-      set_up(claim_at_most(n, "points with 10 neighbours and no unit normal towards the sensor", "0",
-                           counted.wrong, 0, "points")),
-      set_up(claim_at_least(n, "share of the measured points that have so many neighbours", "-",
-                            counted.with_neighbours / counted.points, 0.99, "fraction")),
-  };
+  claims.differs("error at a 25 mm step, sigma_f = 0.025 m", wide.smear_m, smears_m - kAgrees_m,
+                 smears_m + kAgrees_m, "m", "discontinuities are preserved (6.2.1)");
+  as_second("the same, sigma_f = 0.010 m", narrow.smear_m, second("narrow/smear_m"), kAgrees_m, "m");
+  as_second("noise left on a wall: sigma_f = 0.010 m over 0.025 m", narrow.noise_gain / wide.noise_gain, gain,
+            kAgrees, "1");
+  checks.at_most("points with 10 neighbours and no unit normal towards the sensor", counted.wrong, 0,
+                 "points", "0");
+  checks.at_least("share of the measured points that have so many neighbours",
+                  counted.with_neighbours / counted.points, 0.99, "fraction");
 }
 
 }  // namespace
@@ -228,17 +216,18 @@ Figure figure_6_2(const FigureContext& context) {
   const NormalCount counted = count_normals(cloud);
   const StepMeasurement wide = measure_step(kWide_m, kernels), narrow = measure_step(kNarrow_m, kernels);
   Figure figure{
-      "6.2",
-      "A recorded hand with normals",
+      "6.2", "A recorded hand with normals",
       "Above: a hand held in front of a depth camera, as measured and after the filter; the person behind is "
       "left out. Every point has a normal, every 100th is drawn. Below: what the filter does to a step "
       "between two walls, and to the sensor's noise, with sigma_f = 0.025 m as the dissertation prints it, "
       "and with 0.010 m. At 0.8 m the first smears a step of its own height; the second does not, and "
-      "removes as much noise.",
-      {cloud_table("hand", "the hand, filtered", cloud, hand_points(cloud, kForearm_m)),
-       cloud_table("raw", "the hand, as measured", raw, hand_points(cloud, kForearm_m)),
-       normal_table(cloud, hand_points(cloud, kHand_m)), step_table(wide, narrow),
-       profile_table(wide, narrow), count_table(counted)}};
+      "removes as much noise."};
+  figure.tables = {cloud_table("hand", "the hand, filtered", cloud, hand_points(cloud, kForearm_m)),
+                   cloud_table("raw", "the hand, as measured", raw, hand_points(cloud, kForearm_m)),
+                   normal_table(cloud, hand_points(cloud, kHand_m)),
+                   step_table(wide, narrow),
+                   profile_table(wide, narrow),
+                   count_table(counted)};
   add_panels(figure);
   add_claims(figure, counted, wide, narrow);
   return figure;

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -77,7 +77,7 @@ double ticks_with(const Trace& trace, Holds&& holds) {
 
 Table motion_table(const BoxRun& run) {
   const Trace& t = run.trace;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = 0; i < t.length(); i += kTableStride_6_3)
     rows.push_back({t.time_s[i], t.hip_position_m[i].y() - t.hip_position_m[0].y(),
                     t.proxy_position_m[i].y() - t.hip_position_m[0].y(), device_deg(t, i), tool_deg(t, i),
@@ -100,7 +100,7 @@ Table motion_table(const BoxRun& run) {
 // Returns a table of all runs, one row for each.
 Table summary_table(const std::vector<BoxRun>& runs) {
   std::vector<std::string> tools, rules;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const BoxRun& run : runs) {
     const Trace& t = run.trace;
     tools.push_back(run.tool), rules.push_back(run.rule);
@@ -163,38 +163,36 @@ std::pair<double, double> plateau_slack_mm(const std::string& rule) {
 
 // Claims that a tool stops where its outline stops in the closed form. place: path of the tool's numbers in
 // the second implementation's results.
-Claim stop_claim(const std::string& name, const std::string& what, const BoxRun& run,
-                 const std::string& place) {
+void add_stop_claim(const Claims& claims, const std::string& what, const BoxRun& run,
+                    const std::string& place) {
   const auto [early, late] = plateau_slack_mm(run.rule);
   const double stops_deg = second_number("chapter_6", place + "/stop_angle_deg"),
                deg_per_mm = second_number("chapter_6", place + "/deg_per_mm");
-  return claim_between(name, what, "-", tool_deg(run.trace, plateau_tick(run.trace)),
-                       stops_deg - early * deg_per_mm, stops_deg + late * deg_per_mm, "deg");
+  claims.between(what, tool_deg(run.trace, plateau_tick(run.trace)), stops_deg - early * deg_per_mm,
+                 stops_deg + late * deg_per_mm, "deg");
 }
 
 void add_rule_claims(Figure& figure, const BoxRun& run) {
   const Trace& t = run.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name, rule = run.rule + ": ";
-  claim(claim_at_most(name, rule + "ticks with a count above 0 on the way in and out", "0",
-                      ticks_with(t, [&](std::size_t i) { return moves_along(t, i) && any_count(t, i); }), 0,
-                      "ticks"));
-  claim(claim_at_most(
-      name, rule + "ticks with a count above 0 while the nearest point is a voxel or more away", "0",
+  const Claims claims(figure, run.rule + ": ticks "), others(figure, run.rule + ": ");
+  claims.at_most("with a count above 0 on the way in and out",
+                 ticks_with(t, [&](std::size_t i) { return moves_along(t, i) && any_count(t, i); }), 0,
+                 "ticks", "0");
+  claims.at_most(
+      "with a count above 0 while the nearest point is a voxel or more away",
       ticks_with(t, [&](std::size_t i) { return t.nearest_distance_m[i] >= kBoxVoxel_m && any_count(t, i); }),
-      0, "ticks"));
-  claim(claim_at_most(
-      name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
+      0, "ticks", "0");
+  claims.at_most(
+      "without a point that touches while the tool lags by over 1 deg",
       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),
-      0, "ticks"));
-  claim(stop_claim(name, rule + "rotation of the tool where the device has turned 30 deg", run, "/box"));
-  claim(claim_at_most(name, rule + "gap between device and tool along y while nothing touches", "0",
-                      max_gap_untouched_m(t), 1e-9, "m"));
-  claim(claim_at_most(name, rule + "fraction of ticks with a value that is not finite", "-",
-                      non_finite_fraction(t), 0, "fraction"));
-  claim(set_up(claim_at_least(name, rule + "ticks in which it lags by over 1 deg", "-",
-                              ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500,
-                              "ticks")));
+      0, "ticks", "0");
+  add_stop_claim(others, "rotation of the tool where the device has turned 30 deg", run, "/box");
+  others.at_most("gap between device and tool along y while nothing touches", max_gap_untouched_m(t), 1e-9,
+                 "m", "0");
+  others.at_most("fraction of ticks with a value that is not finite", non_finite_fraction(t), 0, "fraction");
+  Claims(figure, run.rule + ": ticks ", &Claim::set_up)
+      .at_least("in which it lags by over 1 deg",
+                ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500, "ticks");
 }
 
 // Claims that more points touch where they lie closer, because all points on the faces touch. runs: those of
@@ -207,20 +205,20 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
     counts += (r ? ", " : "") + std::to_string(static_cast<int>(count));
     if (r > 0) min_rise = min_or_nan(min_rise, count - max(runs[r - 1].trace.contact_count));
   }
-  figure.claims.push_back(claim_at_least(
-      figure.name,
+  Claims(figure).at_least(
       runs[0].rule + ": most points at once, 3, 2 and 1 mm apart, are " + counts + ": smallest rise",
-      "6 at an unknown spacing", min_rise, 1, "points"));
+      min_rise, 1, "points", "6 at an unknown spacing");
 }
 
 // Claims for tools that were not made for this box. A block as long, wide and high as the husky stops
 // elsewhere.
 void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
   for (const BoxRun& run : runs)
-    figure.claims.push_back(stop_claim(figure.name,
-                                       run.rule + ": a block of the husky's length, width and height: "
-                                                  "its rotation there",
-                                       run, "/box/block"));
+    add_stop_claim(Claims(figure),
+                   run.rule +
+                       ": a block of the husky's length, width and height: "
+                       "its rotation there",
+                   run, "/box/block");
 }
 
 // Claims for a bar of 80 x 10 mm that turns between two walls 40 mm apart. Its corner is at a wall where 40
@@ -235,11 +233,10 @@ void add_slot_claim(Figure& figure, const FigureContext& context) {
   double max_error_deg = 0;
   for (const Trace& trace : context.run(experiments))
     max_error_deg = max_or_nan(max_error_deg, std::abs(tool_deg(trace, trace.length() - 1) - stops_deg));
-  figure.claims.push_back(claim_at_most(
-      figure.name,
+  Claims(figure).at_most(
       "look-ahead: a bar in a slot (tool-slot) stops at 22.62 deg, from its sides alone: maximum "
       "difference for points 3, 2 and 1 mm apart",
-      "-", max_error_deg, 0.02, "deg"));
+      max_error_deg, 0.02, "deg");
 }
 
 // Claims for the fifth side, 6.3.1: the device moves 20 mm deeper than the floor allows the tool. The floor's
@@ -256,45 +253,38 @@ void add_floor_claims(Figure& figure, const FigureContext& context) {
     // The floor may lie in the tool's shell under the printed rule. The upper side of the shell is within
     // half a voxel of the surface.
     const double deep_m = r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m + kSubStep_m;
-    figure.claims.push_back(claim_between(figure.name,
-                                          kRules[r].second + ": height at which the floor stops the block",
-                                          "-", traces[r].proxy_position_m.back().y(), kTool_m - deep_m,
-                                          kTool_m + (r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m), "m"));
+    Claims(figure).between(kRules[r].second + ": height at which the floor stops the block",
+                           traces[r].proxy_position_m.back().y(), kTool_m - deep_m,
+                           kTool_m + (r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m), "m");
   }
 }
 
-Panel time_panel(const std::string& title, const char* label, int row, int column) {
-  return {title, "time (s)",          label, false,
-          {},    std::pair(0.0, 8.0), {},    std::pair(double(row), double(column))};
-}
-
 void add_panels(Figure& figure, const BoxRun& run, int column) {
+  int row = 0;
+  const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
+                       const std::vector<Curve>& curves) {
+    figure.panels.push_back(plot(title, "time (s)", y_label, curves, {{{row++, column}}, {{0, 8}}, y_range}));
+  };
   const std::string& t = run.name;
-  Panel path = time_panel("Contact rule " + run.rule, "displacement along y (m)", 0, column);
-  Panel turn = time_panel("", "rotation about y (deg)", 1, column);
-  Panel counts = time_panel("", "count", 2, column);
-  path.curves = {{t, "time", "device_y", CurveStyle::line, "device"},
-                 {t, "time", "tool_y", CurveStyle::dashed, "tool"}};
-  turn.curves = {{t, "time", "device_rotation", CurveStyle::line, "device"},
-                 {t, "time", "tool_rotation", CurveStyle::dashed, "tool"}};
-  counts.curves = {{t, "time", "points", CurveStyle::steps, "points that touch"},
-                   {t, "time", "clusters", CurveStyle::steps, "10 mm clusters"},
-                   {t, "time", "active", CurveStyle::steps, "active constraints"}};
-  path.y_range = std::pair(-0.065, 0.005), turn.y_range = std::pair(-3.0, 33.0);
-  counts.y_range = std::pair(0.0, 16.0);
-  for (const Panel& panel : {path, turn, counts}) figure.panels.push_back(panel);
+  add("Contact rule " + run.rule, "displacement along y (m)", {-0.065, 0.005},
+      {{t, "time", "device_y", CurveStyle::line, "device"},
+       {t, "time", "tool_y", CurveStyle::dashed, "tool"}});
+  add("", "rotation about y (deg)", {-3, 33},
+      {{t, "time", "device_rotation", CurveStyle::line, "device"},
+       {t, "time", "tool_rotation", CurveStyle::dashed, "tool"}});
+  add("", "count", {0, 16},
+      {{t, "time", "points", CurveStyle::steps, "points that touch"},
+       {t, "time", "clusters", CurveStyle::steps, "10 mm clusters"},
+       {t, "time", "active", CurveStyle::steps, "active constraints"}});
 }
 
 void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& run) {
   const Experiment experiment = Experiment::load("fig6.3");
   const PointCloud cloud = processed_cloud(experiment, context.kernels(), 0);
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < cloud.size(); ++i) all.push_back(i);
   const std::shared_ptr<const VoxelTool> tool = tool_of(experiment);
-  figure.tables.push_back(cloud_table("box_cloud", "the box", cloud, all));
-  figure.tables.push_back(vertex_table("box_vertices", tool->mesh));
-  figure.tables.push_back(triangle_table("box_triangles", tool->mesh));
-  figure.tables.push_back(pose_table("box_poses", run.trace, {plateau_tick(run.trace)}));
+  figure.tables.push_back(
+      cloud_table("box_cloud", "the box", cloud, chosen_points(cloud, [](std::size_t) { return true; })));
+  add_tool_tables(figure, "box", tool->mesh, run.trace, {plateau_tick(run.trace)});
   Scene above{{0, 0.40, 0.0}, {0, 0, 0}, {0, 0, -1}, 0.135, 0.8, tool_in_cloud("box", 0, 0.0018)};
   Scene beside = above;
   beside.eye = {0.16, 0.26, 0.30}, beside.up = {0, 1, 0}, beside.target = {0, -0.004, 0};

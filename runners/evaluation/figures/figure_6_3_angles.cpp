@@ -1,6 +1,5 @@
 // Fig 6.3 for other angles: how far the tool turns in the box, over the commanded angle, the spacing of the
 // points and the contact rule.
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/statistics/extremes.h"
@@ -35,16 +34,14 @@ struct Turning {
 };
 
 std::vector<Turning> turnings(const SweepResult& result) {
-  const auto& angles = std::get<std::vector<double>>(result.axes.at(0).values);
-  const auto& spacings = std::get<std::vector<double>>(result.axes.at(1).values);
-  const std::vector<std::string> rules = {"look-ahead", "voxels"};
+  const std::vector<double>& spacings = axis_values(result, 1);
   std::vector<Turning> list;
-  for (const std::string& rule : rules)
+  for (const char* rule : {"look-ahead", "voxels"})
     for (const double spacing_m : spacings) list.push_back({rule, spacing_m, {}, {}, {}, {}, {}, {}});
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
     Turning& one = list[indices[2] * spacings.size() + indices[1]];
-    const double angle_deg = angles[indices[0]];
+    const double angle_deg = axis_values(result, 0)[indices[0]];
     one.commanded_deg.push_back(angle_deg);
     // The device stays at the commanded angle for as long as the tool needs; the lag is largest there.
     one.turned_deg.push_back(angle_deg - result.measure("max_tool_lag_angle")[run] / kRadiansPerDegree);
@@ -87,7 +84,7 @@ double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Va
       [&](std::size_t i) { return value(runs[i]); });
 }
 
-std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
+void add_claims(Figure& figure, const std::vector<Turning>& runs) {
   const auto free_lag = [](const Turning& run) {
     return max_where(
         run.commanded_deg.size(), [&](std::size_t i) { return run.commanded_deg[i] <= kFreeDeg; },
@@ -98,21 +95,18 @@ std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
   const auto minus_stop = [](const Turning& run) { return -run.stop_deg().second; };
   const auto depth = [](const Turning& run) { return max_of(run.penetration_m); };
   const auto exhausted = [](const Turning& run) { return max_of(run.exhausted); };
-  const std::string figure = "6.3-angles";
-  return {
-      claim_at_most(figure, "up to 10 deg the tool follows: maximum lag", "-",
-                    max_of_rule(runs, "", free_lag), 1e-4, "deg"),
-      claim_at_most(figure, "from 30 deg on the tool stops at one angle: maximum difference", "-",
-                    max_of_rule(runs, "", history), 0.1, "deg"),
-      claim_at_most(figure, "look-ahead: difference of the stop angles for points 1, 2 and 3 mm apart", "-",
-                    max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1,
-                    "deg"),
-      claim_at_most(figure, "look-ahead: deepest point in the tool at the end of a tick", "-",
-                    max_of_rule(runs, "look-ahead", depth), 1e-4, "m"),
-      claim_at_most(figure, "voxels: deepest point in the tool at the end of a tick, a voxel is 0.5 mm", "-",
-                    max_of_rule(runs, "voxels", depth), 5e-4, "m"),
-      claim_at_most(figure, "ticks that used up their detections", "-", max_of_rule(runs, "", exhausted), 0,
-                    "fraction")};
+  const Claims claims(figure);
+  claims.at_most("up to 10 deg the tool follows: maximum lag", max_of_rule(runs, "", free_lag), 1e-4, "deg");
+  claims.at_most("from 30 deg on the tool stops at one angle: maximum difference",
+                 max_of_rule(runs, "", history), 0.1, "deg");
+  claims.at_most("look-ahead: difference of the stop angles for points 1, 2 and 3 mm apart",
+                 max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1,
+                 "deg");
+  claims.at_most("look-ahead: deepest point in the tool at the end of a tick",
+                 max_of_rule(runs, "look-ahead", depth), 1e-4, "m");
+  claims.at_most("voxels: deepest point in the tool at the end of a tick, a voxel is 0.5 mm",
+                 max_of_rule(runs, "voxels", depth), 5e-4, "m");
+  claims.at_most("ticks that used up their detections", max_of_rule(runs, "", exhausted), 0, "fraction");
 }
 
 }  // namespace
@@ -129,7 +123,7 @@ Figure figure_6_3_angles(const FigureContext& context) {
   figure.panels = {panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
                    panel(runs, "Torque", "torque", "torque (N m)"),
                    panel(runs, "Contacts", "contacts", "touching points")};
-  figure.claims = turning_claims(runs);
+  add_claims(figure, runs);
   return figure;
 }
 

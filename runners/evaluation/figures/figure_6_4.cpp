@@ -1,14 +1,13 @@
 // Fig 6.4: tools of meshes slide over recorded objects.
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "analysis/measures/force_change_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 
 namespace remote_touch {
@@ -30,39 +29,12 @@ struct DrawnMoment {
   double width_m;
 };
 
-const DrawnMoment kDrawnMoments[] = {{"fig6.4",
-                                      "bunny",
-                                      "Bunny, printed cube",
-                                      -0.25,
-                                      0.10,
-                                      -0.20,
-                                      0.16,
-                                      0.62,
-                                      {0.36, -0.16, 0.22},
-                                      {-0.03, 0.02, 0.42},
-                                      0.30},
-                                     {"fig6.4-organ",
-                                      "hand",
-                                      "Hand, organ model",
-                                      -0.02,
-                                      0.32,
-                                      -0.22,
-                                      0.14,
-                                      0.75,
-                                      {-0.23, -0.17, 0.33},
-                                      {0.12, -0.03, 0.58},
-                                      0.36},
-                                     {"fig6.4-box",
-                                      "drill",
-                                      "Power drill, cereal box",
-                                      -0.32,
-                                      0.14,
-                                      -0.05,
-                                      0.26,
-                                      0.80,
-                                      {-0.36, -0.10, 0.24},
-                                      {-0.01, 0.13, 0.52},
-                                      0.46}};
+const DrawnMoment kDrawnMoments[] = {{"fig6.4", "bunny", "Bunny, printed cube", -0.25, 0.10, -0.20, 0.16,
+                                      0.62, Vec3(0.36, -0.16, 0.22), Vec3(-0.03, 0.02, 0.42), 0.30},
+                                     {"fig6.4-organ", "hand", "Hand, organ model", -0.02, 0.32, -0.22, 0.14,
+                                      0.75, Vec3(-0.23, -0.17, 0.33), Vec3(0.12, -0.03, 0.58), 0.36},
+                                     {"fig6.4-box", "drill", "Power drill, cereal box", -0.32, 0.14, -0.05,
+                                      0.26, 0.80, Vec3(-0.36, -0.10, 0.24), Vec3(-0.01, 0.13, 0.52), 0.46}};
 
 struct TouchRun {
   const DrawnMoment* shown;
@@ -80,14 +52,9 @@ std::string table_name(const TouchRun& run) {
   return std::string(run.shown->table) + (is_printed(run) ? "_voxels" : "");
 }
 
-std::size_t tick_at(const Trace& trace, double time_s) {
-  const auto at = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s - kSameTime_s);
-  return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
-}
-
 Table touch_table(const TouchRun& run) {
   const Trace& t = run.trace;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = 0; i < t.length(); i += kTableStride_6_4)
     rows.push_back({t.time_s[i], static_cast<double>(t.frame_index[i]), lag_m(t, i),
                     lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
@@ -112,15 +79,12 @@ Table touch_table(const TouchRun& run) {
 
 // Returns every second pixel, in a chequered pattern, of the part of the recording that is shown.
 std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment& shown) {
-  std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  return chosen_points(cloud, [&](std::size_t i) {
     const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
-    if ((i / width + i % width) % 2 == 0 && p.x() > shown.left_m && p.x() < shown.right_m &&
-        p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m)
-      chosen.push_back(i);
-  }
-  return chosen;
+    return (i / width + i % width) % 2 == 0 && p.x() > shown.left_m && p.x() < shown.right_m &&
+           p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m;
+  });
 }
 
 void add_picture_tables(Figure& figure, const FigureContext& context, const TouchRun& run) {
@@ -129,34 +93,31 @@ void add_picture_tables(Figure& figure, const FigureContext& context, const Touc
   const std::shared_ptr<const VoxelTool> tool = tool_of(run.experiment);
   figure.tables.push_back(cloud_table(name + "_cloud", "points of the first frame, every second pixel", cloud,
                                       seen_points(cloud, *run.shown)));
-  figure.tables.push_back(vertex_table(name + "_vertices", tool->mesh));
-  figure.tables.push_back(triangle_table(name + "_triangles", tool->mesh));
-  figure.tables.push_back(
-      pose_table(name + "_poses", run.trace, {tick_at(run.trace, kFirst_s), tick_at(run.trace, kSecond_s)}));
+  add_tool_tables(figure, name, tool->mesh, run.trace,
+                  {tick_of(run.trace, kFirst_s), tick_of(run.trace, kSecond_s)});
 }
 
 void add_panels(Figure& figure, const TouchRun& run, int row) {
   const DrawnMoment& shown = *run.shown;
   for (std::size_t instant = 0; instant < 2; ++instant) {
-    const double time_s = run.trace.time_s[tick_at(run.trace, instant == 0 ? kFirst_s : kSecond_s)];
+    const double time_s = run.trace.time_s[tick_of(run.trace, instant == 0 ? kFirst_s : kSecond_s)];
     figure.panels.push_back(
         scene_panel(std::string(shown.label) + ", " + std::to_string(time_s).substr(0, 3) + " s", row,
                     static_cast<int>(instant),
                     {shown.eye, shown.target, -Vec3::UnitY(), shown.width_m, 0.8,
                      tool_in_cloud(shown.table, instant, 0.003)}));
   }
-  Panel force{"", "time (s)",          "force (N)",         false,
-              {}, std::pair(0.0, 3.2), std::pair(0.0, 9.0), std::pair(double(row), 2.0)};
-  force.curves = {
-      {shown.table, "time", "force", CurveStyle::line, "look-ahead"},
-      {std::string(shown.table) + "_voxels", "time", "force", CurveStyle::dashed, "voxels, as printed"}};
-  figure.panels.push_back(force);
+  figure.panels.push_back(plot(
+      "", "time (s)", "force (N)",
+      {{shown.table, "time", "force", CurveStyle::line, "look-ahead"},
+       {std::string(shown.table) + "_voxels", "time", "force", CurveStyle::dashed, "voxels, as printed"}},
+      {{{row, 2}}, {{0, 3.2}}, {{0, 9}}}));
 }
 
 template <class Holds>
 double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& holds) {
   double count = 0, all = 0;
-  for (std::size_t i = tick_at(trace, from_s); i < tick_at(trace, until_s); ++i)
+  for (std::size_t i = tick_of(trace, from_s); i < tick_of(trace, until_s); ++i)
     count += holds(i) ? 1 : 0, ++all;
   return count / all;
 }
@@ -190,48 +151,41 @@ double max_lag_m(const Trace& t) {
 
 void add_claims(Figure& figure, const TouchRun& run) {
   const Trace& t = run.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name,
-                    opening = run.shown->label + std::string(is_printed(run) ? ", as printed: " : ": ");
-  claim(claim_at_most(name, opening + "ticks with a number that is not finite", "-", non_finite_fraction(t),
-                      0, "fraction"));
-  claim(claim_at_most(name, opening + "deepest point in the tool at the end of a tick without a new frame",
-                      "0", deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m"));
-  claim(claim_at_most(name, opening + "ticks whose detections and log of a used-up budget do not fit", "-",
-                      inconsistent_ticks(run), 0, "ticks"));
-  claim(claim_at_least(
-      name, opening + "share of the sliding time in which the tool touches", "-",
-      fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9,
-      "fraction"));
-  claim(
-      claim_at_least(name, opening + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
-  claim(claim_at_most(name, opening + "force at the end", "0", t.force_N[t.length() - 1].norm(), 0, "N"));
+  const Claims claims(figure, run.shown->label + std::string(is_printed(run) ? ", as printed: " : ": "));
+  claims.at_most("ticks with a number that is not finite", non_finite_fraction(t), 0, "fraction");
+  claims.at_most("deepest point in the tool at the end of a tick without a new frame", deepest_m(t),
+                 is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m", "0");
+  claims.at_most("ticks whose detections and log of a used-up budget do not fit", inconsistent_ticks(run), 0,
+                 "ticks");
+  claims.at_least("share of the sliding time in which the tool touches",
+                  fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }),
+                  0.9, "fraction");
+  claims.at_least("largest distance from tool to device", max_lag_m(t), 0.005, "m");
+  claims.at_most("force at the end", t.force_N[t.length() - 1].norm(), 0, "N", "0");
 }
 
 Table summary_table(const std::vector<TouchRun>& runs) {
   std::vector<std::string> names;
   for (const TouchRun& run : runs) names.push_back(table_name(run));
-  QuantityTable rows(names);
-  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
-    std::vector<double> values;
-    for (const TouchRun& run : runs) values.push_back(of(run.trace));
-    rows.add(what, unit, values);
-  };
   const auto max = [](const auto& of) {
     return static_cast<double>(*std::max_element(of.begin(), of.end()));
   };
-  using T = const Trace&;
-  add("ticks", "1", [](T t) { return static_cast<double>(t.length()); });
-  add("most points that touch at once", "1", [&](T t) { return max(t.contact_count); });
-  add("most active constraints at once", "1", [&](T t) { return max(t.active_constraints); });
-  add("deepest point at the end of any tick", "m", [&](T t) { return max_of(t.tool_penetration_m); });
-  add("ticks that used up their detections", "1", [](T t) {
-    return static_cast<double>(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1));
-  });
-  add("points of a frame without a normal, at most", "1", [&](T t) { return max(t.disabled_points); });
-  add("maximum force", "N", [](T t) { return max_force_N(t); });
-  add("largest force jump at a frame", "N", [](T t) { return max_force_jump_N(t); });
-  return rows.table("runs", "what happened in each run");
+  using R = const TouchRun&;
+  return quantity_table<TouchRun>(
+      "runs", "what happened in each run", names, runs,
+      {{"ticks", "1", [](R r) { return static_cast<double>(r.trace.length()); }},
+       {"most points that touch at once", "1", [&](R r) { return max(r.trace.contact_count); }},
+       {"most active constraints at once", "1", [&](R r) { return max(r.trace.active_constraints); }},
+       {"deepest point at the end of any tick", "m", [](R r) { return max_of(r.trace.tool_penetration_m); }},
+       {"ticks that used up their detections", "1",
+        [](R r) {
+          return static_cast<double>(
+              std::count(r.trace.budget_exhausted.begin(), r.trace.budget_exhausted.end(), 1));
+        }},
+       {"points of a frame without a normal, at most", "1",
+        [&](R r) { return max(r.trace.disabled_points); }},
+       {"maximum force", "N", [](R r) { return max_force_N(r.trace); }},
+       {"largest force jump at a frame", "N", [](R r) { return max_force_jump_N(r.trace); }}});
 }
 
 std::vector<TouchRun> touch_runs(const FigureContext& context) {

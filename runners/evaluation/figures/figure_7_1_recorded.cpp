@@ -1,13 +1,11 @@
 // 7.3.2 on recorded colour and depth images: an organ model forbidden by its hue, a yellow dragon as target.
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <string>
-#include <utility>
 
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -131,7 +129,7 @@ double wander_m(const Scenario& scenario, const FixtureRule& rule) {
 }
 
 Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const MaskNumbers& n = numbers[i];
     rows.push_back({static_cast<double>(kSegmentedFrames[i].frame), n.picked, n.in_box / n.picked,
@@ -161,19 +159,15 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
     for (const MaskNumbers& n : numbers) value = min_or_nan(value, of(n));
     return value;
   };
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string& n = figure.name;
-  claim(claim_at_least(n, object + ": least share of the mask within the object's box", "-",
-                       min([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
-                       "fraction"));
-  claim(claim_at_least(n, object + ": least share of the mask in its largest piece", "-",
-                       min([](const MaskNumbers& m) { return m.max_component / m.picked; }), 0.8,
-                       "fraction"));
-  claim(claim_at_most(n, object + ": largest shift of the mean by what lies outside the box", "-",
-                      -min([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005,
-                      "m"));
-  claim(claim_at_most(n, object + ": how far the mean wanders in five frames at rest", "-", wander, 0.003,
-                      "m"));
+  const Claims claims(figure, object + ": ");
+  claims.at_least("least share of the mask within the object's box",
+                  min([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
+                  "fraction");
+  claims.at_least("least share of the mask in its largest piece",
+                  min([](const MaskNumbers& m) { return m.max_component / m.picked; }), 0.8, "fraction");
+  claims.at_most("largest shift of the mean by what lies outside the box",
+                 -min([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005, "m");
+  claims.at_most("how far the mean wanders in five frames at rest", wander, 0.003, "m");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/evaluation/figures/valve_task.h"
 
@@ -48,32 +48,27 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   const Trace& t = task.trace;
   const std::size_t held = tick_of(t, held_s);
   const std::string valve = side;
-  figure.claims.push_back(claim_between(figure.name, "force when pushed to the " + valve, "rises when pushed",
-                                        t.force_N[held].norm(), 5, 8, "N"));
-  figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
-                                         "rises when pushed", max_torque_Nm(t, held_s - 1, held_s + 1), 0.01,
-                                         "N m"));
-  figure.claims.push_back(set_up(claim_between(figure.name, "device behind the tool, pushed to the " + valve,
-                                               "-", lag_m(t, held), 0.018, 0.022, "m")));
+  const Claims claims(figure), checks(figure, "", &Claim::set_up);
+  claims.between("force when pushed to the " + valve, t.force_N[held].norm(), 5, 8, "N", "rises when pushed");
+  claims.at_least("largest torque of the push to the " + valve, max_torque_Nm(t, held_s - 1, held_s + 1),
+                  0.01, "N m", "rises when pushed");
+  checks.between("device behind the tool, pushed to the " + valve, lag_m(t, held), 0.018, 0.022, "m");
 }
 
 void add_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name;
-  claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0", max_free_force_N(t),
-                      0, "N"));
-  claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
+  const Claims claims(figure);
+  claims.at_most("largest force while nothing is within the look-ahead", max_free_force_N(t), 0, "N", "0");
+  claims.between("times that the force rises from nothing", pushes(t), 2, 2, "times", "2");
   for (const double free_s : {kStart_s, kBetween_s, t.time_s.back()})
-    claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
-                        t.force_N[tick_of(t, free_s)].norm(), 0, "N"));
+    claims.at_most("force at " + std::to_string(free_s).substr(0, 4) + " s",
+                   t.force_N[tick_of(t, free_s)].norm(), 0, "N", "0");
   add_push_claims(figure, task, "left", kHeldLeft_s);
   add_push_claims(figure, task, "right", kHeldRight_s);
   for (const Valve valve : {Valve::left, Valve::right})
-    claim(claim_at_least(name,
-                         std::string("least distance of the tool's mesh to the true ") +
-                             (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
-                         "-", min_clearance_m(task, valve), kValveRegion_m - 1e-3, "m"));
+    claims.at_least(std::string("least distance of the tool's mesh to the true ") +
+                        (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
+                    min_clearance_m(task, valve), kValveRegion_m - 1e-3, "m");
   add_task_claims(figure, task);
 }
 
@@ -81,14 +76,12 @@ void add_claims(Figure& figure, const ValveTask& task) {
 // dissertation does not claim this; the behaviour is only reported.
 void add_slip(Figure& figure, const ValveTask& slip) {
   const Trace& t = slip.trace;
+  const Claims claims(figure, slip.label + ": ");
   const std::size_t last = t.length() - 1;
   const Vec3 aside = t.proxy_position_m[last] - t.intended_position_m[last];
-  figure.claims.push_back(claim_at_least(figure.name,
-                                         slip.label + ": how far the tool was pushed up, past the valve", "-",
-                                         aside.y(), 0.01, "m"));
-  figure.claims.push_back(claim_at_least(figure.name,
-                                         slip.label + ": least distance of its mesh to the true valve", "-",
-                                         min_clearance_m(slip, Valve::left), kValveRegion_m - 1e-3, "m"));
+  claims.at_least("how far the tool was pushed up, past the valve", aside.y(), 0.01, "m");
+  claims.at_least("least distance of its mesh to the true valve", min_clearance_m(slip, Valve::left),
+                  kValveRegion_m - 1e-3, "m");
   add_task_claims(figure, slip);
 }
 
@@ -98,25 +91,24 @@ std::vector<std::size_t> moments_7_4(const Trace& t) {
 }
 
 Table moment_table(const Trace& t) {
-  std::vector<double> time_s, force_N, torque_Nm;
+  TableRows rows;
   std::vector<std::int32_t> letter;
   for (const std::size_t tick : moments_7_4(t)) {
     letter.push_back(static_cast<std::int32_t>(letter.size()));
-    time_s.push_back(t.time_s[tick]);
-    force_N.push_back(t.force_N[tick].norm()), torque_Nm.push_back(t.torque_Nm[tick].norm());
+    rows.push_back({t.time_s[tick], t.force_N[tick].norm(), t.torque_Nm[tick].norm()});
   }
-  Table table{"moments", "A: start, B: pushed to the left, C: pushed to the right, D: end"};
-  table.columns.push_back({"letter", "1", "moment of the task", letter, 1, {"A", "B", "C", "D"}});
-  table.add("time", "s", "simulated time", time_s);
-  table.add("force", "N", "norm of the force", force_N);
-  table.add("torque", "N m", "norm of the torque", torque_Nm);
+  Table table = table_of("moments", "A: start, B: pushed to the left, C: pushed to the right, D: end",
+                         {{"time", "s", "simulated time"},
+                          {"force", "N", "norm of the force"},
+                          {"torque", "N m", "norm of the torque"}},
+                         rows);
+  table.columns.insert(table.columns.begin(),
+                       {"letter", "1", "moment of the task", letter, 1, {"A", "B", "C", "D"}});
   return table;
 }
 
 Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
-  Panel panel{title, "time (s)", label, false, {}, {}, {}, std::pair(double(row), 0.0)};
-  panel.curves = {{task.name, "time", column, CurveStyle::line, ""}};
-  return panel;
+  return plot(title, "time (s)", label, {{task.name, "time", column, CurveStyle::line, ""}}, {{{row, 0}}});
 }
 
 Panel lettered(Panel panel) {
@@ -126,27 +118,26 @@ Panel lettered(Panel panel) {
 }
 
 Table summary_table(const std::vector<ValveTask>& tasks) {
-  QuantityTable rows({tasks[0].name, tasks[1].name});
-  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
-    rows.add(what, unit, {of(tasks[0]), of(tasks[1])});
-  };
   using Task = const ValveTask&;
-  add("least distance of the mesh to the left valve", "m",
-      [](Task task) { return min_clearance_m(task, Valve::left); });
-  add("least distance of the mesh to the right valve", "m",
-      [](Task task) { return min_clearance_m(task, Valve::right); });
-  add("most pairs of leaves that touch", "1", [](Task task) {
-    return double(*std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end()));
-  });
-  add("collision detections in a tick, mean", "1", [](Task task) {
-    double sum = 0;
-    for (const int n : task.trace.detections) sum += n;
-    return sum / double(task.trace.length());
-  });
-  add("ticks that used up their detections", "1", [](Task task) {
-    return double(std::count(task.trace.budget_exhausted.begin(), task.trace.budget_exhausted.end(), 1));
-  });
-  return rows.table("runs", "both runs");
+  return quantity_table<ValveTask>(
+      "runs", "both runs", {tasks[0].name, tasks[1].name}, tasks,
+      {{"least distance of the mesh to the left valve", "m",
+        [](Task task) { return min_clearance_m(task, Valve::left); }},
+       {"least distance of the mesh to the right valve", "m",
+        [](Task task) { return min_clearance_m(task, Valve::right); }},
+       {"most pairs of leaves that touch", "1",
+        [](Task task) {
+          return *std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end());
+        }},
+       {"collision detections in a tick, mean", "1",
+        [](Task task) {
+          double sum = 0;
+          for (const int n : task.trace.detections) sum += n;
+          return sum / double(task.trace.length());
+        }},
+       {"ticks that used up their detections", "1", [](Task task) {
+          return std::count(task.trace.budget_exhausted.begin(), task.trace.budget_exhausted.end(), 1);
+        }}});
 }
 
 }  // namespace

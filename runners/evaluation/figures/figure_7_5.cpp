@@ -1,9 +1,8 @@
 // Fig 7.5: the left valve is forbidden; guidance, activated by a button at 3 s, leads to the right one.
 #include <algorithm>
-#include <cmath>
 
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/evaluation/figures/valve_task.h"
 
@@ -40,61 +39,58 @@ double residual_N(const Trace& t) {
 
 void add_common_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name, opening = task.label + ": ";
+  const std::string opening = task.label + ": ";
+  const Claims claims(figure, opening), checks(figure, opening, &Claim::set_up);
   const std::size_t first = first_pull(t);
   if (first == t.length()) {
-    claim(claim_not_run(name, opening + "guidance", "it never pulled"));
+    figure.claims.push_back(claim_not_run(figure.name, opening + "guidance", "it never pulled"));
     return;
   }
-  claim(claim_at_least(name, opening + "force of the region before, pushed to the left", "rises",
-                       t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N"));
-  claim(claim_at_most(name, opening + "force at the end", "decays", residual_N(t), 0.2, "N"));
-  claim(claim_at_most(name, opening + "torque about the handle's y and z at the end", "-",
-                      max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
-  claim(claim_at_least(name, opening + "least distance of the tool's mesh to the true left valve", "-",
-                       min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
+  claims.at_least("force of the region before, pushed to the left", t.force_N[tick_of(t, kPushed_s)].norm(),
+                  2, "N", "rises");
+  claims.at_most("force at the end", residual_N(t), 0.2, "N", "decays");
+  claims.at_most("torque about the handle's y and z at the end",
+                 max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m");
+  claims.at_least("least distance of the tool's mesh to the true left valve",
+                  min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m");
   add_task_claims(figure, task);
-  claim(set_up(claim_between(name, opening + "when guidance begins to pull", "about 3", t.time_s[first],
-                             kPressed_s, kPressed_s + 1e-9, "s")));
-  claim(set_up(claim_between(name, opening + "its force in that tick, cut at 4 N", "a step",
-                             t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N")));
+  checks.between("when guidance begins to pull", t.time_s[first], kPressed_s, kPressed_s + 1e-9, "s",
+                 "about 3");
+  checks.between("its force in that tick, cut at 4 N", t.guidance_force_N[first].norm(), kClamp_N - 1e-9,
+                 kClamp_N + 1e-9, "N", "a step");
 }
 
 void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six) {
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  claim(claim_at_least(figure.name, five.label + ": torque about the roll axis at the end",
-                       "never reaches zero", residual_Nm(five.trace).x(), 10 * kLittle_Nm, "N m"));
-  claim(claim_at_most(figure.name, six.label + ": torque about the roll axis at the end", "-",
-                      residual_Nm(six.trace).x(), kLittle_Nm, "N m"));
-  claim(claim_between(figure.name, five.label + ": steps of the task that are missed", "-",
-                      five.trace.sequence_missed.back(), 1, 1, "steps"));
-  claim(claim_at_most(figure.name, six.label + ": steps of the task that are missed", "-",
-                      six.trace.sequence_missed.back(), 0, "steps"));
-}
-
-Panel time_panel(const char* title, const char* label, int row, int column) {
-  return {title, "time (s)", label, false, {}, {}, {}, std::pair(double(row), double(column))};
+  const Claims claims(figure);
+  claims.at_least(five.label + ": torque about the roll axis at the end", residual_Nm(five.trace).x(),
+                  10 * kLittle_Nm, "N m", "never reaches zero");
+  claims.at_most(six.label + ": torque about the roll axis at the end", residual_Nm(six.trace).x(),
+                 kLittle_Nm, "N m");
+  claims.between(five.label + ": steps of the task that are missed", five.trace.sequence_missed.back(), 1, 1,
+                 "steps");
+  claims.at_most(six.label + ": steps of the task that are missed", six.trace.sequence_missed.back(), 0,
+                 "steps");
 }
 
 void add_panels(Figure& figure, const ValveTask& task, int column) {
-  Panel force = time_panel(task.label.c_str(), "force (N)", 0, column);
-  Panel torque = time_panel("", "torque (N m)", 1, column);
-  Panel axes = time_panel("", "torque about the handle's axes (N m)", 2, column);
-  force.curves = {{task.name, "time", "force", CurveStyle::line, ""}};
-  torque.curves = {{task.name, "time", "torque", CurveStyle::line, ""}};
-  axes.curves = {{task.name, "time", "torque_x", CurveStyle::line, "roll (x)"},
-                 {task.name, "time", "torque_y", CurveStyle::line, "y"},
-                 {task.name, "time", "torque_z", CurveStyle::line, "z"},
-                 {task.name, "time", "exerted_x", CurveStyle::dashed, "exerted about roll"}};
-  force.y_range = std::pair(0.0, 8.0);
-  torque.y_range = std::pair(0.0, 0.2), axes.y_range = std::pair(-0.2, 0.2);
-  for (const Panel& panel : {force, torque, axes}) figure.panels.push_back(panel);
+  int row = 0;
+  const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
+                       const std::vector<Curve>& curves) {
+    figure.panels.push_back(
+        plot(title, "time (s)", y_label, curves, {.at = {{row++, column}}, .y_range = y_range}));
+  };
+  add(task.label, "force (N)", {0, 8}, {{task.name, "time", "force", CurveStyle::line, ""}});
+  add("", "torque (N m)", {0, 0.2}, {{task.name, "time", "torque", CurveStyle::line, ""}});
+  add("", "torque about the handle's axes (N m)", {-0.2, 0.2},
+      {{task.name, "time", "torque_x", CurveStyle::line, "roll (x)"},
+       {task.name, "time", "torque_y", CurveStyle::line, "y"},
+       {task.name, "time", "torque_z", CurveStyle::line, "z"},
+       {task.name, "time", "exerted_x", CurveStyle::dashed, "exerted about roll"}});
 }
 
 Table target_table(const ValveTask& task) {
   const Trace& t = task.trace;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = first_pull(t); i < t.length(); ++i)
     if (t.frame_update(i))
       rows.push_back(

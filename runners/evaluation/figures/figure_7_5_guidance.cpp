@@ -1,10 +1,9 @@
 // Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
-#include <algorithm>
-#include <cmath>
 
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -17,14 +16,12 @@ struct GuidedEnds {
 };
 
 std::vector<GuidedEnds> guided_ends(const SweepResult& result) {
-  const auto& stiffnesses = std::get<std::vector<double>>(result.axes.at(0).values);
-  std::vector<GuidedEnds> list(2);
-  list[0].name = "six_motors", list[0].label = "six motors";
-  list[1].name = "five_motors", list[1].label = "no motor about x";
+  std::vector<GuidedEnds> list = {{"six_motors", "six motors", {}, {}, {}, {}},
+                                  {"five_motors", "no motor about x", {}, {}, {}, {}}};
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
     GuidedEnds& one = list[indices[1]];  // the axis is torque_x: true, false
-    one.stiffness_N_per_m.push_back(stiffnesses[indices[0]]);
+    one.stiffness_N_per_m.push_back(axis_values(result, 0)[indices[0]]);
     one.error_mm.push_back(1e3 * result.measure("guidance_error")[run]);
     one.error_deg.push_back(result.measure("guidance_error_angle")[run] / kRadiansPerDegree);
     one.clearance_mm.push_back(1e3 * result.measure("min_clearance")[run]);
@@ -56,25 +53,23 @@ Figure figure_7_5_guidance(const FigureContext& context) {
   const std::vector<GuidedEnds> list = guided_ends(context.sweep(Sweep::load("fig7.5-guidance")));
   const GuidedEnds &six = list[0], &five = list[1];
   Figure figure{
-      "7.5-guidance",
-      "Where guidance leads the hand",
+      "7.5-guidance", "Where guidance leads the hand",
       "The task of Fig 7.5 with guidance of 50 to 300 N/m, frames at 10 Hz, a device with six motors and "
       "one without torque about x; simulated. The operator has relaxed at 3.3 s. The position is reached in "
-      "both cases. Without the motor an error of the angle remains at every stiffness of guidance.",
-      {guided_table(six), guided_table(five)},
-      {guided_panel("Distance from the goal", "error", "distance (mm)", list),
-       guided_panel("Angle to the goal", "angle", "angle (deg)", list)}};
-  const std::string name = "7.5-guidance";
-  figure.claims = {
-      claim_at_most(name, "distance from the goal at the end, all runs", "-",
-                    max_or_nan(max_of(six.error_mm), max_of(five.error_mm)), 2, "mm"),
-      claim_at_most(name, "six motors: angle to the goal at the end", "-", max_of(six.error_deg), 0.1, "deg"),
-      claim_at_least(name, "five motors: angle to the goal at the end, minimum of the runs", "-",
-                     min_of(five.error_deg), 20, "deg"),
-      claim_at_most(name, "five motors: how much that angle depends on the stiffness", "-",
-                    max_of(five.error_deg) - min_of(five.error_deg), 1, "deg"),
-      claim_at_least(name, "gap between the tool and the forbidden region, minimum of all ticks", "-",
-                     min_or_nan(min_of(six.clearance_mm), min_of(five.clearance_mm)), -0.1, "mm")};
+      "both cases. Without the motor an error of the angle remains at every stiffness of guidance."};
+  figure.tables = {guided_table(six), guided_table(five)};
+  figure.panels = {guided_panel("Distance from the goal", "error", "distance (mm)", list),
+                   guided_panel("Angle to the goal", "angle", "angle (deg)", list)};
+  const Claims claims(figure);
+  claims.at_most("distance from the goal at the end, all runs",
+                 max_or_nan(max_of(six.error_mm), max_of(five.error_mm)), 2, "mm");
+  claims.at_most("six motors: angle to the goal at the end", max_of(six.error_deg), 0.1, "deg");
+  claims.at_least("five motors: angle to the goal at the end, minimum of the runs", min_of(five.error_deg),
+                  20, "deg");
+  claims.at_most("five motors: how much that angle depends on the stiffness",
+                 max_of(five.error_deg) - min_of(five.error_deg), 1, "deg");
+  claims.at_least("gap between the tool and the forbidden region, minimum of all ticks",
+                  min_or_nan(min_of(six.clearance_mm), min_of(five.clearance_mm)), -0.1, "mm");
   return figure;
 }
 

@@ -1,12 +1,11 @@
 // The second task on recorded images: an organ model is forbidden, a yellow dragon is where guidance leads.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/trace/sequence_log.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 #include "runners/evaluation/figures/valve_task.h"
 
@@ -73,45 +72,37 @@ double goal_wander_m(const Trace& t) {
 
 void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   const Trace& t = task.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  const std::string name = figure.name;
-  claim(claim_at_least(name, "force of the organ's region, pushed towards it", "-",
-                       t.force_N[tick_of(t, kButtonPushed_s)].norm(), 1, "N"));
-  claim(claim_at_least(
-      name,
+  const Claims claims(figure), checks(figure, "", &Claim::set_up);
+  claims.at_least("force of the organ's region, pushed towards it",
+                  t.force_N[tick_of(t, kButtonPushed_s)].norm(), 1, "N");
+  claims.at_least(
       "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
-      "-", min_point_distance_m(task, kernels), kOrganRegion_m - 1e-3, "m"));
-  claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
-                      "m"));
+      min_point_distance_m(task, kernels), kOrganRegion_m - 1e-3, "m");
+  claims.at_most("how far the goal moves while the camera rests", goal_wander_m(t), 0.002, "m");
   const std::vector<SequenceEntry> log = sequence_log(t);
-  claim(claim_at_most(name, "steps of the task that are missed", "-", t.sequence_missed.back(), 0, "steps"));
-  claim(claim_between(name, "steps of the task that are done or missed at the end", "-",
-                      t.sequence_step.back(), 1, 1, "steps"));
+  claims.at_most("steps of the task that are missed", t.sequence_missed.back(), 0, "steps");
+  claims.between("steps of the task that are done or missed at the end", t.sequence_step.back(), 1, 1,
+                 "steps");
   add_task_claims(figure, task);
-  claim(set_up(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s,
-                             kButtonPressed_s, kButtonPressed_s + 1e-9, "s")));
+  checks.between("when guidance is activated", log.empty() ? 0 : log[0].began_s, kButtonPressed_s,
+                 kButtonPressed_s + 1e-9, "s");
 }
 
 // Returns the points nearer than the wall behind, from every second pixel of every second row.
 std::vector<std::size_t> cloud_samples(const PointCloud& cloud) {
-  std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.z[i] < 0.9 && std::abs(cloud.x[i]) < 0.3 && i % 2 == 0 && i / width % 2 == 0)
-      chosen.push_back(i);
-  return chosen;
+  return chosen_points(cloud, [&](std::size_t i) {
+    return cloud.z[i] < 0.9 && std::abs(cloud.x[i]) < 0.3 && i % 2 == 0 && i / width % 2 == 0;
+  });
 }
 
 void add_pictures(Figure& figure, const Kernels& kernels, const ValveTask& task) {
   const Trace& t = task.trace;
   const std::string name = task.name;
-  figure.tables.push_back([&] {
-    const PointCloud cloud = processed_cloud(task.experiment, kernels, 0);
-    return cloud_table(name + "_cloud", "points of the first frame", cloud, cloud_samples(cloud));
-  }());
-  figure.tables.push_back(vertex_table(name + "_vertices", task.tool->mesh));
-  figure.tables.push_back(triangle_table(name + "_triangles", task.tool->mesh));
-  figure.tables.push_back(pose_table(name + "_poses", t, {tick_of(t, kButtonPushed_s), t.length() - 1}));
+  const PointCloud cloud = processed_cloud(task.experiment, kernels, 0);
+  figure.tables.push_back(
+      cloud_table(name + "_cloud", "points of the first frame", cloud, cloud_samples(cloud)));
+  add_tool_tables(figure, name, task.tool->mesh, t, {tick_of(t, kButtonPushed_s), t.length() - 1});
   const Scene scene{{-0.28, -0.38, 0.12}, {0.1, 0, 0.5}, -Vec3::UnitY(), 0.5, 0.8, {}};
   for (std::size_t instant = 0; instant < 2; ++instant) {
     Scene seen = scene;
@@ -134,11 +125,10 @@ Figure figure_7_5_recorded(const FigureContext& context) {
       "real."};
   figure.tables.push_back(task_table(task));
   figure.tables.push_back(sequence_table(task));
-  Panel force{"Force", "time (s)", "force (N)", false, {}, {}, {}, std::pair(0.0, 0.0)};
-  force.curves = {{task.name, "time", "force", CurveStyle::line, ""}};
-  Panel torque{"Torque", "time (s)", "torque (N m)", false, {}, {}, {}, std::pair(1.0, 0.0)};
-  torque.curves = {{task.name, "time", "torque", CurveStyle::line, ""}};
-  figure.panels = {force, torque};
+  figure.panels = {plot("Force", "time (s)", "force (N)",
+                        {{task.name, "time", "force", CurveStyle::line, ""}}, {{{0, 0}}}),
+                   plot("Torque", "time (s)", "torque (N m)",
+                        {{task.name, "time", "torque", CurveStyle::line, ""}}, {{{1, 0}}})};
   add_pictures(figure, context.kernels(), task);
   add_claims(figure, task, context.kernels());
   return figure;

@@ -2,6 +2,7 @@
 // readings of its sign.
 #include "analysis/measures/force_change_measures.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -45,25 +46,20 @@ Trace settled(const Trace& trace) {
 }
 
 Table force_table(const std::string& name, const Trace& trace) {
-  std::vector<double> force;
-  for (std::size_t i = 0; i < trace.length(); ++i) force.push_back(trace.force_N[i].norm());
-  Table table{name, "force with the term " + name};
-  table.add("time", "s", "simulated time", trace.time_s);
-  table.add("force", "N", "magnitude of the force", force);
-  return table;
+  TableRows rows;
+  for (std::size_t i = 0; i < trace.length(); ++i) rows.push_back({trace.time_s[i], trace.force_N[i].norm()});
+  return table_of(name, "force with the term " + name,
+                  {{"time", "s", "simulated time"}, {"force", "N", "magnitude of the force"}}, rows);
 }
 
 }  // namespace
 
 Figure figure_eq4_15(const FigureContext& context) {
-  Figure figure{"eq4.15",
-                "Force between updates",
+  Figure figure{"eq4.15", "Force between updates",
                 "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "
                 "is constant. The velocity term of (4.15) as printed (plus), left out (none), and with "
-                "the sign that removes the jump (minus).",
-                {},
-                {{"Force", "time (s)", "force (N)", false, {}, std::pair(1.0, 1.3), {}}},
-                {}};
+                "the sign that removes the jump (minus)."};
+  figure.panels = {plot("Force", "time (s)", "force (N)", {}, {.x_range = {{1.0, 1.3}}})};
   std::vector<double> jump;
   const std::pair<const char*, const char*> readings[] = {
       {"plus", "plus (as printed)"}, {"none", "no term"}, {"minus", "minus (used)"}};
@@ -76,18 +72,15 @@ Figure figure_eq4_15(const FigureContext& context) {
   // The plane jumps by v / f_c, and in the same tick the HIP follows it by v / f_h. The printed sign doubles
   // the jump.
   constexpr double kJump_N = 600 * 0.1 * (1.0 / 30 - 1.0 / 1000), kRounding_N = 1e-6;
-  figure.claims = {
-      claim_at_most("eq4.15", "force jump per frame at 0.1 m/s, working sign (minus)", "smooth", jump[2],
-                    kRounding_N, "N"),
-      claim_differs("eq4.15", "the same, printed sign (plus)", "smooth", jump[0], 2 * kJump_N - kRounding_N,
-                    2 * kJump_N + kRounding_N, "N"),
-      claim_between("eq4.15", "the same, without the term", "-", jump[1], kJump_N - kRounding_N,
-                    kJump_N + kRounding_N, "N"),
-      claim_differs("eq4.15",
-                    "the same for a plane that recedes, working sign: v_hat is never below 0 (4.13)",
-                    "smooth", max_force_jump_N(settled(context.run(steady_fall()))), kJump_N - kRounding_N,
-                    kJump_N + kRounding_N, "N"),
-  };
+  const Claims claims(figure);
+  claims.at_most("force jump per frame at 0.1 m/s, working sign (minus)", jump[2], kRounding_N, "N",
+                 "smooth");
+  claims.differs("the same, printed sign (plus)", jump[0], 2 * kJump_N - kRounding_N,
+                 2 * kJump_N + kRounding_N, "N", "smooth");
+  claims.between("the same, without the term", jump[1], kJump_N - kRounding_N, kJump_N + kRounding_N, "N");
+  claims.differs("the same for a plane that recedes, working sign: v_hat is never below 0 (4.13)",
+                 max_force_jump_N(settled(context.run(steady_fall()))), kJump_N - kRounding_N,
+                 kJump_N + kRounding_N, "N", "smooth");
   return figure;
 }
 

@@ -11,7 +11,6 @@ namespace remote_touch {
 
 namespace {
 
-const std::string kTouchFigure = "first-touch";
 constexpr double kSpacing_m = 0.0015;  // spacing of the points, as in Table 4.2
 constexpr int kHandPhases = 9;         // start times for each speed of a hand that moves
 
@@ -58,7 +57,7 @@ struct Losses {
 
 Losses measured(const FigureContext& context, Losses losses, const std::vector<std::string>& overrides) {
   const SweepResult result = context.sweep(Sweep::load("first-touch", overrides));
-  losses.speed_m_per_s = std::get<std::vector<double>>(result.axes[0].values);
+  losses.speed_m_per_s = axis_values(result, 0);
   const std::vector<double>& popped = result.measure("popped_through");
   const std::size_t phases = result.axes[1].length();
   for (std::size_t speed = 0; speed < losses.speed_m_per_s.size(); ++speed) {
@@ -77,9 +76,9 @@ Losses measured(const FigureContext& context, Losses losses, const std::vector<s
 Losses at_rest(const FigureContext& context, double frame_rate_hz) {
   const SweepResult stored = Sweep::load("first-touch").plan();
   const double factor = frame_rate_hz / kLift.frame_rate_hz;
-  std::vector<double> speeds = std::get<std::vector<double>>(stored.axes[0].values);
+  std::vector<double> speeds = axis_values(stored, 0);
   for (double& speed : speeds) speed *= factor;
-  const double last_s = std::get<std::vector<double>>(stored.axes[1].values).back() / factor;
+  const double last_s = axis_values(stored, 1).back() / factor;
   const std::string rate = std::to_string(std::lround(frame_rate_hz));
   return measured(context,
                   {rate + "_hz", rate + " Hz", touch_at(frame_rate_hz, Over::between_points), {}, {}},
@@ -104,65 +103,59 @@ Losses by_hand(const FigureContext& context) {
 
 // Returns a table with one row for each speed of each element of the list.
 Table loss_table(const std::string& name, const std::string& title, const std::vector<Losses>& list) {
-  std::vector<double> rate, beside, speed, lost, formula;
-  for (const Losses& losses : list)
-    for (std::size_t i = 0; i < losses.lost.size(); ++i) {
-      rate.push_back(losses.touch.frame_rate_hz), beside.push_back(losses.touch.nearest_beside_m);
-      speed.push_back(losses.speed_m_per_s[i]), lost.push_back(losses.lost[i]);
-      formula.push_back(lost_at_first_touch(losses.touch, losses.speed_m_per_s[i]));
-    }
-  Table table{name, title};
-  table.add("frame_rate", "Hz", "f_c", rate);
-  table.add("nearest_beside", "m", "from the proxy's centre to the nearest points, along the surface",
-            beside);
-  table.add("speed", "m/s", "speed of the surface", speed);
-  table.add("lost", "1", "fraction of start times at which the proxy was lost", lost);
-  table.add("at_rest", "1", "fraction that the formula gives for a proxy at rest", formula);
-  return table;
+  TableRows rows;
+  for (const Losses& l : list)
+    for (std::size_t i = 0; i < l.lost.size(); ++i)
+      rows.push_back({l.touch.frame_rate_hz, l.touch.nearest_beside_m, l.speed_m_per_s[i], l.lost[i],
+                      lost_at_first_touch(l.touch, l.speed_m_per_s[i])});
+  return table_of(
+      name, title,
+      {{"frame_rate", "Hz", "f_c"},
+       {"nearest_beside", "m", "from the proxy's centre to the nearest points, along the surface"},
+       {"speed", "m/s", "speed of the surface"},
+       {"lost", "1", "fraction of start times at which the proxy was lost"},
+       {"at_rest", "1", "fraction that the formula gives for a proxy at rest"}},
+      rows);
 }
 
 Table formula_table(const Losses& losses) {
-  std::vector<double> speed, lost;
+  TableRows rows;
   const double first = max_first_touch_velocity(losses.touch);
   for (int percent = 80; percent <= 220; ++percent) {
-    speed.push_back(0.01 * percent * first);
-    lost.push_back(lost_at_first_touch(losses.touch, speed.back()));
+    const double speed_m_per_s = 0.01 * percent * first;
+    rows.push_back({speed_m_per_s, lost_at_first_touch(losses.touch, speed_m_per_s)});
   }
-  Table table{"formula_" + losses.name, "the formula, " + losses.meaning};
-  table.add("speed", "m/s", "speed of the surface", speed);
-  table.add("lost", "1", "fraction of start times at which the proxy is lost", lost);
-  return table;
+  return table_of("formula_" + losses.name, "the formula, " + losses.meaning,
+                  {{"speed", "m/s", "speed of the surface"},
+                   {"lost", "1", "fraction of start times at which the proxy is lost"}},
+                  rows);
 }
 
 // The lost start times form one interval (first_touch.h). The number of evenly spaced start times in an
 // interval differs from the formula by less than one.
-Claim formula_claim(const Losses& losses, const std::string& where) {
-  return claim_at_most(
-      kTouchFigure,
-      where +
-          ": fraction of start times at which a proxy at rest is lost, largest difference to "
-          "the formula",
-      "-", losses.max_difference(), 1 / losses.phases, "fraction");
+void add_formula_claim(Figure& figure, const Losses& losses, const std::string& where) {
+  Claims(figure, where)
+      .at_most(
+          ": fraction of start times at which a proxy at rest is lost, largest difference to the formula",
+          losses.max_difference(), 1 / losses.phases, "fraction");
 }
 
 void add_rate_claims(Figure& figure, const Losses& losses) {
-  const std::string where = losses.meaning;
-  figure.claims.push_back(formula_claim(losses, where));
-  figure.claims.push_back(claim_at_most(
-      kTouchFigure, where + ": proxies lost up to the speed (r_1^2 - s^2 / 2)^(1/2) f_c", "r_1 f_c (4.14)",
-      losses.max_lost_up_to(max_first_touch_velocity(losses.touch)), 0, "fraction"));
-  figure.claims.push_back(set_up(
-      claim_at_least(kTouchFigure, where + ": speeds at which some start times are lost and some are not",
-                     "-", losses.undecided_speeds(), 8, "speeds")));
+  const std::string where = losses.meaning + ": ";
+  const Claims claims(figure, where), checks(figure, where, &Claim::set_up);
+  add_formula_claim(figure, losses, losses.meaning);
+  claims.at_most("proxies lost up to the speed (r_1^2 - s^2 / 2)^(1/2) f_c",
+                 losses.max_lost_up_to(max_first_touch_velocity(losses.touch)), 0, "fraction",
+                 "r_1 f_c (4.14)");
+  checks.at_least("speeds at which some start times are lost and some are not", losses.undecided_speeds(), 8,
+                  "speeds");
 }
 
 void add_hand_claims(Figure& figure, const Losses& losses) {
   const double limit = max_touched_velocity(losses.touch);
-  const std::string what = "a hand presses onto the moving surface, 30 Hz: fraction lost ";
-  figure.claims.push_back(claim_at_most(kTouchFigure, what + "up to (r_c^2 - s^2 / 2)^(1/2) f_c", "-",
-                                        losses.max_lost_up_to(limit), 0, "fraction"));
-  figure.claims.push_back(claim_at_least(kTouchFigure, what + "at higher speeds", "-",
-                                         losses.min_lost_above(limit), 1, "fraction"));
+  const Claims claims(figure, "a hand presses onto the moving surface, 30 Hz: fraction lost ");
+  claims.at_most("up to (r_c^2 - s^2 / 2)^(1/2) f_c", losses.max_lost_up_to(limit), 0, "fraction");
+  claims.at_least("at higher speeds", losses.min_lost_above(limit), 1, "fraction");
 }
 
 Panel panel(const std::string& title, const std::vector<Losses>& list, const std::string& table) {
@@ -178,7 +171,7 @@ Panel panel(const std::string& title, const std::vector<Losses>& list, const std
 
 Figure figure_first_touch(const FigureContext& context) {
   Figure figure{
-      kTouchFigure, "Pop-through at the first touch",
+      "first-touch", "Pop-through at the first touch",
       "A surface without noise moves evenly towards a proxy at rest. When it first touches the proxy, "
       "the velocity estimate is 0. Drawn is the fraction of 63 start times, uniform over one interval "
       "between two frames, at which the surface passes the proxy (dots), and the derived fraction "
@@ -188,7 +181,7 @@ Figure figure_first_touch(const FigureContext& context) {
   for (const double rate_hz : {15.0, 30.0, 60.0}) rates.push_back(at_rest(context, rate_hz));
   for (const Losses& losses : rates) add_rate_claims(figure, losses);
   const std::vector<Losses> points = {over_a_point(context)}, hands = {by_hand(context)};
-  figure.claims.push_back(formula_claim(points[0], "over a point, 30 Hz"));
+  add_formula_claim(figure, points[0], "over a point, 30 Hz");
   add_hand_claims(figure, hands[0]);
 
   for (const Losses& losses : rates) figure.tables.push_back(formula_table(losses));

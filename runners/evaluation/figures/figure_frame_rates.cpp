@@ -10,8 +10,6 @@ namespace remote_touch {
 
 namespace {
 
-const std::string kRatesFigure = "frame-rates";
-
 // The accelerations between which lifts begin to pop through, at one frame rate.
 struct Threshold {
   double frame_rate_hz = 0;
@@ -24,8 +22,7 @@ struct Threshold {
 };
 
 std::vector<Threshold> thresholds(const SweepResult& lifts) {
-  const auto& rates = std::get<std::vector<double>>(lifts.axes[0].values);
-  const auto& accelerations = std::get<std::vector<double>>(lifts.axes[1].values);
+  const auto &rates = axis_values(lifts, 0), &accelerations = axis_values(lifts, 1);
   const std::vector<double>& popped = lifts.measure("popped_through");
   std::vector<Threshold> list;
   for (std::size_t rate = 0; rate < rates.size(); ++rate) {
@@ -41,67 +38,53 @@ std::vector<Threshold> thresholds(const SweepResult& lifts) {
 }
 
 Table threshold_table(const std::vector<Threshold>& list) {
-  std::vector<double> rate, survives, pops, bound;
-  for (const Threshold& threshold : list) {
-    rate.push_back(threshold.frame_rate_hz), bound.push_back(threshold.bound());
-    survives.push_back(threshold.survives), pops.push_back(threshold.pops);
-  }
-  Table table{"critical", "critical acceleration without noise, by frame rate"};
-  table.add("frame_rate", "Hz", "f_c", rate);
-  table.add("survives", "m/s^2", "largest acceleration below which no lift popped through", survives);
-  table.add("pops", "m/s^2", "smallest acceleration with pop-through", pops);
-  table.add("bound", "m/s^2", "r_1 f_c^2 (4.14)", bound);
-  return table;
+  return table_over<Threshold>(
+      "critical", "critical acceleration without noise, by frame rate", list,
+      {{"frame_rate", "Hz", "f_c", &Threshold::frame_rate_hz},
+       {"survives", "m/s^2", "largest acceleration below which no lift popped through", &Threshold::survives},
+       {"pops", "m/s^2", "smallest acceleration with pop-through", &Threshold::pops},
+       {"bound", "m/s^2", "r_1 f_c^2 (4.14)", &Threshold::bound}});
 }
 
 // Returns the bound over the frame rate, for a curve.
 Table curve_table() {
-  std::vector<double> rate, bound;
+  TableRows rows;
   for (int hz = 10; hz <= 70; ++hz)
-    rate.push_back(hz), bound.push_back(critical_acceleration({kLift.r1_m, rate.back(), 0}));
-  Table table{"bound", "(4.14)"};
-  table.add("frame_rate", "Hz", "f_c", rate);
-  table.add("bound", "m/s^2", "r_1 f_c^2", bound);
-  return table;
+    rows.push_back({static_cast<double>(hz), Threshold{static_cast<double>(hz)}.bound()});
+  return table_of("bound", "(4.14)", {{"frame_rate", "Hz", "f_c"}, {"bound", "m/s^2", "r_1 f_c^2"}}, rows);
 }
 
 // The range of 3 % has two reasons: the proxy sinks up to 0.113 mm between four points, and the axis has
 // steps of 1 %. See figure "bounds".
-std::vector<Claim> rate_claims(const std::vector<Threshold>& list) {
-  std::vector<Claim> claims;
+void add_claims(Figure& figure, const std::vector<Threshold>& list) {
+  const Claims claims(figure);
   int out_of_order = 0;
   for (const Threshold& threshold : list) {
     const std::string rate = std::to_string(static_cast<int>(threshold.frame_rate_hz));
-    claims.push_back(claim_between(
-        kRatesFigure,
+    claims.between(
         "critical acceleration without noise at " + rate + " frames per second, in units of r_1 f_c^2",
-        "1 (4.14)", threshold.critical() / threshold.bound(), 0.97, 1.03, "1"));
+        threshold.critical() / threshold.bound(), 0.97, 1.03, "1", "1 (4.14)");
     out_of_order += threshold.out_of_order;
   }
-  claims.push_back(claim_at_most(kRatesFigure, "lifts that survived above their critical acceleration", "-",
-                                 out_of_order, 0, "lifts"));
-  return claims;
+  claims.at_most("lifts that survived above their critical acceleration", out_of_order, 0, "lifts");
 }
 
 }  // namespace
 
 Figure figure_frame_rates(const FigureContext& context) {
   const std::vector<Threshold> list = thresholds(context.sweep(Sweep::load("frame-rates")));
-  const Panel panel{"Critical acceleration",
-                    "frame rate (Hz)",
-                    "acceleration (m/s^2)",
-                    false,
-                    {{"bound", "frame_rate", "bound", CurveStyle::line, "r_1 f_c^2 (4.14)"},
-                     {"critical", "frame_rate", "survives", CurveStyle::dots, "no pop-through up to here"},
-                     {"critical", "frame_rate", "pops", CurveStyle::dots, "pop-through"}}};
-  return {
-      kRatesFigure,
-      "Pop-through at other frame rates",
+  Figure figure{
+      "frame-rates", "Pop-through at other frame rates",
       "The same motion without noise, seen at 15, 30 and 60 frames per second: up to which acceleration the "
-      "proxy stays on the surface. Rise at 0.05 m/s, acceleration for a third of a second; simulated.",
-      {threshold_table(list), curve_table()},
-      {panel},
-      rate_claims(list)};
+      "proxy stays on the surface. Rise at 0.05 m/s, acceleration for a third of a second; simulated."};
+  figure.tables = {threshold_table(list), curve_table()};
+  figure.panels = {
+      plot("Critical acceleration", "frame rate (Hz)", "acceleration (m/s^2)",
+           {{"bound", "frame_rate", "bound", CurveStyle::line, "r_1 f_c^2 (4.14)"},
+            {"critical", "frame_rate", "survives", CurveStyle::dots, "no pop-through up to here"},
+            {"critical", "frame_rate", "pops", CurveStyle::dots, "pop-through"}})};
+  add_claims(figure, list);
+  return figure;
 }
 
 }  // namespace remote_touch

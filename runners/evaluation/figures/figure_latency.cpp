@@ -1,10 +1,10 @@
 // Violation of a fixture when frames arrive late, at irregular times or not at all. Chapter 8 names this
 // question and does not measure it.
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -42,14 +42,11 @@ struct Measured {
   SweepResult plan;
   std::vector<Violation> plain, ahead;
 
-  const std::vector<double>& axis(std::size_t a) const {
-    return std::get<std::vector<double>>(plan.axes.at(a).values);
-  }
   // Returns the value of an axis for each run.
   std::vector<double> axis_of_runs(std::size_t a) const {
     std::vector<double> list;
     for (std::size_t run = 0; run < plan.run_count(); ++run)
-      list.push_back(axis(a)[plan.axis_indices(plan.cell_of(run))[a]]);
+      list.push_back(axis_value(plan, a, plan.cell_of(run)));
     return list;
   }
 };
@@ -62,104 +59,94 @@ Measured measured(const FigureContext& context, const std::string& name) {
   return {plain.plan(), context.measure(plain, violation), context.measure(ahead, violation)};
 }
 
-std::vector<double> times(const std::vector<double>& values, double factor) {
-  std::vector<double> list;
-  for (const double value : values) list.push_back(factor * value);
-  return list;
-}
-
 Table map_table(const Measured& m) {
   const auto latency = m.axis_of_runs(0), speed = m.axis_of_runs(1);
-  std::vector<double> max, predicted, settled;
-  for (std::size_t i = 0; i < m.plain.size(); ++i) {
-    max.push_back(1e3 * m.plain[i].max_m), settled.push_back(1e3 * m.ahead[i].settled_m);
-    predicted.push_back(1e3 * predicted_m(speed[i], latency[i]));
-  }
-  Table table{"delay_and_speed", "violation of a fixture on a surface that rises evenly"};
-  table.add("latency", "ms", "time from capture to arrival", times(latency, 1e3));
-  table.add("speed", "m/s", "speed of the surface", speed);
-  table.add("violation", "mm", "largest depth of the slave in the region", max);
-  table.add("predicted", "mm", "speed times (latency + one frame interval)", predicted);
-  table.add("with_prediction", "mm", "depth with the slave sent ahead, from 1.5 s on", settled);
-  return table;
+  TableRows rows;
+  for (std::size_t i = 0; i < m.plain.size(); ++i)
+    rows.push_back({1e3 * latency[i], speed[i], 1e3 * m.plain[i].max_m,
+                    1e3 * predicted_m(speed[i], latency[i]), 1e3 * m.ahead[i].settled_m});
+  return table_of("delay_and_speed", "violation of a fixture on a surface that rises evenly",
+                  {{"latency", "ms", "time from capture to arrival"},
+                   {"speed", "m/s", "speed of the surface"},
+                   {"violation", "mm", "largest depth of the slave in the region"},
+                   {"predicted", "mm", "speed times (latency + one frame interval)"},
+                   {"with_prediction", "mm", "depth with the slave sent ahead, from 1.5 s on"}},
+                  rows);
 }
 
 // Returns the curve of delays and speeds at which the predicted violation is r_f: the slave then reaches the
 // surface that the fixture protects.
 Table tissue_table() {
-  Table table{"tissue", "where the slave reaches the surface itself"};
-  std::vector<double> latency, speed;
-  for (int ms = 67; ms <= 200; ++ms) {
-    latency.push_back(ms);
-    speed.push_back(kLatencyRadius_m / (1e-3 * ms + 1 / kFrameRate_hz));
-  }
-  table.add("latency", "ms", "time from capture to arrival", latency);
-  table.add("speed", "m/s", "speed of the surface", speed);
-  return table;
+  TableRows rows;
+  for (int ms = 67; ms <= 200; ++ms)
+    rows.push_back({static_cast<double>(ms), kLatencyRadius_m / (1e-3 * ms + 1 / kFrameRate_hz)});
+  return table_of(
+      "tissue", "where the slave reaches the surface itself",
+      {{"latency", "ms", "time from capture to arrival"}, {"speed", "m/s", "speed of the surface"}}, rows);
 }
 
 // Returns mean and maximum over the replicates; one row for each value of the only axis.
 Table spread_table(const std::string& axis, const std::string& unit, double scale, const Measured& m) {
   const auto replicates = static_cast<std::size_t>(m.plan.replicates);
-  std::vector<double> place, mean, highest, mean_ahead;
+  TableRows rows;
   for (std::size_t cell = 0; cell < m.plan.cell_count(); ++cell) {
     double sum = 0, sum_ahead = 0, max = 0;
     for (std::size_t run = cell * replicates; run < (cell + 1) * replicates; ++run) {
       sum += m.plain[run].max_m, sum_ahead += m.ahead[run].settled_m;
       max = max_or_nan(max, m.plain[run].max_m);
     }
-    place.push_back(scale * m.axis(0)[cell]);
-    mean.push_back(1e3 * sum / m.plan.replicates), highest.push_back(1e3 * max);
-    mean_ahead.push_back(1e3 * sum_ahead / m.plan.replicates);
+    rows.push_back({scale * axis_values(m.plan, 0)[cell], 1e3 * sum / m.plan.replicates, 1e3 * max,
+                    1e3 * sum_ahead / m.plan.replicates});
   }
-  Table table{axis, "violation over 20 runs"};
-  table.add(axis, unit, m.plan.axes[0].long_name, place);
-  table.add("mean", "mm", "mean of the runs' largest depths", mean);
-  table.add("max", "mm", "maximum of the runs", highest);
-  table.add("with_prediction", "mm", "mean with the slave sent ahead, from 1.5 s on", mean_ahead);
-  return table;
+  return table_of(axis, "violation over 20 runs",
+                  {{axis, unit, m.plan.axes[0].long_name},
+                   {"mean", "mm", "mean of the runs' largest depths"},
+                   {"max", "mm", "maximum of the runs"},
+                   {"with_prediction", "mm", "mean with the slave sent ahead, from 1.5 s on"}},
+                  rows);
 }
 
 void add_jitter_bounds(Table& table) {
-  std::vector<double> lowest, highest;
-  for (const double jitter_ms : numbers(table, "jitter")) {
-    lowest.push_back(1e3 * predicted_m(kSpeed_m_per_s, kLatency_s));
-    highest.push_back(1e3 * predicted_m(kSpeed_m_per_s, kLatency_s + 1e-3 * jitter_ms));
-  }
-  table.add("all_early", "mm", "speed times (latency + one interval)", lowest);
-  table.add("all_late", "mm", "speed times (latency + jitter + one interval)", highest);
+  TableRows rows;
+  for (const double jitter_ms : numbers(table, "jitter"))
+    rows.push_back({1e3 * predicted_m(kSpeed_m_per_s, kLatency_s),
+                    1e3 * predicted_m(kSpeed_m_per_s, kLatency_s + 1e-3 * jitter_ms)});
+  add_rows(table,
+           {{"all_early", "mm", "speed times (latency + one interval)"},
+            {"all_late", "mm", "speed times (latency + jitter + one interval)"}},
+           rows);
 }
 
 // One row for each delay, one column for each heart rate.
 Table heart_table(const Measured& m) {
-  const auto& rates = m.axis(1);
+  const auto& rates = axis_values(m.plan, 1);
   Table table{"heart", "violation of a fixture on a beating heart"};
-  table.add("latency", "ms", "from capture to arrival", times(m.axis(0), 1e3));
+  add_columns<double>(table, axis_values(m.plan, 0),
+                      {{"latency", "ms", "from capture to arrival", [](double s) { return 1e3 * s; }}});
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    std::vector<double> plain, ahead;
+    TableRows rows;
     for (std::size_t cell = k; cell < m.plan.cell_count(); cell += rates.size())
-      plain.push_back(1e3 * m.plain[cell].settled_m), ahead.push_back(1e3 * m.ahead[cell].settled_m);
+      rows.push_back({1e3 * m.plain[cell].settled_m, 1e3 * m.ahead[cell].settled_m});
     const std::string name = "rate_" + std::to_string(static_cast<int>(rates[k]));
-    table.add(name, "mm", "largest depth of the slave in the region, from 1.5 s on", plain);
-    table.add(name + "_ahead", "mm", "the same with the slave sent ahead", ahead);
+    add_rows(table,
+             {{name, "mm", "largest depth of the slave in the region, from 1.5 s on"},
+              {name + "_ahead", "mm", "the same with the slave sent ahead"}},
+             rows);
   }
   return table;
 }
 
 Panel depth_panel(const std::string& title, const std::string& x_label, std::vector<Curve> curves) {
-  return {title, x_label, "depth in the region (mm)", false, std::move(curves)};
+  return plot(title, x_label, "depth in the region (mm)", std::move(curves));
 }
 
-std::vector<Panel> panels() {
-  Panel map{"Violation by delay and speed",
-            "latency (ms)",
-            "speed of the surface (m/s)",
-            false,
-            {{"delay_and_speed", "latency", "speed", CurveStyle::map, "", 0, "violation"},
-             {"tissue", "latency", "speed", CurveStyle::line, "predicted to reach the surface"}}};
-  map.y_range = std::pair(-0.005, 0.205);
-  std::vector<Panel> list = {
-      map,
+void add_latency_panels(Figure& figure) {
+  std::vector<Panel>& list = figure.panels;
+  list = {
+      plot("Violation by delay and speed", "latency (ms)", "speed of the surface (m/s)",
+           {{"delay_and_speed", "latency", "speed", CurveStyle::map, "", 0, "violation"},
+            {"tissue", "latency", "speed", CurveStyle::line, "predicted to reach the surface"}},
+           {.y_range = {{-0.005, 0.205}}}),
       depth_panel("Irregular delay, 0.1 m/s, 50 ms", "jitter (ms)",
                   {{"jitter", "jitter", "all_early", CurveStyle::band, "bounds", 0, "all_late"},
                    {"jitter", "jitter", "max", CurveStyle::dots, "maximum of 20 runs"},
@@ -177,11 +164,7 @@ std::vector<Panel> panels() {
     list[3].curves.push_back(
         {"heart", "latency", column + "_ahead", CurveStyle::dashed, "slave sent ahead, settled"});
   }
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::size_t row = i / 2, column = i % 2;
-    list[i].grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
-  }
-  return list;
+  place_in_rows(figure, 2);
 }
 
 // Largest error, at least 0, over the cells in which the predicted violation is below the limit; NaN if there
@@ -223,34 +206,31 @@ Figure figure_latency(const FigureContext& context) {
              &settled = numbers(map, "with_prediction");
 
   Figure figure{
-      "latency",
-      "Fixtures from late frames",
+      "latency", "Fixtures from late frames",
       "A surface with r_f = 0.02 m rises evenly against a pressing HIP, and frames arrive late; "
       "simulated. Depth: how deep the contact point of the slave, which is sent to the proxy, is inside the "
       "region of the surface, both at the same moment. The depth is the distance that the surface moves "
       "in the delay and one frame interval; the correction (4.3) does not change that. At 20 mm the "
       "slave reaches the surface itself. Dashed, after the estimate has settled: the slave is sent ahead "
-      "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation.",
-      {map, tissue_table(), jitter, drops, heart},
-      panels()};
+      "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation."};
+  figure.tables = {map, tissue_table(), jitter, drops, heart};
+  add_latency_panels(figure);
   // kSinks_mm: a proxy of radius r_f + r_c sinks between points 1.5 mm apart, in the middle of four, and
   // rests within 0.01 mm of r_c. Frames arrive every 33 1/3 ticks, so the oldest frame is at most a third of
   // a tick younger than the rule states, on a surface of up to 0.2 m/s. With jitter it is a tick, at 0.1 m/s.
   constexpr double kSinks_mm = 1.5 * 1.5 / 4 / 25 + 0.01, kThirdOfTick_mm = 0.2 / 3, kTick_mm = 0.1;
-  figure.claims = {
-      claim_at_most("latency",
-                    "violation against speed x (latency + frame interval), where that is below r_f", "-",
-                    max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
-                    kThirdOfTick_mm + kSinks_mm, "mm"),
-      claim_at_least("latency", "cells in which the same rule predicts whether the slave reaches the surface",
-                     "-", fraction_known(map), 0.99, "fraction"),
-      claim_at_most("latency", "violation with the slave sent ahead, settled, where it was below r_f", "-",
-                    max_error(map, 20, [&](std::size_t i) { return settled[i]; }), kSinks_mm, "mm"),
-      claim_at_most("latency", "jittered runs: how far outside the bounds for all early and all late", "-",
-                    max_outside(jitter), kTick_mm + kSinks_mm, "mm"),
-      claim_at_least("latency", "lost frames: mean violation at a loss of 0.3 over that at 0", "-",
-                     numbers(drops, "mean")[6] / numbers(drops, "mean")[0], 1.5, "1"),
-  };
+  const Claims claims(figure);
+  claims.at_most("violation against speed x (latency + frame interval), where that is below r_f",
+                 max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
+                 kThirdOfTick_mm + kSinks_mm, "mm");
+  claims.at_least("cells in which the same rule predicts whether the slave reaches the surface",
+                  fraction_known(map), 0.99, "fraction");
+  claims.at_most("violation with the slave sent ahead, settled, where it was below r_f",
+                 max_error(map, 20, [&](std::size_t i) { return settled[i]; }), kSinks_mm, "mm");
+  claims.at_most("jittered runs: how far outside the bounds for all early and all late", max_outside(jitter),
+                 kTick_mm + kSinks_mm, "mm");
+  claims.at_least("lost frames: mean violation at a loss of 0.3 over that at 0",
+                  numbers(drops, "mean")[6] / numbers(drops, "mean")[0], 1.5, "1");
   return figure;
 }
 

@@ -2,7 +2,6 @@
 // over the number of proxy steps that a machine makes in a frame.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
@@ -45,9 +44,8 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
   const std::vector<NoiseMeans> lifts = context.measure(sweep, noise_means);
   std::vector<Machine> list;
   for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
-    const auto indices = plan.axis_indices(cell);
-    const double rate_hz = std::get<std::vector<double>>(plan.axes[0].values)[indices[0]];
-    if (indices[1] == 0)
+    const double rate_hz = axis_value(plan, 0, cell);
+    if (plan.axis_indices(cell)[1] == 0)
       list.emplace_back().steps = static_cast<int>(std::lround(steps_per_tick * rate_hz / kFrames_hz));
     NoiseMeans sum;
     double count = 0;
@@ -57,7 +55,7 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
       sum.thickness_m += one.thickness_m, sum.at_end += one.at_end, sum.in_time += one.in_time, ++count;
     }
     Machine& to = list.back();
-    to.noise_m.push_back(std::get<std::vector<double>>(plan.axes[1].values)[indices[1]]);
+    to.noise_m.push_back(axis_value(plan, 1, cell));
     to.thickness_m.push_back(sum.thickness_m / count);
     to.at_end.push_back(sum.at_end / count), to.in_time.push_back(sum.in_time / count);
   }
@@ -153,17 +151,13 @@ double critical_rc_per_s(const Predecessor& p) {
 }
 
 Table predecessor_table(const std::vector<Predecessor>& list) {
-  std::vector<double> steps, step, critical, expected;
-  for (const Predecessor& p : list) {
-    steps.push_back(p.steps), step.push_back(p.step_m);
-    critical.push_back(critical_rc_per_s(p)), expected.push_back(expected_rc_per_s(p));
-  }
-  Table table{"predecessor", "velocity above which the predecessor pops through, without noise"};
-  table.add("steps", "1", "proxy steps in a frame", steps);
-  table.add("step", "m", "length of a step", step);
-  table.add("critical", "r_c/s", "velocity above which it pops through", critical);
-  table.add("expected", "r_c/s", "steps times their length in a frame, at most r_1, times f_c", expected);
-  return table;
+  return table_over<Predecessor>(
+      "predecessor", "velocity above which the predecessor pops through, without noise", list,
+      {{"steps", "1", "proxy steps in a frame", &Predecessor::steps},
+       {"step", "m", "length of a step", &Predecessor::step_m},
+       {"critical", "r_c/s", "velocity above which it pops through", critical_rc_per_s},
+       {"expected", "r_c/s", "steps times their length in a frame, at most r_1, times f_c",
+        expected_rc_per_s}});
 }
 
 // --- the figure ---
@@ -172,53 +166,50 @@ std::string table_name(const Machine& machine) {
   return "steps_" + std::to_string(machine.steps);
 }
 
-Table machine_table(const Machine& machine) {
-  std::vector<double> noise, thickness, normal_error;
-  for (const double sigma : machine.noise_m) {
-    noise.push_back(sigma / kContactRadius_m);
-    thickness.push_back(printed_thickness().at(sigma)),
-        normal_error.push_back(printed_normal_error().at(sigma));
-  }
-  Table table{table_name(machine), std::to_string(machine.steps) + " proxy steps in a frame"};
-  table.add("noise", "r_c", "standard deviation of the noise", noise);
-  table.add("thickness", "m", "h before an update, mean", machine.thickness_m);
-  table.add("at_end", "1", "e_n before an update, mean", machine.at_end);
-  table.add("in_time", "1", "e_n, mean over all steps of a frame", machine.in_time);
-  table.add("printed_thickness", "m", "(4.23)", thickness);
-  table.add("printed_normal_error", "1", "(4.24)", normal_error);
-  return table;
+Table machine_table(const Machine& m) {
+  TableRows rows;
+  for (std::size_t i = 0; i < m.noise_m.size(); ++i)
+    rows.push_back({m.noise_m[i] / kContactRadius_m, m.thickness_m[i], m.at_end[i], m.in_time[i],
+                    printed_thickness().at(m.noise_m[i]), printed_normal_error().at(m.noise_m[i])});
+  return table_of(table_name(m), std::to_string(m.steps) + " proxy steps in a frame",
+                  {kNoiseColumn,
+                   {"thickness", "m", "h before an update, mean"},
+                   {"at_end", "1", "e_n before an update, mean"},
+                   {"in_time", "1", "e_n, mean over all steps of a frame"},
+                   {"printed_thickness", "m", "(4.23)"},
+                   {"printed_normal_error", "1", "(4.24)"}},
+                  rows);
 }
 
 Table summary_table(const std::vector<Machine>& list) {
-  std::vector<double> steps, h_rms, h_in, end_rms, end_in, time_rms, time_in, end_last, time_last;
+  const PrintedFit &h = printed_thickness(), &e = printed_normal_error();
+  TableRows rows;
   for (const Machine& m : list) {
-    const PrintedFit &h = printed_thickness(), &e = printed_normal_error();
-    steps.push_back(m.steps);
-    h_rms.push_back(rms_from(h, m.noise_m, m.thickness_m));
-    h_in.push_back(strengths_in_band(h, m.noise_m, m.thickness_m));
-    end_rms.push_back(rms_from(e, m.noise_m, m.at_end));
-    end_in.push_back(strengths_in_band(e, m.noise_m, m.at_end));
-    time_rms.push_back(rms_from(e, m.noise_m, m.in_time));
-    time_in.push_back(strengths_in_band(e, m.noise_m, m.in_time));
-    end_last.push_back(m.at_end.back()), time_last.push_back(m.in_time.back());
+    const auto in_band = [&](const PrintedFit& fit, const std::vector<double>& values) {
+      return static_cast<double>(strengths_in_band(fit, m.noise_m, values));
+    };
+    rows.push_back({static_cast<double>(m.steps), rms_from(h, m.noise_m, m.thickness_m),
+                    in_band(h, m.thickness_m), rms_from(e, m.noise_m, m.at_end), in_band(e, m.at_end),
+                    rms_from(e, m.noise_m, m.in_time), in_band(e, m.in_time), m.at_end.back(),
+                    m.in_time.back()});
   }
-  Table table{"machines", "how near each machine comes to (4.23) and (4.24), noise to 2 r_c"};
-  table.add("steps", "1", "proxy steps in a frame", steps);
-  table.add("h_rms", "m", "h against (4.23), rms", h_rms);
-  table.add("h_in_band", "1", "noise strengths, of 6 from r_c on, with h in what the digits of (4.23) allow",
-            h_in);
-  table.add("at_end_rms", "1", "e_n before an update against (4.24), rms", end_rms);
-  table.add("at_end_in_band", "1", "noise strengths with that in what the digits of (4.24) allow", end_in);
-  table.add("in_time_rms", "1", "e_n over all steps against (4.24), rms", time_rms);
-  table.add("in_time_in_band", "1", "noise strengths with that in what the digits of (4.24) allow", time_in);
-  table.add("at_end_2_rc", "1", "e_n before an update at 2 r_c", end_last);
-  table.add("in_time_2_rc", "1", "e_n over all steps at 2 r_c", time_last);
-  return table;
+  return table_of(
+      "machines", "how near each machine comes to (4.23) and (4.24), noise to 2 r_c",
+      {{"steps", "1", "proxy steps in a frame"},
+       {"h_rms", "m", "h against (4.23), rms"},
+       {"h_in_band", "1", "noise strengths, of 6 from r_c on, with h in what the digits of (4.23) allow"},
+       {"at_end_rms", "1", "e_n before an update against (4.24), rms"},
+       {"at_end_in_band", "1", "noise strengths with that in what the digits of (4.24) allow"},
+       {"in_time_rms", "1", "e_n over all steps against (4.24), rms"},
+       {"in_time_in_band", "1", "noise strengths with that in what the digits of (4.24) allow"},
+       {"at_end_2_rc", "1", "e_n before an update at 2 r_c"},
+       {"in_time_2_rc", "1", "e_n over all steps at 2 r_c"}},
+      rows);
 }
 
-// Returns the claims about the predecessor [1]: its velocity limit follows from the sum of its steps in a
+// Adds the claims about the predecessor [1]: its velocity limit follows from the sum of its steps in a
 // frame.
-std::vector<Claim> predecessor_claims(const std::vector<Predecessor>& list) {
+void add_predecessor_claims(const Claims& claims, const std::vector<Predecessor>& list) {
   double max_apart = 0, least = 1e9, most = 0;
   const Predecessor* fast = nullptr;
   for (const Predecessor& p : list) {
@@ -230,21 +221,19 @@ std::vector<Claim> predecessor_claims(const std::vector<Predecessor>& list) {
   // Tolerances: a fixed step of 0.1 mm may leave the proxy that much too low, it sinks 0.11 mm between four
   // points, and the bisection ends 0.16 r_c/s wide. A lag of r_1 in 3.5 s adds 0.3 r_c/s.
   constexpr double kApart = (1e-4 + 1.1e-4) * kFrames_hz / kContactRadius_m + 0.16, kSlow = 0.16 + 0.3;
-  const std::string n = "proxy-rates";
-  return {claim_at_most(n,
-                        "[1]: velocity above which it pops through against steps x length x f_c (at most r_1 "
-                        "f_c), largest difference",
-                        "-", max_apart, kApart, "r_c/s"),
-          claim_between(n, "[1] with 2.67 mm of steps in a frame: least velocity over the machines", "16",
-                        least, kPrinted_rc_per_s - kSlow, kPrinted_rc_per_s + kSlow, "r_c/s"),
-          claim_between(n, "the same, largest velocity", "16", most, kPrinted_rc_per_s - kSlow,
-                        kPrinted_rc_per_s + kSlow, "r_c/s"),
-          claim_differs(n, "[1] with steps of 0.1 mm at 30 kHz: velocity above which it pops through", "16",
-                        critical_rc_per_s(*fast), 28, 30, "r_c/s")};
+  claims.at_most(
+      "[1]: velocity above which it pops through against steps x length x f_c (at most r_1 "
+      "f_c), largest difference",
+      max_apart, kApart, "r_c/s");
+  claims.between("[1] with 2.67 mm of steps in a frame: least velocity over the machines", least,
+                 kPrinted_rc_per_s - kSlow, kPrinted_rc_per_s + kSlow, "r_c/s", "16");
+  claims.between("the same, largest velocity", most, kPrinted_rc_per_s - kSlow, kPrinted_rc_per_s + kSlow,
+                 "r_c/s", "16");
+  claims.differs("[1] with steps of 0.1 mm at 30 kHz: velocity above which it pops through",
+                 critical_rc_per_s(*fast), 28, 30, "r_c/s", "16");
 }
 
-std::vector<Claim> machine_claims(const std::vector<Machine>& list) {
-  const std::string n = "proxy-rates";
+void add_machine_claims(const Claims& claims, const std::vector<Machine>& list) {
   std::vector<double> between, slow, fast, at_end;  // numbers of strengths, one for each machine
   for (const Machine& m : list) {
     const int both = strengths_as_printed(m, m.in_time);
@@ -253,16 +242,16 @@ std::vector<Claim> machine_claims(const std::vector<Machine>& list) {
     if (m.steps == kFastSteps) fast.push_back(both);
     at_end.push_back(strengths_as_printed(m, m.at_end));
   }
-  const std::string of = " of 6 noise strengths from r_c to 2 r_c";
-  return {
-      claim_at_least(n, "60, 70 and 80 steps: h and e_n over time in the digits of (4.23) and (4.24)," + of,
-                     "6", min_of(between), kStrengths, "strengths"),
-      claim_differs(n, "33, 40 and 50 steps: the same, the best of them,", "6", max_of(slow), 0,
-                    kStrengths - 1, "strengths"),
-      claim_differs(n, "1000 steps, the 30 kHz of 4.3.4: the same", "6", max_of(fast), 0, kStrengths - 1,
-                    "strengths"),
-      claim_differs(n, "the same with e_n before an update instead of over time, best machine", "6",
-                    max_of(at_end), 0, kStrengths - 1, "strengths")};
+  claims.at_least(
+      "60, 70 and 80 steps: h and e_n over time in the digits of (4.23) and (4.24), of 6 noise "
+      "strengths from r_c to 2 r_c",
+      min_of(between), kStrengths, "strengths", "6");
+  claims.differs("33, 40 and 50 steps: the same, the best of them,", max_of(slow), 0, kStrengths - 1,
+                 "strengths", "6");
+  claims.differs("1000 steps, the 30 kHz of 4.3.4: the same", max_of(fast), 0, kStrengths - 1, "strengths",
+                 "6");
+  claims.differs("the same with e_n before an update instead of over time, best machine", max_of(at_end), 0,
+                 kStrengths - 1, "strengths", "6");
 }
 
 }  // namespace
@@ -297,15 +286,14 @@ Figure figure_proxy_rates(const FigureContext& context) {
   const std::string any = table_name(list.front());
   thickness.curves.push_back({any, "noise", "printed_thickness", CurveStyle::dashed, "printed"});
   normal_error.curves.push_back({any, "noise", "printed_normal_error", CurveStyle::dots, "printed"});
-  Panel velocity{"Predecessor [1]: velocity that it holds",
-                 "steps x length x f_c, at most r_1 f_c (r_c/s)",
-                 "measured (r_c/s)",
-                 false,
-                 {{"predecessor", "expected", "expected", CurveStyle::dashed, "equal"},
-                  {"predecessor", "expected", "critical", CurveStyle::dots, "measured"}}};
+  const Panel velocity = plot("Predecessor [1]: velocity that it holds",
+                              "steps x length x f_c, at most r_1 f_c (r_c/s)", "measured (r_c/s)",
+                              {{"predecessor", "expected", "expected", CurveStyle::dashed, "equal"},
+                               {"predecessor", "expected", "critical", CurveStyle::dots, "measured"}});
   figure.panels = {thickness, normal_error, velocity};
-  figure.claims = machine_claims(list);
-  for (Claim& claim : predecessor_claims(before)) figure.claims.push_back(std::move(claim));
+  const Claims claims(figure);
+  add_machine_claims(claims, list);
+  add_predecessor_claims(claims, before);
   return figure;
 }
 

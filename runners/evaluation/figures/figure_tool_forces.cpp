@@ -10,6 +10,7 @@
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -183,29 +184,21 @@ PressResults results_of(const FigureContext& context, const std::vector<ModelPre
 Table deviation_table(const std::string& name, const std::string& title, const std::string& setting,
                       const std::string& what, const std::vector<ModelPress>& presses,
                       const PressResults& results) {
-  std::vector<double> settings;
-  for (const ModelPress& press : presses) settings.push_back(press.setting);
-  Table table{name, title, {}};
-  table.add(setting, "deg", what, settings);
+  Table table = table_over<ModelPress>(name, title, presses, {{setting, "deg", what, &ModelPress::setting}});
   for (std::size_t m = 0; m < results.size(); ++m) {
     const std::string column = kToolMethods[m].column;
-    const auto add = [&](const std::string& of, const std::string& units, const std::string& meaning,
-                         auto&& value) {
-      std::vector<double> values;
-      for (const PressResult& one : results[m]) values.push_back(value(one));
-      table.add(column + "_" + of, units, meaning, values);
-    };
-    add("force", "1", "mean deviation of |force|, fraction", [](const auto& r) { return r.force.magnitude; });
-    add("force_missing", "1", "fraction of ticks without a force",
-        [](const auto& r) { return r.force.missing; });
-    add("force_direction", "deg", "mean angle to the exact force, where there is one",
-        [](const auto& r) { return r.force.direction_deg; });
-    add("torque", "1", "mean deviation of |torque|, fraction; NaN where none is exact",
-        [](const auto& r) { return r.torque.magnitude; });
-    add("torque_direction", "deg", "mean angle to the exact torque, where there is one",
-        [](const auto& r) { return r.torque.direction_deg; });
-    add("stray_torque", "N m", "mean of |torque - exact torque|",
-        [](const auto& r) { return r.torque_error_Nm; });
+    TableRows rows;
+    for (const PressResult& r : results[m])
+      rows.push_back({r.force.magnitude, r.force.missing, r.force.direction_deg, r.torque.magnitude,
+                      r.torque.direction_deg, r.torque_error_Nm});
+    add_rows(table,
+             {{column + "_force", "1", "mean deviation of |force|, fraction"},
+              {column + "_force_missing", "1", "fraction of ticks without a force"},
+              {column + "_force_direction", "deg", "mean angle to the exact force, where there is one"},
+              {column + "_torque", "1", "mean deviation of |torque|, fraction; NaN where none is exact"},
+              {column + "_torque_direction", "deg", "mean angle to the exact torque, where there is one"},
+              {column + "_stray_torque", "N m", "mean of |torque - exact torque|"}},
+             rows);
   }
   return table;
 }
@@ -240,84 +233,78 @@ Panel slot_panel(const Table& table, std::pair<double, double> grid_position) {
   return panel;
 }
 
-double max_in(const Table& table, const std::string& column) {
-  return max_of(numbers(table, column));
-}
-
-Claim at_most(const std::string& claim, double measured, double limit, const std::string& unit) {
-  return claim_at_most(kForcesFigure, claim, "-", measured, limit, unit);
-}
-Claim at_least(const std::string& claim, double measured, double limit, const std::string& unit) {
-  return claim_at_least(kForcesFigure, claim, "-", measured, limit, unit);
+// A claim about the largest value in a column.
+struct ColumnClaim {
+  const char *claim, *column;
+  double limit;
+  const char* unit;
+  bool at_least = false;  // a lower limit
+};
+void add_column_claims(const Claims& claims, const Table& table, const std::vector<ColumnClaim>& list) {
+  for (const auto& [claim, column, limit, unit, at_least] : list) {
+    const double measured = max_of(numbers(table, column));
+    at_least ? claims.at_least(claim, measured, limit, unit) : claims.at_most(claim, measured, limit, unit);
+  }
 }
 
 // The continuous rule and the god-object keep a gap of 0.05 mm, which is 1.7 % of the mean depth of a press.
 constexpr double kGapFraction = 0.02;
 
-std::vector<Claim> plane_claims(const Table& planes) {
+void add_plane_claims(const Claims& claims, const Table& planes) {
   const double sinks = EvenSpring{}.stiffness_N_per_m / (EvenSpring{}.stiffness_N_per_m + 10 * 2400);
-  return {at_most("look-ahead on a tilted plane: deviation of the force", max_in(planes, "look_ahead_force"),
-                  1e-3, "1"),
-          at_most("look-ahead on a tilted plane: angle to the exact force",
-                  max_in(planes, "look_ahead_force_direction"), 0.01, "deg"),
-          at_most("continuous rule on a tilted plane: deviation of the force",
-                  max_in(planes, "continuous_force"), kGapFraction, "1"),
-          at_most("god-object on a tilted plane: deviation of the force", max_in(planes, "god_object_force"),
-                  kGapFraction, "1"),
-          at_most("god-object on a tilted plane: angle to the exact force",
-                  max_in(planes, "god_object_force_direction"), 0.01, "deg"),
-          at_most("printed rule on a tilted plane: deviation of the force", max_in(planes, "voxels_force"),
-                  0.01, "1"),
-          claim_between(kForcesFigure, "penalty on a level plane: the force is too small by k / (k + 10 k_p)",
-                        "-", numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1"),
-          at_least("voxmap on a tilted plane: its steps turn the force, by up to",
-                   max_in(planes, "voxmap_force_direction"), 5, "deg")};
+  add_column_claims(
+      claims, planes,
+      {{"look-ahead on a tilted plane: deviation of the force", "look_ahead_force", 1e-3, "1"},
+       {"look-ahead on a tilted plane: angle to the exact force", "look_ahead_force_direction", 0.01, "deg"},
+       {"continuous rule on a tilted plane: deviation of the force", "continuous_force", kGapFraction, "1"},
+       {"god-object on a tilted plane: deviation of the force", "god_object_force", kGapFraction, "1"},
+       {"god-object on a tilted plane: angle to the exact force", "god_object_force_direction", 0.01, "deg"},
+       {"printed rule on a tilted plane: deviation of the force", "voxels_force", 0.01, "1"}});
+  claims.between("penalty on a level plane: the force is too small by k / (k + 10 k_p)",
+                 numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1");
+  add_column_claims(claims, planes,
+                    {{"voxmap on a tilted plane: its steps turn the force, by up to",
+                      "voxmap_force_direction", 5, "deg", true}});
 }
 
 // The torque at a corner must be that of the force. The constrained motion (6.4) ends when the contacts hold
 // the remaining displacement, multiplied by M. The coupling exerts on the hand k times that displacement, and
 // k r^2 times the angle. Both agree if M is that of the coupling.
-std::vector<Claim> block_claims(const Table& blocks, const Table& of_coupling) {
-  return {at_most("god-object, M of the coupling, tilted block: deviation of the force",
-                  max_in(blocks, "god_object_force"), kGapFraction, "1"),
-          at_most("god-object, M of the coupling, tilted block: deviation of the torque",
-                  max_in(blocks, "god_object_torque"), kGapFraction, "1"),
-          at_least("look-ahead, M of the tool, tilted block: deviation of the torque, up to",
-                   max_in(blocks, "look_ahead_torque"), 1, "1"),
-          at_least("printed rule, M of the tool, tilted block: deviation of the torque, up to",
-                   max_in(blocks, "voxels_torque"), 1, "1"),
-          at_most("look-ahead, M of the coupling, tilted block: deviation of the force",
-                  max_in(of_coupling, "look_ahead_force"), 0.01, "1"),
-          at_most("look-ahead, M of the coupling, tilted block: deviation of the torque",
-                  max_in(of_coupling, "look_ahead_torque"), 0.01, "1")};
+void add_block_claims(const Claims& claims, const Table& blocks, const Table& of_coupling) {
+  add_column_claims(claims, blocks,
+                    {{"god-object, M of the coupling, tilted block: deviation of the force",
+                      "god_object_force", kGapFraction, "1"},
+                     {"god-object, M of the coupling, tilted block: deviation of the torque",
+                      "god_object_torque", kGapFraction, "1"},
+                     {"look-ahead, M of the tool, tilted block: deviation of the torque, up to",
+                      "look_ahead_torque", 1, "1", true},
+                     {"printed rule, M of the tool, tilted block: deviation of the torque, up to",
+                      "voxels_torque", 1, "1", true}});
+  add_column_claims(
+      claims, of_coupling,
+      {{"look-ahead, M of the coupling, tilted block: deviation of the force", "look_ahead_force", 0.01, "1"},
+       {"look-ahead, M of the coupling, tilted block: deviation of the torque", "look_ahead_torque", 0.01,
+        "1"}});
 }
 
-std::vector<Claim> groove_and_slot_claims(const Table& grooves, const Table& slot) {
-  const auto missed_Nm = [&](const std::string& column) {
-    return std::abs(numbers(slot, column).back() - numbers(slot, "exact").back());
+void add_groove_and_slot_claims(const Claims& claims, const Table& grooves, const Table& slot) {
+  add_column_claims(
+      claims, grooves,
+      {{"look-ahead in a valley: deviation of the force", "look_ahead_force", kGapFraction, "1"},
+       {"god-object in a valley: deviation of the force", "god_object_force", 2 * kGapFraction, "1"},
+       {"look-ahead in a valley: angle to the exact force", "look_ahead_force_direction", 0.5, "deg"},
+       {"look-ahead in a valley: fraction of ticks without a force", "look_ahead_force_missing", 0, "1"},
+       {"god-object in a valley: fraction of ticks without a force", "god_object_force_missing", 0.02, "1"},
+       {"god-object in a valley: angle to the exact force", "god_object_force_direction", 2, "deg"},
+       {"voxmap in a valley: angle to the exact force, up to", "voxmap_force_direction", 5, "deg", true}});
+  const auto in_slot = [&](const std::string& method, const std::string& column, double limit_Nm) {
+    claims.at_most(method + " in a slot: error of the torque at 32 degrees",
+                   std::abs(numbers(slot, column).back() - numbers(slot, "exact").back()), limit_Nm, "N m");
   };
-  return {
-      at_most("look-ahead in a valley: deviation of the force", max_in(grooves, "look_ahead_force"),
-              kGapFraction, "1"),
-      at_most("god-object in a valley: deviation of the force", max_in(grooves, "god_object_force"),
-              2 * kGapFraction, "1"),
-      at_most("look-ahead in a valley: angle to the exact force",
-              max_in(grooves, "look_ahead_force_direction"), 0.5, "deg"),
-      at_most("look-ahead in a valley: fraction of ticks without a force",
-              max_in(grooves, "look_ahead_force_missing"), 0, "1"),
-      at_most("god-object in a valley: fraction of ticks without a force",
-              max_in(grooves, "god_object_force_missing"), 0.02, "1"),
-      at_most("god-object in a valley: angle to the exact force",
-              max_in(grooves, "god_object_force_direction"), 2, "deg"),
-      at_least("voxmap in a valley: angle to the exact force, up to",
-               max_in(grooves, "voxmap_force_direction"), 5, "deg"),
-      at_most("look-ahead in a slot: error of the torque at 32 degrees", missed_Nm("look_ahead"), 1e-3,
-              "N m"),
-      at_most("continuous rule in a slot: error of the torque at 32 degrees", missed_Nm("continuous"), 1e-3,
-              "N m"),
-      at_most("god-object in a slot: error of the torque at 32 degrees", missed_Nm("god_object"), 1e-3,
-              "N m"),
-      at_most("printed rule in a slot: error of the torque at 32 degrees", missed_Nm("voxels"), 0.01, "N m")};
+  in_slot("look-ahead", "look_ahead", 1e-3);
+  in_slot("continuous rule", "continuous", 1e-3);
+  in_slot("god-object", "god_object", 1e-3);
+  in_slot("printed rule", "voxels", 0.01);
 }
 
 }  // namespace
@@ -354,10 +341,10 @@ Figure figure_tool_forces(const FigureContext& context) {
       slot_panel(figure.tables[3], {2, 1})};
   figure.panels[3].curves.push_back(
       {"of_coupling", "turn", "look_ahead_torque", CurveStyle::dashed, "look-ahead, M of the coupling"});
-  figure.claims = plane_claims(figure.tables[0]);
-  for (const auto& more : {block_claims(figure.tables[1], figure.tables[4]),
-                           groove_and_slot_claims(figure.tables[2], figure.tables[3])})
-    figure.claims.insert(figure.claims.end(), more.begin(), more.end());
+  const Claims claims(figure);
+  add_plane_claims(claims, figure.tables[0]);
+  add_block_claims(claims, figure.tables[1], figure.tables[4]);
+  add_groove_and_slot_claims(claims, figure.tables[2], figure.tables[3]);
   return figure;
 }
 

@@ -7,13 +7,13 @@
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
 namespace {
 
-const std::string kLiftFigure = "tool-lifts";
 constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
 
 // Returns the largest distance by which one frame may move a surface against a plate. Printed rule: 6.2.4,
@@ -38,15 +38,17 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
   Table table{name, title, {std::move(setting)}};
   const std::vector<double> settings = std::get<std::vector<double>>(table.columns[0].values);
   for (const CarrierName& carrier : kCarriers) {
-    std::vector<double> carried, lost, derived;
+    TableRows rows;
     for (std::size_t i = 0; i < sweep.settings(); ++i) {
       const CarrySweep::Limit limit = sweep.limit(i, carrier.rule);
-      carried.push_back(limit.carried), lost.push_back(limit.lost);
-      derived.push_back(bound(carrier.rule, settings[i]));
+      rows.push_back({limit.carried, limit.lost, bound(carrier.rule, settings[i])});
     }
-    table.add(std::string(carrier.column) + "_carried", units, "all runs are carried up to this", carried);
-    table.add(std::string(carrier.column) + "_lost", units, "the next value: a run is lost", lost);
-    table.add(std::string(carrier.column) + "_bound", units, "derived limit", derived);
+    const std::string column = carrier.column;
+    add_rows(table,
+             {{column + "_carried", units, "all runs are carried up to this"},
+              {column + "_lost", units, "the next value: a run is lost"},
+              {column + "_bound", units, "derived limit"}},
+             rows);
   }
   return table;
 }
@@ -62,11 +64,9 @@ Table lift_limits(const FigureContext& context) {
 // The plate lies flat on a tilted surface, which approaches along its normal by v cos(tilt) / f_c.
 Table tilt_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
-  std::vector<double> tilt;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) tilt.push_back(sweep.value(i, 0));
   return limit_table(
       "tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
-      {"tilt", "deg", "tilt of the surface", tilt, 1, {}}, "m/s", [](Carrier rule, double deg) {
+      {"tilt", "deg", "tilt of the surface", sweep.values(0), 1, {}}, "m/s", [](Carrier rule, double deg) {
         return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) / sin_cos(deg * kRadiansPerDegree).second;
       });
 }
@@ -75,11 +75,9 @@ Table tilt_limits(const FigureContext& context) {
 // is nearer to the axis moves least, and the plate is lost if the surface passes through that end too.
 Table turn_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
-  std::vector<double> lever;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) lever.push_back(sweep.value(i, 0));
   return limit_table("turns", "Angle of a surface that turns at 1 Hz, plate of 5 mm", sweep,
-                     {"lever", "m", "from the axis to the middle of the plate", lever, 1, {}}, "deg",
-                     [](Carrier rule, double lever_m) {
+                     {"lever", "m", "from the axis to the middle of the plate", sweep.values(0), 1, {}},
+                     "deg", [](Carrier rule, double lever_m) {
                        const double near_m = lever_m - 0.5 * kPlateLength_m;
                        const double turn_rad = sin_cos(360 * kRadiansPerDegree / kLiftFrames_hz).first;
                        return max_jump_m(rule, kThinPlate_m) / near_m / turn_rad / kRadiansPerDegree;
@@ -88,55 +86,51 @@ Table turn_limits(const FigureContext& context) {
 
 Table noise_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-noise")));
-  std::vector<double> noise;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) noise.push_back(sweep.value(i, 0));
   return limit_table(
       "noise", "Acceleration with a velocity estimate, plate of 10 mm", sweep,
-      {"noise", "m", "standard deviation of the noise on x, y and z", noise, 1, {}}, "m/s^2",
+      {"noise", "m", "standard deviation of the noise on x, y and z", sweep.values(0), 1, {}}, "m/s^2",
       [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); });
 }
 
 // Claims that no run is lost below the bound of `rule`, and that none is carried above the bound of `upper`.
-Claim claim_bounded(const Table& table, Carrier rule, Carrier upper, const std::string& claim) {
+void claim_bounded(const Claims& claims, const Table& table, Carrier rule, Carrier upper,
+                   const std::string& claim) {
   const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
-  return claim_at_most(kLiftFigure, claim + ": number of settings where not", paper,
-                       count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
-                                        column_of(rule) + "_bound", column_of(upper) + "_bound"),
-                       0, "1");
+  claims.at_most(claim + ": number of settings where not",
+                 count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
+                                  column_of(rule) + "_bound", column_of(upper) + "_bound"),
+                 0, "1", paper);
 }
 
-std::vector<Claim> lift_claims(const Table& lifts, const Table& tilts, const Table& turns,
-                               const Table& noise) {
+void add_claims(const Claims& claims, const Table& lifts, const Table& tilts, const Table& turns,
+                const Table& noise) {
   using enum Carrier;
   const std::vector<double>&printed = numbers(noise, "voxels_carried"),
         &ours = numbers(noise, "continuous_carried");
-  return {
-      claim_bounded(lifts, voxels, voxels, "as printed, a plate is carried up to f_c (h - 2w)"),
-      claim_bounded(lifts, look_ahead, look_ahead, "by look-ahead up to f_c h"),
-      claim_bounded(lifts, continuous, continuous,
-                    "by the continuous rule up to f_c frame_reach_m, however thin the plate is"),
-      claim_bounded(tilts, voxels, continuous,
-                    "on a tilted surface as printed at least up to f_c (h - 2w) / cos(tilt)"),
-      claim_bounded(tilts, look_ahead, look_ahead, "by look-ahead up to f_c h / cos(tilt)"),
-      claim_bounded(tilts, continuous, continuous,
-                    "by the continuous rule up to f_c frame_reach_m / cos(tilt)"),
-      claim_bounded(turns, voxels, look_ahead,
-                    "on a surface that turns as printed until its nearer end passes through, by h - 2w to h"),
-      claim_bounded(turns, look_ahead, look_ahead, "by look-ahead until its nearer end passes through"),
-      claim_bounded(turns, continuous, continuous, "by the continuous rule at all that was tried"),
-      claim_at_least(kLiftFigure,
-                     "noise up to 4 mm does not lower the acceleration carried as printed: minimum", "-",
-                     min_of(printed) - printed.front(), 0, "m/s^2"),
-      claim_at_least(kLiftFigure,
-                     "by the continuous rule, noise up to 2 mm: acceleration that is always carried", "-",
-                     min_of(std::span(ours).first(ours.size() - 1)), 14, "m/s^2")};
+  claim_bounded(claims, lifts, voxels, voxels, "as printed, a plate is carried up to f_c (h - 2w)");
+  claim_bounded(claims, lifts, look_ahead, look_ahead, "by look-ahead up to f_c h");
+  claim_bounded(claims, lifts, continuous, continuous,
+                "by the continuous rule up to f_c frame_reach_m, however thin the plate is");
+  claim_bounded(claims, tilts, voxels, continuous,
+                "on a tilted surface as printed at least up to f_c (h - 2w) / cos(tilt)");
+  claim_bounded(claims, tilts, look_ahead, look_ahead, "by look-ahead up to f_c h / cos(tilt)");
+  claim_bounded(claims, tilts, continuous, continuous,
+                "by the continuous rule up to f_c frame_reach_m / cos(tilt)");
+  claim_bounded(claims, turns, voxels, look_ahead,
+                "on a surface that turns as printed until its nearer end passes through, by h - 2w to h");
+  claim_bounded(claims, turns, look_ahead, look_ahead, "by look-ahead until its nearer end passes through");
+  claim_bounded(claims, turns, continuous, continuous, "by the continuous rule at all that was tried");
+  claims.at_least("noise up to 4 mm does not lower the acceleration carried as printed: minimum",
+                  min_of(printed) - printed.front(), 0, "m/s^2");
+  claims.at_least("by the continuous rule, noise up to 2 mm: acceleration that is always carried",
+                  min_of(std::span(ours).first(ours.size() - 1)), 14, "m/s^2");
 }
 
 }  // namespace
 
 Figure figure_tool_lifts(const FigureContext& context) {
   Figure figure{
-      kLiftFigure, "Where a plate loses the surface that it is pressed onto",
+      "tool-lifts", "Where a plate loses the surface that it is pressed onto",
       "A surface of points rises, rises tilted, turns or accelerates under a plate of 40 x 40 mm, by the "
       "three contact rules; frames at 30 Hz; simulated. Dots: up to here every run is carried. Dashed: "
       "derived, one frame moves the surface through the plate (printed rule: through what is not shell; "
@@ -146,7 +140,7 @@ Figure figure_tool_lifts(const FigureContext& context) {
                    limit_panel(figure.tables[1], "tilt (deg)", "speed (m/s)", {0, 1}),
                    limit_panel(figure.tables[2], "distance from the axis (m)", "amplitude (deg)", {1, 0}),
                    limit_panel(figure.tables[3], "noise (m)", "acceleration (m/s^2)", {1, 1})};
-  figure.claims = lift_claims(figure.tables[0], figure.tables[1], figure.tables[2], figure.tables[3]);
+  add_claims(Claims(figure), figure.tables[0], figure.tables[1], figure.tables[2], figure.tables[3]);
   return figure;
 }
 

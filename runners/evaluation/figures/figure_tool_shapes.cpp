@@ -8,13 +8,13 @@
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/shape_jumps.h"
 
 namespace remote_touch {
 
 namespace {
 
-const std::string kShapeFigure = "tool-shapes";
 constexpr double kFirstSpeed_m_per_s = 0.03, kWallTilt_deg = 80;  // values of the sweeps
 const std::vector<double> kThickness_m = {0.005, 0.01, 0.02};
 
@@ -58,17 +58,19 @@ class Pool {
     for (int bin = 0; bin < kBins; ++bin) ratio.push_back((bin + 0.5) * kWidth);
     table.add("ratio", "1", "speed divided by the derived bound, middle of a bin", ratio);
     for (const CarrierName& carrier : kCarriers) {
-      std::vector<double> fraction, low, high, runs;
+      TableRows rows;
       for (const Tally& bin : rules_[static_cast<std::size_t>(carrier.rule)].bins) {
-        const auto interval = wilson_interval(bin.runs - bin.events, bin.runs);
-        fraction.push_back(bin.runs > 0 ? 1 - static_cast<double>(bin.events) / bin.runs : std::nan(""));
-        low.push_back(interval.first), high.push_back(interval.second), runs.push_back(bin.runs);
+        const auto [low, high] = wilson_interval(bin.runs - bin.events, bin.runs);
+        rows.push_back({bin.runs > 0 ? 1 - static_cast<double>(bin.events) / bin.runs : std::nan(""), low,
+                        high, static_cast<double>(bin.runs)});
       }
       const std::string column = carrier.column;
-      table.add(column + "_carried", "1", "fraction of runs that are carried", fraction);
-      table.add(column + "_low", "1", "lower end of its 95 % Wilson interval", low);
-      table.add(column + "_high", "1", "upper end of its 95 % Wilson interval", high);
-      table.add(column + "_runs", "1", "number of runs", runs);
+      add_rows(table,
+               {{column + "_carried", "1", "fraction of runs that are carried"},
+                {column + "_low", "1", "lower end of its 95 % Wilson interval"},
+                {column + "_high", "1", "upper end of its 95 % Wilson interval"},
+                {column + "_runs", "1", "number of runs"}},
+               rows);
     }
     return table;
   }
@@ -88,25 +90,26 @@ Table family_table(const Family& family, const CarrySweep& sweep, Pool* pool) {
   const Scale& scale = family.scale;
   const auto scaled = [&](double strength) { return scale.offset + scale.factor * strength; };
   for (const CarrierName& carrier : kCarriers) {
-    std::vector<double> carried, lost, all_lost, least, bound, most;
+    TableRows rows;
     for (std::size_t i = 0; i < settings.size(); ++i) {
       const CarrySweep::Limit limit = sweep.limit(family.first + i, carrier.rule);
       const Jump jump = family.jump(carrier.rule, settings[i]);
-      carried.push_back(scaled(limit.carried));
-      lost.push_back(scaled(limit.lost)), all_lost.push_back(scaled(limit.all_lost));
-      least.push_back(scale.per_jump * jump.least_m), bound.push_back(scale.per_jump * jump.bound_m);
-      most.push_back(scale.per_jump * jump.most_m);
+      rows.push_back({scaled(limit.carried), scaled(limit.lost), scaled(limit.all_lost),
+                      scale.per_jump * jump.least_m, scale.per_jump * jump.bound_m,
+                      scale.per_jump * jump.most_m});
       for (std::size_t k = 0; pool && k < sweep.strengths().size(); ++k)
         pool->add(carrier.rule, scaled(sweep.strengths()[k]), jump, scale.per_jump,
                   sweep.lost(family.first + i, k, carrier.rule));
     }
     const std::string column = carrier.column, &units = scale.units;
-    table.add(column + "_carried", units, "all runs are carried up to this", carried);
-    table.add(column + "_lost", units, "the next value: a run is lost", lost);
-    table.add(column + "_all_lost", units, "from here on all runs are lost", all_lost);
-    table.add(column + "_least", units, "derived limit, at least", least);
-    table.add(column + "_bound", units, "derived limit", bound);
-    table.add(column + "_most", units, "derived limit, at most", most);
+    add_rows(table,
+             {{column + "_carried", units, "all runs are carried up to this"},
+              {column + "_lost", units, "the next value: a run is lost"},
+              {column + "_all_lost", units, "from here on all runs are lost"},
+              {column + "_least", units, "derived limit, at least"},
+              {column + "_bound", units, "derived limit"},
+              {column + "_most", units, "derived limit, at most"}},
+             rows);
   }
   return table;
 }
@@ -198,54 +201,49 @@ FamilySweep noise_sweep() {
 
 // Claims that the limit is between the derived ones in every setting of several tables. The measured value is
 // the number of settings in which it is not.
-Claim claim_bounded(const std::vector<Table>& tables, Carrier rule, const std::string& claim,
-                    const std::string& paper = "-") {
+void claim_bounded(const Claims& claims, const std::vector<Table>& tables, Carrier rule,
+                   const std::string& claim, const std::string& paper = "-") {
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
     apart +=
         count_rows_apart(table, column + "_carried", column + "_lost", column + "_least", column + "_most");
-  return claim_at_most(kShapeFigure, claim + ": number of settings where not", paper, apart, 0, "1");
+  claims.at_most(claim + ": number of settings where not", apart, 0, "1", paper);
 }
 
 // A row counts if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins at
 // 0.51), or if all four are lost below it. By chance that happens in at most 1 of 8 rows, so 3 or more of 12
 // rows count at most once in five figures.
-Claim claim_bounded_noise(const std::vector<Table>& tables, Carrier rule, const std::string& label) {
+void claim_bounded_noise(const Claims& claims, const std::vector<Table>& tables, Carrier rule,
+                         const std::string& label) {
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
     apart += count_rows_apart(table, column + "_carried", column + "_all_lost", column + "_least",
                               column + "_most");
-  return claim_at_most(kShapeFigure,
-                       "noise, " + label + ": half are lost at the derived speed: settings of 12 where not",
-                       "-", apart, 2, "1");
+  claims.at_most("noise, " + label + ": half are lost at the derived speed: settings of 12 where not", apart,
+                 2, "1");
 }
 
-std::vector<Claim> shape_claims(const std::vector<Table>& still, const std::vector<Table>& turning,
-                                const std::vector<Table>& tilted, const std::vector<Table>& noisy,
-                                const Pool& pool) {
-  std::vector<Claim> claims;
+void add_claims(Figure& figure, const std::vector<Table>& still, const std::vector<Table>& turning,
+                const std::vector<Table>& tilted, const std::vector<Table>& noisy, const Pool& pool) {
   for (const CarrierName& carrier : kCarriers) {
-    const std::string label = std::string(carrier.label) + ", ";
+    const Claims claims(figure, std::string(carrier.label) + ", ");
     const bool printed = carrier.rule == Carrier::voxels;
     const std::string bound = printed                               ? "f_c (h - 2w + drop)"
                               : carrier.rule == Carrier::look_ahead ? "f_c (h + drop)"
                                                                     : "f_c max(h + drop, frame_reach_m)";
-    claims.push_back(claim_bounded(still, carrier.rule, label + "edge, corner, ball and wall: up to " + bound,
-                                   printed ? "v < f_c (h - 2w), 6.2.4" : "-"));
-    claims.push_back(claim_bounded(turning, carrier.rule, label + "turning: with the drop after the turn"));
-    claims.push_back(claim_bounded(tilted, carrier.rule, label + "tilted: at least with the steeper flank"));
-    claims.push_back(claim_bounded_noise(noisy, carrier.rule, carrier.label));
+    claim_bounded(claims, still, carrier.rule, "edge, corner, ball and wall: up to " + bound,
+                  printed ? "v < f_c (h - 2w), 6.2.4" : "-");
+    claim_bounded(claims, turning, carrier.rule, "turning: with the drop after the turn");
+    claim_bounded(claims, tilted, carrier.rule, "tilted: at least with the steeper flank");
+    claim_bounded_noise(Claims(figure), noisy, carrier.rule, carrier.label);
     const Tally &below = pool.below(carrier.rule), &above = pool.above(carrier.rule);
-    claims.push_back(claim_at_least(
-        kShapeFigure, label + "below the bound: fraction carried, lower end of the Wilson interval", "-",
-        wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction"));
-    claims.push_back(claim_at_least(
-        kShapeFigure, label + "above the bound: fraction lost, lower end of the Wilson interval", "-",
-        wilson_interval(above.events, above.runs).first, 0.97, "fraction"));
+    claims.at_least("below the bound: fraction carried, lower end of the Wilson interval",
+                    wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction");
+    claims.at_least("above the bound: fraction lost, lower end of the Wilson interval",
+                    wilson_interval(above.events, above.runs).first, 0.97, "fraction");
   }
-  return claims;
 }
 
 Panel pool_panel(const Table& pooled, std::pair<double, double> grid_position) {
@@ -264,7 +262,7 @@ Panel pool_panel(const Table& pooled, std::pair<double, double> grid_position) {
 
 Figure figure_tool_shapes(const FigureContext& context) {
   Figure figure{
-      kShapeFigure, "Where edges, corners, balls and walls pass through a plate",
+      "tool-shapes", "Where edges, corners, balls and walls pass through a plate",
       "A surface jumps in one frame against a plate of 40 x 40 mm that a hand presses onto it, by the three "
       "contact rules; frames at 30 Hz; simulated. Where it is not the axis, the plate is 10 mm thick, edges "
       "and corners slope by 30 deg, and the ball has a radius of 40 mm. Dots: up to here every run is "
@@ -295,7 +293,7 @@ Figure figure_tool_shapes(const FigureContext& context) {
   figure.panels.push_back(pool_panel(pooled, place()));
   const std::vector<Table> noisy = made({noise_sweep()});
   figure.tables.push_back(pooled);
-  figure.claims = shape_claims(still, turning, tilted, noisy, pool);
+  add_claims(figure, still, turning, tilted, noisy, pool);
   return figure;
 }
 

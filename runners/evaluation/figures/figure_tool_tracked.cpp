@@ -1,22 +1,16 @@
 // Fig 4.13 for a plate in place of the proxy: noisy surfaces that accelerate, rendered by tracked sheets and
 // by the three contact rules of the tool. Simulated; not in the dissertation.
-#include <algorithm>
 #include <cmath>
-#include <string>
-#include <variant>
-#include <vector>
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
+#include "analysis/statistics/mean.h"
 #include "analysis/statistics/proportion.h"
-#include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {
 
 namespace {
-
-const std::string kTrackedToolFigure = "tool-tracked";
 
 struct TrackedMethod {
   const char *column, *label, *renderer;
@@ -40,14 +34,6 @@ constexpr TrackedMethod kLookAheadAsIs{
 constexpr int kTrackedSeeds[] = {101, 102, 103, 104, 105, 106, 107, 108, 109, 110};
 constexpr int kOtherSeed = 101;
 
-std::string seeded_run(int number) {
-  return "seed=" + std::to_string(number);
-}
-
-std::string noise_of(double sigma) {
-  return "scenario.noise_sigma_m=" + std::to_string(sigma * kContactRadius_m);
-}
-
 // --- lifts ---
 
 struct Survived {
@@ -66,24 +52,25 @@ Survived count_of(const Table& map) {
 }
 
 Table lift_map_of(const FigureContext& context, const TrackedMethod& method, int seed) {
-  const Sweep sweep = context.map("tool-tracked", {method.renderer, seeded_run(seed)});
+  const Sweep sweep = context.map("tool-tracked", {method.renderer, seed_setting(seed)});
   return map_table(std::string("map_") + method.column, context.sweep(sweep), "tool_popped_through");
 }
 
 Table success_table(const std::vector<std::pair<std::string, Survived>>& methods) {
   std::vector<std::string> name;
-  std::vector<double> share, low, high, runs;
+  TableRows rows;
   for (const auto& [method, survived] : methods) {
-    const auto interval = wilson_interval(survived.held, survived.runs);
-    name.push_back(method), share.push_back(survived.share()), runs.push_back(survived.runs);
-    low.push_back(interval.first), high.push_back(interval.second);
+    const auto [low, high] = wilson_interval(survived.held, survived.runs);
+    name.push_back(method);
+    rows.push_back({survived.share(), low, high, static_cast<double>(survived.runs)});
   }
-  Table table{"success", "lifts that did not pop through, over the whole map"};
-  table.columns.push_back({"method", "1", "how the plate is rendered", name, 1, {}});
-  table.add("survived", "1", "share of lifts that did not pop through", share);
-  table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
-  table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
-  table.add("runs", "1", "number of lifts", runs);
+  Table table = table_of("success", "lifts that did not pop through, over the whole map",
+                         {{"survived", "1", "share of lifts that did not pop through"},
+                          {"survived_low", "1", "lower end of its 95 % Wilson interval"},
+                          {"survived_high", "1", "upper end of its 95 % Wilson interval"},
+                          {"runs", "1", "number of lifts"}},
+                         rows);
+  table.columns.insert(table.columns.begin(), {"method", "1", "how the plate is rendered", name, 1, {}});
   return table;
 }
 
@@ -137,8 +124,8 @@ std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& m
   for (const double sigma : kJumpNoise)
     for (const int seed : kJumpSeeds) {
       std::vector<std::string> overrides = {method.renderer,
-                                            noise_of(sigma),
-                                            seeded_run(seed),
+                                            noise_setting(sigma),
+                                            seed_setting(seed),
                                             "renderer.max_force_N=1000",
                                             "renderer.max_torque_Nm=100",
                                             "duration_s=0.9"};
@@ -162,15 +149,15 @@ std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& m
 Table jump_table(const FigureContext& context, const JumpMotion& motion) {
   Table table{motion.table, motion.title};
   table.add("noise", "r_c", "standard deviation of the noise",
-            std::vector<double>(std::begin(kJumpNoise), std::end(kJumpNoise)));
+            {std::begin(kJumpNoise), std::end(kJumpNoise)});
   std::vector<TrackedMethod> methods(std::begin(kToolRivals), std::end(kToolRivals));
   methods.insert(methods.begin(), kTrackedTool), methods.push_back(kLookAheadAsIs);
   for (const TrackedMethod& method : methods) {
-    std::vector<double> force, torque;
-    for (const ToolJump& jump : jumps(context, method, motion.overrides))
-      force.push_back(jump.force_N), torque.push_back(jump.torque_Nm);
-    table.add(std::string(method.column) + "_force", "N", "rms change of the force at frames", force);
-    table.add(std::string(method.column) + "_torque", "N m", "rms change of the torque at frames", torque);
+    const std::string column = method.column;
+    add_columns<ToolJump>(
+        table, jumps(context, method, motion.overrides),
+        {{column + "_force", "N", "rms change of the force at frames", &ToolJump::force_N},
+         {column + "_torque", "N m", "rms change of the torque at frames", &ToolJump::torque_Nm}});
   }
   return table;
 }
@@ -192,10 +179,9 @@ constexpr double kShapeNoise[] = {0, 0.3, 1, 2};
 
 // Returns the mean distance of the plate's centre of mass to the true surface, from 0.5 s on.
 double mean_height_over(const Trace& trace) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (trace.time_s[i] >= 0.5) sum += trace.signed_distance_m[i], ++count;
-  return sum / count;
+  return mean(values_where(
+      trace.length(), [&](std::size_t i) { return trace.time_s[i] >= 0.5; },
+      [&](std::size_t i) { return trace.signed_distance_m[i]; }));
 }
 
 // Returns the height by which noise raises the plate, compared with the same renderer without noise, in r_c.
@@ -203,7 +189,7 @@ std::vector<double> raised_by_noise(const FigureContext& context, const TrackedM
   std::vector<Experiment> runs;
   for (const char* shape : kToolShapes)
     for (const double sigma : kShapeNoise) {
-      std::vector<std::string> overrides = {method.renderer, noise_of(sigma), seeded_run(kOtherSeed),
+      std::vector<std::string> overrides = {method.renderer, noise_setting(sigma), seed_setting(kOtherSeed),
                                             std::string("scenario.shape=") + shape, "duration_s=0.8"};
       const auto& with_hand = kJumpMotions[1].overrides;
       overrides.insert(overrides.end(), with_hand.begin(), with_hand.end());
@@ -241,30 +227,22 @@ double max_raised(const Table& table, const std::string& shape) {
   return max_of(of_shape);
 }
 
-std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& printed,
-                                       const std::vector<Table>& jumps, const Table& shapes) {
-  const std::string& f = kTrackedToolFigure;
+void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
+                const std::vector<Table>& jumps, const Table& shapes) {
+  const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
   const std::string beside =
       " (as printed: " + std::to_string(printed.held) + " of " + std::to_string(printed.runs) + ")";
-  std::vector<Claim> claims = {
-      of_map(claim_at_least(f, "success of tracked sheets over the whole map" + beside, "-", ours.share(),
-                            0.99, "fraction")),
-      of_map(claim_at_least(f, "lower end of its 95 % Wilson interval", "-",
-                            wilson_interval(ours.held, ours.runs).first, 0.97, "fraction"))};
+  map_claims.at_least("success of tracked sheets over the whole map" + beside, ours.share(), 0.99,
+                      "fraction");
+  map_claims.at_least("lower end of its 95 % Wilson interval", wilson_interval(ours.held, ours.runs).first,
+                      0.97, "fraction");
   for (const Table& table : jumps)
     for (const char* what : {"_force", "_torque"})
-      claims.push_back(claim_at_most(f,
-                                     table.title + ": jumps at frames, largest ratio of" +
-                                         (what[1] == 'f' ? " force" : " torque") + " to look-ahead's",
-                                     "-", max_ratio(table, what), 1.0 / 3, "ratio"));
-  claims.push_back(claim_at_most(f, "noise up to 2 r_c holds a plate on a flat surface higher or lower by",
-                                 "-", max_raised(shapes, "flat"), 0.1, "r_c"));
-  return claims;
-}
-
-std::pair<double, double> grid_position_of(std::size_t panel) {
-  const std::size_t row = panel / 4, column = panel % 4;
-  return {static_cast<double>(row), static_cast<double>(column)};
+      claims.at_most(table.title + ": jumps at frames, largest ratio of" +
+                         (what[1] == 'f' ? " force" : " torque") + " to look-ahead's",
+                     max_ratio(table, what), 1.0 / 3, "ratio");
+  claims.at_most("noise up to 2 r_c holds a plate on a flat surface higher or lower by",
+                 max_raised(shapes, "flat"), 0.1, "r_c");
 }
 
 Panel jump_panel(const Table& table, const std::string& what, const std::string& y_label) {
@@ -281,7 +259,7 @@ Panel jump_panel(const Table& table, const std::string& what, const std::string&
 
 Figure figure_tool_tracked(const FigureContext& context) {
   Figure figure{
-      kTrackedToolFigure, "A plate on noisy surfaces that accelerate, by tracked sheets",
+      "tool-tracked", "A plate on noisy surfaces that accelerate, by tracked sheets",
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "
       "Fig 4.13; frames at 30 Hz; simulated. A filled square is a lift that did not pop through. Below: "
       "what the frames do to force and torque. The three contact rules have a velocity estimate, and "
@@ -306,19 +284,16 @@ Figure figure_tool_tracked(const FigureContext& context) {
   }
   std::vector<Table> jumps;
   for (const JumpMotion& motion : kJumpMotions) jumps.push_back(jump_table(context, motion));
-  figure.panels = {map_panel("Tracked sheets", {{"survived_tracked", "noise", "acceleration",
-                                                 CurveStyle::squares, "did not pop through"}})};
+  figure.panels = {survivor_panel("Tracked sheets", "survived_tracked", false)};
   for (const TrackedMethod& method : kToolRivals)
-    figure.panels.push_back(
-        map_panel(method.label, {{std::string("survived_") + method.column, "noise", "acceleration",
-                                  CurveStyle::squares, "did not pop through"}}));
+    figure.panels.push_back(survivor_panel(method.label, std::string("survived_") + method.column, false));
   for (const Table& table : {jumps[0], jumps[1]}) {
     figure.panels.push_back(jump_panel(table, "_force", "force jump at frames, rms (N)"));
     figure.panels.push_back(jump_panel(table, "_torque", "torque jump at frames, rms (N m)"));
   }
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].grid_position = grid_position_of(i);
+  place_in_rows(figure, 4);
   const Table shapes = shape_table(context);
-  figure.claims = tracked_tool_claims(ours, printed, jumps, shapes);
+  add_claims(figure, ours, printed, jumps, shapes);
   figure.tables.insert(figure.tables.end(), jumps.begin(), jumps.end());
   figure.tables.push_back(success_table(success)), figure.tables.push_back(shapes);
   return figure;

@@ -1,13 +1,12 @@
 // Segmentation by hue of the two valves of 7.5.1 in ever more turbid water, where the truth is known.
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 #include "analysis/measures/segmentation.h"
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {
@@ -74,7 +73,7 @@ Level measure_level(const FigureContext& context, double turbidity_per_m) {
 }
 
 Table score_table(const std::vector<Level>& levels, std::size_t k) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const Level& level : levels) {
     const SegmentationScore& s = level.score[k];
     const auto [recall_low, recall_high] = s.recall_interval();
@@ -101,13 +100,10 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
 }
 
 Panel fraction_panel(const std::string& title, const std::string& value, int column) {
-  Panel panel{title, "turbidity (1/m)", "fraction"};
+  std::vector<Curve> curves;
   for (const char* name : kNames)
-    panel.curves.push_back({name, "turbidity", value, CurveStyle::line, name + std::string(" valve")});
-  panel.x_range = std::pair(0.0, 3.0);
-  panel.y_range = std::pair(-0.02, 1.02);
-  panel.grid_position = std::pair(2.0, static_cast<double>(column));
-  return panel;
+    curves.push_back({name, "turbidity", value, CurveStyle::line, name + std::string(" valve")});
+  return plot(title, "turbidity (1/m)", "fraction", curves, {{{2, column}}, {{0, 3}}, {{-0.02, 1.02}}});
 }
 
 void add_pictures(Figure& figure, const std::vector<Level>& levels) {
@@ -153,32 +149,27 @@ double lost_at_per_m(const std::vector<Level>& levels, std::size_t k) {
 }
 
 void add_claims(Figure& figure, const std::vector<Level>& levels) {
-  const std::string& n = figure.name;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   for (std::size_t k = 0; k < 2; ++k) {
-    const std::string valve = kNames[k];
+    const Claims claims(figure, kNames[k] + std::string(" valve"));
     const auto at = [&](double per_m) -> const SegmentationScore& {
       return std::find_if(levels.begin(), levels.end(),
                           [&](const Level& level) { return level.turbidity_per_m == per_m; })
           ->score[k];
     };
-    claim(claim_at_least(n, valve + " valve in clear water: recall", "-", at(0).recall(), 0.99, "fraction"));
-    claim(claim_at_least(n, valve + " valve in clear water: precision", "-", at(0).precision(), 0.99,
-                         "fraction"));
-    claim(claim_at_least(n, valve + " valve at 0.6 per metre: recall", "-", at(kDefault_per_m).recall(), 0.95,
-                         "fraction"));
-    claim(claim_at_least(n, valve + " valve at 0.6 per metre: precision", "-", at(kDefault_per_m).precision(),
-                         0.95, "fraction"));
-    claim(claim_at_most(n, valve + " valve: largest rise of recall from a level to the next", "-",
-                        max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction"));
-    claim(claim_at_most(n, valve + " valve: largest rise of the share with depth from a level to the next",
-                        "-", max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction"));
-    claim(claim_at_least(n, valve + " valve: least precision where 100 pixels or more are picked", "-",
-                         min_precision(levels, k), 0.95, "fraction"));
-    claim(claim_at_most(n, valve + " valve at 3 per metre: recall", "-", at(3).recall(), 0.05, "fraction"));
+    claims.at_least(" in clear water: recall", at(0).recall(), 0.99, "fraction");
+    claims.at_least(" in clear water: precision", at(0).precision(), 0.99, "fraction");
+    claims.at_least(" at 0.6 per metre: recall", at(kDefault_per_m).recall(), 0.95, "fraction");
+    claims.at_least(" at 0.6 per metre: precision", at(kDefault_per_m).precision(), 0.95, "fraction");
+    claims.at_most(": largest rise of recall from a level to the next",
+                   max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction");
+    claims.at_most(": largest rise of the share with depth from a level to the next",
+                   max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction");
+    claims.at_least(": least precision where 100 pixels or more are picked", min_precision(levels, k), 0.95,
+                    "fraction");
+    claims.at_most(" at 3 per metre: recall", at(3).recall(), 0.05, "fraction");
   }
-  claim(claim_at_most(n, "turbidity at which most of the yellow valve is missed, minus that of the red valve",
-                      "-", lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m"));
+  Claims(figure).at_most("turbidity at which most of the yellow valve is missed, minus that of the red valve",
+                         lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m");
 }
 
 }  // namespace

@@ -88,52 +88,32 @@ class FigureContext {
   mutable std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
 
-// A new figure is one file and one line in figures.cpp. May throw InputError: the figure is then reported as
-// not run.
+// The values of a numeric axis of a sweep, and the one that a cell has.
+inline const std::vector<double>& axis_values(const SweepResult& sweep, std::size_t axis) {
+  return std::get<std::vector<double>>(sweep.axes.at(axis).values);
+}
+inline double axis_value(const SweepResult& sweep, std::size_t axis, std::size_t cell) {
+  return axis_values(sweep, axis).at(sweep.axis_indices(cell).at(axis));
+}
+
+// May throw InputError: the figure is then reported as not run.
+using MakeFigure = Figure(const FigureContext& context);
+// A new figure is one file, its name at the end of this header, and one line in figures.cpp.
 struct FigureEntry {
   const char* name;
   const char* summary;
-  Figure (*make)(const FigureContext& context);
+  MakeFigure* make;
   double expected_s;     // time on one thread, for the order of figures and the time left
   bool has_map = false;  // the map needs most of that time
   int quick_coarse = 1;  // value of coarse for a quick figure
 };
 std::span<const FigureEntry> figures();
 
-Figure figure_4_10(const FigureContext& context);
-Figure figure_4_11(const FigureContext& context);
-Figure figure_4_12(const FigureContext& context);
-Figure figure_4_13(const FigureContext& context);
-Figure figure_4_13_replicated(const FigureContext& context);
-Figure figure_4_13_tracked(const FigureContext& context);
-Figure figure_4_14(const FigureContext& context);
-Figure figure_4_15(const FigureContext& context);
-Figure figure_4_16(const FigureContext& context);
-Figure figure_4_16_recorded(const FigureContext& context);
-Figure figure_5_5(const FigureContext& context);
-Figure figure_5_6(const FigureContext& context);
-Figure figure_latency(const FigureContext& context);
-Figure figure_5_8(const FigureContext& context);
-Figure figure_5_8_recorded(const FigureContext& context);
-Figure figure_5_9(const FigureContext& context);
-Figure figure_6_2(const FigureContext& context);
-Figure figure_6_3(const FigureContext& context);
-Figure figure_6_3_angles(const FigureContext& context);
-Figure figure_6_4(const FigureContext& context);
-Figure figure_7_1_recorded(const FigureContext& context);
-Figure figure_7_4(const FigureContext& context);
-Figure figure_7_5(const FigureContext& context);
-Figure figure_7_5_guidance(const FigureContext& context);
-Figure figure_7_5_recorded(const FigureContext& context);
-Figure figure_bounds(const FigureContext& context);
-Figure figure_eq4_15(const FigureContext& context);
-Figure figure_first_touch(const FigureContext& context);
-Figure figure_frame_rates(const FigureContext& context);
-Figure figure_proxy_rates(const FigureContext& context);
-Figure figure_tool_forces(const FigureContext& context);
-Figure figure_tool_lifts(const FigureContext& context);
-Figure figure_tool_shapes(const FigureContext& context);
-Figure figure_tool_tracked(const FigureContext& context);
-Figure figure_turbidity(const FigureContext& context);
+MakeFigure figure_4_10, figure_4_11, figure_4_12, figure_4_13, figure_4_13_replicated, figure_4_13_tracked,
+    figure_4_14, figure_4_15, figure_4_16, figure_4_16_recorded, figure_5_5, figure_5_6, figure_latency,
+    figure_5_8, figure_5_8_recorded, figure_5_9, figure_6_2, figure_6_3, figure_6_3_angles, figure_6_4,
+    figure_7_1_recorded, figure_7_4, figure_7_5, figure_7_5_guidance, figure_7_5_recorded, figure_bounds,
+    figure_eq4_15, figure_first_touch, figure_frame_rates, figure_proxy_rates, figure_tool_forces,
+    figure_tool_lifts, figure_tool_shapes, figure_tool_tracked, figure_turbidity;
 
 }  // namespace remote_touch

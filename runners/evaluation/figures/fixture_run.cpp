@@ -4,6 +4,7 @@
 
 #include "analysis/measures/measures.h"
 #include "core/kernels/isa.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -40,49 +41,17 @@ std::vector<FixtureRun> run_fixtures(const FigureContext& context,
   return runs;
 }
 
-namespace {
-
-void claim_none(Figure& figure, const std::string& what, double fraction) {
-  figure.claims.push_back(claim_at_most(figure.name, what, "none", fraction, 0, "fraction"));
+void add_side_claim(Figure& figure, const std::string& where, const Trace& trace) {
+  Claims(figure, where + "ticks ")
+      .at_most("with the proxy on the wrong side of the surface", wrong_side_fraction(trace), 0, "fraction",
+               "none");
 }
 
-}  // namespace
-
-void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& run) {
-  claim_none(figure, where + ": ticks with the proxy on the wrong side of the surface",
-             wrong_side_fraction(run.trace));
-}
-
-void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run) {
-  claim_none(figure, where + ": ticks with a number that is not finite", non_finite_fraction(run.trace));
-  claim_none(figure, where + ": ticks in which the HIP was held back without force",
-             no_force_fraction(run.trace, kProxyContactRadius_m));
-}
-
-Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,
-               const std::vector<std::vector<double>>& rows) {
-  Table table{name, title};
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : rows) values.push_back(row.at(c));
-    table.add(columns[c].name, columns[c].units, columns[c].long_name, std::move(values));
-  }
-  return table;
-}
-
-void QuantityTable::add(const std::string& quantity, const std::string& unit,
-                        const std::vector<double>& of_runs) {
-  quantities_.push_back(quantity), units_.push_back(unit);
-  for (std::size_t r = 0; r < runs_.size(); ++r) values_[r].push_back(of_runs.at(r));
-}
-
-Table QuantityTable::table(const std::string& name, const std::string& title) const {
-  Table table{name, title};
-  table.columns.push_back({"quantity", "1", "what was measured", quantities_, 1, {}});
-  table.columns.push_back({"unit", "1", "unit of the values in this row", units_, 1, {}});
-  // The unit changes from row to row.
-  for (std::size_t r = 0; r < runs_.size(); ++r) table.add(runs_[r], "1", "value of this run", values_[r]);
-  return table;
+void add_sound_claims(Figure& figure, const std::string& where, const Trace& trace) {
+  const Claims claims(figure, where + "ticks ");
+  claims.at_most("with a number that is not finite", non_finite_fraction(trace), 0, "fraction", "none");
+  claims.at_most("in which the HIP was held back without force", no_force_fraction(trace, kContactRadius_m),
+                 0, "fraction", "none");
 }
 
 }  // namespace remote_touch

@@ -1,7 +1,7 @@
 #include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -34,27 +34,23 @@ std::vector<char> measured_points(const PointCloud& cloud) {
 Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                     const std::vector<std::uint32_t>& colours, const PictureCrop& crop) {
   const int width = cloud.image->camera.width;
-  std::vector<double> column, row, colour;
+  TableRows rows;
   for (int v = crop.top; v < crop.bottom; v += crop.step)
-    for (int u = crop.left; u < crop.right; u += crop.step) {
-      column.push_back(u), row.push_back(v);
-      colour.push_back(colours[static_cast<std::size_t>(v) * width + u]);
-    }
-  Table table{name, title};
-  table.add("column", "px", "column of the pixel", std::move(column));
-  table.add("row", "px", "row of the pixel", std::move(row));
-  table.add("colour", "1", "red * 65536 + green * 256 + blue", std::move(colour));
-  return table;
+    for (int u = crop.left; u < crop.right; u += crop.step)
+      rows.push_back({double(u), double(v), double(colours[static_cast<std::size_t>(v) * width + u])});
+  return table_of(name, title,
+                  {{"column", "px", "column of the pixel"},
+                   {"row", "px", "row of the pixel"},
+                   {"colour", "1", "red * 65536 + green * 256 + blue"}},
+                  rows);
 }
 
 Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
                     const PictureCrop& crop) {
-  Panel panel{title, "", "", true, {{table, "column", "row", CurveStyle::image}}};
-  panel.curves.front().z = "colour";
-  panel.x_range = std::pair(crop.left - 0.5, crop.right - 0.5);
-  panel.y_range = std::pair(crop.bottom - 0.5, crop.top - 0.5);  // rows count downwards
-  panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
-  return panel;
+  // TableRows count downwards.
+  return plot(
+      title, "", "", {{table, "column", "row", CurveStyle::image, "", 0, "colour"}},
+      {{{row, column}}, {{crop.left - 0.5, crop.right - 0.5}}, {{crop.bottom - 0.5, crop.top - 0.5}}, true});
 }
 
 }  // namespace remote_touch

@@ -74,7 +74,7 @@ MeasuredNoise measured_noise(const FigureContext& context) {
   const SweepResult plan = sweep.plan();
   const std::vector<LiftUpdates> lifts = context.measure(sweep, updates_of);
   MeasuredNoise noise;
-  noise.sigma_m = std::get<std::vector<double>>(plan.axes.at(0).values);
+  noise.sigma_m = axis_values(plan, 0);
   std::vector<double> x, thickness, normal_error;
   for (std::size_t cell = 0; cell < noise.sigma_m.size(); ++cell) {
     const auto first = lifts.begin() + static_cast<std::ptrdiff_t>(plan.run(cell, 0));
@@ -98,36 +98,33 @@ Table effect_table(const MeasuredNoise& noise) {
   std::vector<double> strengths;
   for (const double sigma : noise.sigma_m) strengths.push_back(sigma / kContactRadius_m);
   table.add("noise", "r_c", "standard deviation of the noise", strengths);
-  const auto add = [&](const char* name, const char* unit, const char* meaning, double NoiseEffect::*part) {
-    std::vector<double> values;
-    for (const NoiseEffect& effect : noise.effect) values.push_back(effect.*part);
-    table.add(name, unit, meaning, values);
-  };
-  add("thickness", "m", "h, mean", &NoiseEffect::thickness_m);
-  add("thickness_sd", "m", "h, standard deviation", &NoiseEffect::thickness_sd_m);
-  add("normal_error", "1", "e_n, mean", &NoiseEffect::normal_error);
-  add("normal_error_sd", "1", "e_n, standard deviation", &NoiseEffect::normal_error_sd);
-  add("velocity_bias", "m/s", "velocity estimate minus velocity, mean", &NoiseEffect::velocity_bias_m_per_s);
-  add("velocity_sd", "m/s", "velocity estimate, standard deviation", &NoiseEffect::velocity_sd_m_per_s);
-  add("margin_sd", "m", "margin of (4.17), standard deviation", &NoiseEffect::margin_sd_m);
-  add("gain", "1", "share of a velocity error that one update corrects", &NoiseEffect::gain);
+  add_columns<NoiseEffect>(
+      table, noise.effect,
+      {{"thickness", "m", "h, mean", &NoiseEffect::thickness_m},
+       {"thickness_sd", "m", "h, standard deviation", &NoiseEffect::thickness_sd_m},
+       {"normal_error", "1", "e_n, mean", &NoiseEffect::normal_error},
+       {"normal_error_sd", "1", "e_n, standard deviation", &NoiseEffect::normal_error_sd},
+       {"velocity_bias", "m/s", "velocity estimate minus velocity, mean",
+        &NoiseEffect::velocity_bias_m_per_s},
+       {"velocity_sd", "m/s", "velocity estimate, standard deviation", &NoiseEffect::velocity_sd_m_per_s},
+       {"margin_sd", "m", "margin of (4.17), standard deviation", &NoiseEffect::margin_sd_m},
+       {"gain", "1", "share of a velocity error that one update corrects", &NoiseEffect::gain}});
   return table;
 }
 
 LiftMap lift_map(const FigureContext& context, int seed) {
-  const Sweep sweep = context.map("fig4.13", {"seed=" + std::to_string(seed)});
+  const Sweep sweep = context.map("fig4.13", {seed_setting(seed)});
   const SweepResult plan = sweep.plan();
   LiftMap result;
   result.updates = context.measure(sweep, updates_of);
-  std::vector<double> noise, acceleration, survived;
-  for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
-    const auto indices = plan.axis_indices(cell);
-    noise.push_back(std::get<std::vector<double>>(plan.axes[0].values)[indices[0]] / kContactRadius_m);
-    acceleration.push_back(std::get<std::vector<double>>(plan.axes[1].values)[indices[1]] / kContactRadius_m);
-    survived.push_back(result.updates[cell].back().above_after ? 1 : 0);
-  }
-  result.map = cell_table("map", "lifts that did not pop through", noise, acceleration);
-  result.map.add("survived", "1", "1 when the lift did not pop through", survived);
+  TableRows rows;
+  for (std::size_t cell = 0; cell < plan.cell_count(); ++cell)
+    rows.push_back({axis_value(plan, 0, cell) / kContactRadius_m,
+                    axis_value(plan, 1, cell) / kContactRadius_m,
+                    result.updates[cell].back().above_after ? 1.0 : 0.0});
+  result.map = table_of(
+      "map", "lifts that did not pop through",
+      {kNoiseColumn, kAccelerationColumn, {"survived", "1", "1 when the lift did not pop through"}}, rows);
   return result;
 }
 

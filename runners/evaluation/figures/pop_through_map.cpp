@@ -2,52 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
+#include "analysis/statistics/mean.h"
 #include "analysis/statistics/proportion.h"
 #include "runners/experiment/settings/second_implementation.h"
 
 namespace remote_touch {
 
-Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
-                 std::vector<double> acceleration) {
-  Table table{name, title};
-  table.add("noise", "r_c", "standard deviation of the noise", std::move(noise));
-  table.add("acceleration", "r_c/s^2", "acceleration of the lift", std::move(acceleration));
-  return table;
+std::string seed_setting(int seed) {
+  return "seed=" + std::to_string(seed);
+}
+
+std::string noise_setting(double noise) {
+  return "scenario.noise_sigma_m=" + std::to_string(noise * kContactRadius_m);
+}
+
+double survived_share(const FigureContext& context, const std::vector<Experiment>& lifts) {
+  return 1 - mean(context.measure(lifts, popped_through));
 }
 
 Table noise_table(const std::string& name, const std::string& title) {
-  std::vector<double> noise;
-  for (int i = 0; i <= 150; ++i) noise.push_back(0.02 * i);
-  Table table{name, title};
-  table.add("noise", "r_c", "standard deviation of the noise", noise);
-  return table;
+  TableRows rows;
+  for (int i = 0; i <= 150; ++i) rows.push_back({0.02 * i});
+  return table_of(name, title, {kNoiseColumn}, rows);
 }
 
 Table map_table(const std::string& name, const SweepResult& result, const std::string& measure) {
-  const auto& sigma = std::get<std::vector<double>>(result.axes.at(0).values);
-  const auto& acceleration = std::get<std::vector<double>>(result.axes.at(1).values);
   const std::vector<double>& popped = result.measure(measure);
-  std::vector<double> x, y, survived, low, high, runs;
+  TableRows rows;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
     const Tally t = tally(result, popped, cell);
-    const auto indices = result.axis_indices(cell);
-    const auto interval = wilson_interval(t.runs - t.events, t.runs);
-    x.push_back(sigma[indices[0]] / kContactRadius_m);
-    y.push_back(acceleration[indices[1]] / kContactRadius_m);
-    survived.push_back(1 - static_cast<double>(t.events) / t.runs);
-    low.push_back(interval.first), high.push_back(interval.second);
-    runs.push_back(t.runs);
+    const auto [low, high] = wilson_interval(t.runs - t.events, t.runs);
+    rows.push_back({axis_value(result, 0, cell) / kContactRadius_m,
+                    axis_value(result, 1, cell) / kContactRadius_m,
+                    1 - static_cast<double>(t.events) / t.runs, low, high, static_cast<double>(t.runs)});
   }
-  Table table = cell_table(name, "lifts that did not pop through", x, y);
-  table.add("survived", "1", "share of lifts that did not pop through", survived);
-  table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
-  table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
-  table.add("runs", "1", "number of lifts", runs);
-  return table;
+  return table_of(name, "lifts that did not pop through",
+                  {kNoiseColumn,
+                   kAccelerationColumn,
+                   {"survived", "1", "share of lifts that did not pop through"},
+                   {"survived_low", "1", "lower end of its 95 % Wilson interval"},
+                   {"survived_high", "1", "upper end of its 95 % Wilson interval"},
+                   {"runs", "1", "number of lifts"}},
+                  rows);
 }
 
 Table region_table(const std::string& name, const Table& map) {
@@ -56,7 +56,7 @@ Table region_table(const std::string& name, const Table& map) {
              &survived = numbers(map, "survived");
   // A node on an edge belongs to the region above it, whatever its last bit.
   constexpr double kEdge = 1e-9;
-  std::vector<double> noise, acceleration, success;
+  TableRows rows;
   for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 5; ++column) {
       double sum = 0, count = 0;
@@ -65,14 +65,13 @@ Table region_table(const std::string& name, const Table& map) {
         const bool in_row = y[i] + kEdge >= kAcceleration[row] && y[i] + kEdge < kAcceleration[row + 1];
         if (in_column && in_row) sum += survived[i], ++count;
       }
-      noise.push_back(kNoise[column]), acceleration.push_back(kAcceleration[row]);
-      success.push_back(sum / count);
+      rows.push_back({kNoise[column], kAcceleration[row], sum / count});
     }
-  Table table{name, "success by region"};
-  table.add("noise_from", "r_c", "lower edge of the region", noise);
-  table.add("acceleration_from", "r_c/s^2", "lower edge of the region", acceleration);
-  table.add("survived", "1", "share of lifts that did not pop through", success);
-  return table;
+  return table_of(name, "success by region",
+                  {{"noise_from", "r_c", "lower edge of the region"},
+                   {"acceleration_from", "r_c/s^2", "lower edge of the region"},
+                   {"survived", "1", "share of lifts that did not pop through"}},
+                  rows);
 }
 
 double SharedLifts::standard_error(double our_lifts_a_node) const {
@@ -80,11 +79,11 @@ double SharedLifts::standard_error(double our_lifts_a_node) const {
   return std::sqrt(at_least / nodes * (1 / lifts_a_node + 1 / our_lifts_a_node));
 }
 
-Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
-                   double measured, const SharedLifts& other, double our_lifts_a_node) {
+void claim_agrees(const Claims& claims, const std::string& claim, double measured, const SharedLifts& other,
+                  double our_lifts_a_node, const std::string& paper) {
   const double slack = kByChance * other.standard_error(our_lifts_a_node);
-  return claim_between(figure, claim, paper, measured, std::max(0.0, other.survived - slack),
-                       std::min(1.0, other.survived + slack), "fraction");
+  claims.between(claim, measured, std::max(0.0, other.survived - slack),
+                 std::min(1.0, other.survived + slack), "fraction", paper);
 }
 
 double max_apart(const Table& table) {
@@ -102,10 +101,10 @@ SharedLifts second_fraction(const std::string& place) {
 Table survivors(const std::string& name, const Table& map) {
   const auto &x = numbers(map, "noise"), &y = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
-  std::vector<double> filled_x, filled_y;
+  TableRows rows;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (survived[i] > 0.5) filled_x.push_back(x[i]), filled_y.push_back(y[i]);
-  return cell_table(name, "cells whose lift did not pop through", filled_x, filled_y);
+    if (survived[i] > 0.5) rows.push_back({x[i], y[i]});
+  return table_of(name, "cells whose lift did not pop through", {kNoiseColumn, kAccelerationColumn}, rows);
 }
 
 void add_bound(Table& table, const std::string& column, const std::string& meaning,
@@ -127,10 +126,14 @@ Table bound_table() {
 }
 
 Panel map_panel(const std::string& title, std::vector<Curve> curves) {
-  Panel panel{title, "noise (r_c)", "acceleration (r_c/s^2)", false, std::move(curves)};
-  panel.x_range = {-0.02, 3.02};
-  panel.y_range = {-10, 1410};
-  return panel;
+  return plot(title, "noise (r_c)", "acceleration (r_c/s^2)", std::move(curves),
+              {.x_range = {{-0.02, 3.02}}, .y_range = {{-10, 1410}}});
+}
+
+Panel survivor_panel(const std::string& title, const std::string& table, bool bound) {
+  std::vector<Curve> curves = {{table, "noise", "acceleration", CurveStyle::squares, "did not pop through"}};
+  if (bound) curves.push_back({"bound", "noise", "printed", CurveStyle::line, "bound (4.25) as printed"});
+  return map_panel(title, std::move(curves));
 }
 
 }  // namespace remote_touch

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/figure.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/pop_through_bound.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -17,9 +17,14 @@ namespace remote_touch {
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 
-// Returns a table with columns noise (r_c) and acceleration (r_c/s^2).
-Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
-                 std::vector<double> acceleration);
+// Settings of an experiment. noise: its standard deviation in r_c.
+std::string seed_setting(int seed);
+std::string noise_setting(double noise);
+// Returns the share of the lifts that did not pop through.
+double survived_share(const FigureContext& context, const std::vector<Experiment>& lifts);
+
+inline const ColumnName kNoiseColumn{"noise", "r_c", "standard deviation of the noise"},
+    kAccelerationColumn{"acceleration", "r_c/s^2", "acceleration of the lift"};
 // Returns a table with one row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its
 // Wilson interval, runs. popped_measure: name of the measure that is 1 for a run that popped through.
 Table map_table(const std::string& name, const SweepResult& result,
@@ -46,8 +51,8 @@ struct SharedLifts {
 // largest of n. Normal distribution, two-sided.
 inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1;
 // Claims that a share differs from the other implementation's by no more than chance allows.
-Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
-                   double measured, const SharedLifts& other, double our_lifts_a_node);
+void claim_agrees(const Claims& claims, const std::string& claim, double measured, const SharedLifts& other,
+                  double our_lifts_a_node, const std::string& paper = "-");
 // Returns the largest magnitude in the column `apart`, in standard errors. NaN if a value is NaN, or if there
 // is none.
 double max_apart(const Table& table);
@@ -66,11 +71,7 @@ Table bound_table();  // printed_bound() over noise, named "bound"
 
 // Returns a panel for a map: x noise, y acceleration, with the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
-
-// A claim about a whole map.
-inline Claim of_map(Claim claim) {
-  claim.of_map = true;
-  return claim;
-}
+// Returns a map of a table of survivors(), with the printed bound if `bound` is set.
+Panel survivor_panel(const std::string& title, const std::string& table, bool bound = true);
 
 }  // namespace remote_touch

@@ -1,4 +1,5 @@
 #include "runners/evaluation/figures/valve_task.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/region_tree.h"
 #include "core/geometry/rotation.h"
-#include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 
 namespace remote_touch {
@@ -60,22 +60,15 @@ std::vector<Vec3> boundary(const SphereTree& regions) {
 
 // Returns the points of the valves, and those of the wall in every second pixel of every second row.
 std::vector<std::size_t> shown_points(const PointCloud& cloud) {
-  std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  return chosen_points(cloud, [&](std::size_t i) {
     const Vec3 p = cloud.point(i);
     const bool near = std::abs(p.x()) < 0.24 && std::abs(p.y()) < 0.14;  // NaN is not
-    if (near && (p.z() > 0.02 || (i % 2 == 0 && i / width % 2 == 0))) chosen.push_back(i);
-  }
-  return chosen;
+    return near && (p.z() > 0.02 || (i % 2 == 0 && i / width % 2 == 0));
+  });
 }
 
 }  // namespace
-
-std::size_t tick_of(const Trace& trace, double time_s) {
-  const auto at = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s - kSameTime_s);
-  return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
-}
 
 std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks) {
   std::vector<Experiment> experiments;
@@ -123,7 +116,7 @@ Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W) {
 
 Table task_table(const ValveTask& task) {
   const Trace& t = task.trace;
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (std::size_t i = 0; i < t.length(); i += kEvery) {
     const Vec3 torque_T = about_handle(t, i, t.torque_Nm[i]),
                device_T = about_handle(t, i, t.device_torque_Nm[i]);
@@ -154,7 +147,7 @@ Table task_table(const ValveTask& task) {
 }
 
 Table sequence_table(const ValveTask& task) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const SequenceEntry& entry : sequence_log(task.trace))
     rows.push_back({double(entry.step), entry.began_s, entry.ended_s, entry.missed ? 1.0 : 0.0,
                     entry.distance_m, entry.angle_rad / kRadiansPerDegree});
@@ -175,13 +168,11 @@ void add_task_picture_tables(Figure& figure, const FigureContext& context, const
   task.experiment.build_fixtures().assign(cloud, 0);
   RegionTree regions;
   regions.assign(cloud);
-  std::vector<std::vector<double>> positions;
+  TableRows positions;
   for (const Vec3& p : boundary(regions.spheres())) positions.push_back({p.x(), p.y(), p.z()});
   figure.tables.push_back(table_of(task.name + "_regions", "places on the boundary of the forbidden regions",
                                    {{"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, positions));
-  figure.tables.push_back(vertex_table(task.name + "_vertices", task.tool->mesh));
-  figure.tables.push_back(triangle_table(task.name + "_triangles", task.tool->mesh));
-  figure.tables.push_back(pose_table(task.name + "_poses", task.trace, ticks));
+  add_tool_tables(figure, task.name, task.tool->mesh, task.trace, ticks);
 }
 
 Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row,
@@ -200,11 +191,10 @@ Panel task_picture(const ValveTask& task, const std::string& title, std::size_t 
 
 void add_task_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
-  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
-  claim(claim_at_most(figure.name, task.label + ": ticks with a number that is not finite", "-",
-                      non_finite_fraction(t), 0, "fraction"));
-  claim(claim_at_most(figure.name, task.label + ": deepest leaf of the tool in a region at the end of a tick",
-                      "very small", max_of(t.tool_penetration_m), kSettled_m, "m"));
+  const Claims claims(figure, task.label + ": ");
+  claims.at_most("ticks with a number that is not finite", non_finite_fraction(t), 0, "fraction");
+  claims.at_most("deepest leaf of the tool in a region at the end of a tick", max_of(t.tool_penetration_m),
+                 kSettled_m, "m", "very small");
 }
 
 }  // namespace remote_touch

@@ -54,6 +54,4 @@ Panel task_picture(const ValveTask& task, const std::string& title, std::size_t 
 // region.
 void add_task_claims(Figure& figure, const ValveTask& task);
 
-std::size_t tick_of(const Trace& trace, double time_s);
-
 }  // namespace remote_touch

@@ -14,6 +14,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_lock.h"
+#include "analysis/storage/new_files.h"
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
@@ -152,22 +153,15 @@ std::string content_of(const std::filesystem::path& file) {
   return content;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure)
-    throw InputError(folder.string(),
-                     "cannot be made (" + failure.message() + "): expected a writable folder");
-}
-
 // Writes a new result and the manifest together, so that a result is never without its entry in the manifest.
 void keep(const std::filesystem::path& folder, const Manifest& manifest, const std::filesystem::path& file,
-          std::optional<std::string> content) {
+          const std::optional<std::string>& content) {
   make_folder(folder);
-  std::vector<NewFile> files;
-  if (content) files.push_back({file, std::move(*content)});
-  files.push_back({manifest_file(folder), text_of(manifest)});
-  write_files_together(files);
+  const std::string list = text_of(manifest);
+  NewFiles files(std::to_string((content ? content->size() : 0) + list.size()) + " bytes");
+  if (content) files.begin(file), files.append(*content);
+  files.begin(manifest_file(folder)), files.append(list);
+  files.finish();
 }
 
 void enter(const Baseline& baseline, Manifest& manifest) {

@@ -145,11 +145,11 @@ void print_measures(const std::vector<ValueComparison>& measures, const std::str
                    text_of(measure.better));
   std::fprintf(out, "  %zu of %zu measures are equal\n", equal, measures.size());
   if (!not_judged.empty()) std::fprintf(out, "  %s\n", not_judged.c_str());
-  std::string left_out;
+  std::vector<std::string> left_out;
   for (const Measure& measure : remote_touch::measures())
-    if (needs_true_contact(measure)) left_out += (left_out.empty() ? "" : ", ") + measure.name;
+    if (needs_true_contact(measure)) left_out.push_back(measure.name);
   std::fprintf(out, "  not compared, since traces do not store what they need (compare sweeps): %s\n",
-               left_out.c_str());
+               joined(left_out, ", ").c_str());
 }
 
 // True if a measure is printed for a region. An event is printed for all regions. Other measures are printed

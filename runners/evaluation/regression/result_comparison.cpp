@@ -105,9 +105,7 @@ void check_names(const Tolerances& tolerances, const std::vector<std::string>& n
   for (const auto& [name, tolerance] : tolerances) {
     if (name == "*" || measures.contains(name) || std::find(names.begin(), names.end(), name) != names.end())
       continue;
-    std::string known;
-    for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
-    throw InputError("tolerance of " + name, "there is no such column: expected " + known +
+    throw InputError("tolerance of " + name, "there is no such column: expected " + joined(names, ", ") +
                                                  (measures.empty() ? "" : ", or a measure"));
   }
 }

@@ -21,15 +21,12 @@ namespace remote_touch {
 
 namespace {
 
-Json read_object(const std::string& json, const std::string& label,
-                 std::initializer_list<const char*> parts) {
+Json read_object(const std::string& json, const std::string& label, const std::vector<std::string>& parts) {
   Json object = parse_json(json, label);
   if (!object.is_object()) throw InputError(label, "not an object: expected {...}");
-  std::string known;
-  for (const char* part : parts) known.append(known.empty() ? "" : ", ").append(part);
   for (const auto& item : object.items())
     if (std::find(parts.begin(), parts.end(), item.key()) == parts.end())
-      throw InputError(label + ": " + item.key(), "unknown: expected " + known);
+      throw InputError(label + ": " + item.key(), "unknown: expected " + joined(parts, ", "));
   return object;
 }
 
@@ -142,12 +139,12 @@ std::string name_in(const std::string& file, const char* kind) {
 // Returns name and JSON of an embedded method or scene, or of one in a file.
 std::pair<std::string, std::string> found(std::span<const EmbeddedText> stored, const std::string& name,
                                           const char* kind) {
-  std::string known;
+  std::vector<std::string> known;
   for (const EmbeddedText& text : stored) {
     if (name == text.name) return {name, text.json};
-    known.append(known.empty() ? "" : ", ").append(text.name);
+    known.emplace_back(text.name);
   }
-  const std::string expected = "expected " + known + ", or a JSON file";
+  const std::string expected = "expected " + joined(known, ", ") + ", or a JSON file";
   if (!name.ends_with(".json")) throw InputError(std::string(kind) + " " + name, "unknown: " + expected);
   return {name_in(name, kind), read_text_file(name, expected)};
 }

@@ -19,15 +19,13 @@ bool needs_its_images(const Variation& run) {
                                         [](const CloudView& view) { return view.cloud.image.has_value(); });
 }
 
-bool mirror_axis(Variation& run, int axis) {
-  if (run.depends_on_axes || !run.can_be_mirrored) return false;
-  mirror(run, axis);
+// False if a cloud has the column already.
+bool add_column(Variation& run, std::vector<double> PointCloud::*column, double value) {
+  for (CloudView& view : run.scene.views) {
+    if (!(view.cloud.*column).empty()) return false;
+    (view.cloud.*column).assign(view.cloud.size(), value);
+  }
   return true;
-}
-
-// Change of size at equal stiffness: forces grow with lengths, so values in N/m and Ns/m do not change.
-constexpr UnitChange sized(double factor) {
-  return {factor, 1, factor};
 }
 
 bool soften(Variation& run) {
@@ -141,43 +139,24 @@ bool add_far(Variation& run) {
 }
 
 bool add_radius_column(Variation& run) {
-  for (CloudView& view : run.scene.views) {
-    if (!view.cloud.fixture_radius_m.empty()) return false;
-    view.cloud.fixture_radius_m.assign(view.cloud.size(), 0);
-  }
-  return true;
+  return add_column(run, &PointCloud::fixture_radius_m, 0);
 }
 
 // A point whose stiffness is NaN has the stiffness of the renderer.
 bool add_empty_stiffness_column(Variation& run) {
-  for (CloudView& view : run.scene.views) {
-    if (!view.cloud.stiffness_N_per_m.empty()) return false;
-    view.cloud.stiffness_N_per_m.assign(view.cloud.size(), std::numeric_limits<double>::quiet_NaN());
-  }
-  return true;
+  return add_column(run, &PointCloud::stiffness_N_per_m, std::numeric_limits<double>::quiet_NaN());
 }
 
 bool add_stiffness_column(Variation& run) {
-  if (!run.stiffness_N_per_m) return false;
-  for (CloudView& view : run.scene.views) {
-    if (!view.cloud.stiffness_N_per_m.empty()) return false;
-    view.cloud.stiffness_N_per_m.assign(view.cloud.size(), *run.stiffness_N_per_m);
-  }
-  return true;
+  return run.stiffness_N_per_m && add_column(run, &PointCloud::stiffness_N_per_m, *run.stiffness_N_per_m);
 }
 
 // --- space, time and force ---
 
-bool mirror_x(Variation& run) {
-  return mirror_axis(run, 0);
-}
-
-bool mirror_y(Variation& run) {
-  return mirror_axis(run, 1);
-}
-
-bool mirror_z(Variation& run) {
-  return mirror_axis(run, 2);
+bool mirror_axis(Variation& run, int axis) {
+  if (run.depends_on_axes || !run.can_be_mirrored) return false;
+  remote_touch::mirror(run, axis);
+  return true;
 }
 
 bool move(Variation& run) {
@@ -186,26 +165,6 @@ bool move(Variation& run) {
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);
   move_rigidly(run, motion);
-  return true;
-}
-
-bool enlarge(Variation& run) {
-  change_units(run, sized(2));
-  return true;
-}
-
-bool shrink(Variation& run) {
-  change_units(run, sized(0.25));
-  return true;
-}
-
-bool halve(Variation& run) {
-  change_units(run, sized(0.5));
-  return true;
-}
-
-bool enlarge_unevenly(Variation& run) {
-  change_units(run, sized(3));
   return true;
 }
 

@@ -20,14 +20,20 @@ bool add_empty_stiffness_column(Variation& run);  // column of NaN: a point has 
 bool add_stiffness_column(Variation& run);
 
 // Space, time and force.
-bool mirror_x(Variation& run);
-bool mirror_y(Variation& run);
-bool mirror_z(Variation& run);
+bool mirror_axis(Variation& run, int axis);
+template <int kAxis>
+bool mirror(Variation& run) {
+  return mirror_axis(run, kAxis);
+}
 bool move(Variation& run);
-bool enlarge(Variation& run);  // factor 2
-bool shrink(Variation& run);   // factor 1/4
-bool halve(Variation& run);
-bool enlarge_unevenly(Variation& run);  // factor 3
+// Change of size at equal stiffness: forces grow with lengths, so values in N/m and Ns/m do not change. The
+// factor is a fraction.
+template <int kNumerator, int kDenominator = 1>
+bool resize(Variation& run) {
+  constexpr double kFactor = static_cast<double>(kNumerator) / kDenominator;
+  change_units(run, {kFactor, 1, kFactor});
+  return true;
+}
 bool speed_up(Variation& run);
 bool change_renderer_only(Variation& run);
 bool soften_renderer(Variation& run);

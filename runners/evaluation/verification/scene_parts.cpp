@@ -20,6 +20,23 @@ Vec3 normal_of(const SceneSurface& surface, double u, double v) {
   return along_v.cross(along_u).normalized();
 }
 
+void place(MetamorphicScene& scene, const ScenePlace& at) {
+  const Eigen::Quaterniond q_WL = at.tilt.normalized();
+  const Eigen::Matrix3d R_WL = q_WL.toRotationMatrix();
+  for (Vec3& hip : scene.hip_W) hip = R_WL * hip + at.shift;
+  for (Eigen::Quaterniond& device : scene.device_WH) device = q_WL * device;
+  for (CloudView& view : scene.views) {
+    PointCloud& cloud = view.cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Vec3 p_W = R_WL * cloud.point(i) + at.shift;
+      cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
+      if (!cloud.has_normals()) continue;
+      const Vec3 n_W = R_WL * cloud.normal(i);
+      cloud.nx[i] = n_W.x(), cloud.ny[i] = n_W.y(), cloud.nz[i] = n_W.z();
+    }
+  }
+}
+
 }  // namespace
 
 double wave(double t) {
@@ -85,32 +102,32 @@ MetamorphicScene scene_of(const char* name, const char* what, const std::vector<
 }
 
 MetamorphicScene resting_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
-                               const PointCloud& cloud) {
+                               const PointCloud& cloud, const ScenePlace& at) {
   MetamorphicScene scene = scene_of(name, what, knots, [&](int, double) { return cloud; });
   scene.cloud_rests = true;
+  place(scene, at);
   return scene;
 }
 
-void raise_hip(MetamorphicScene& scene, const std::function<double(double time_s)>& height) {
-  for (std::size_t tick = 0; tick < scene.hip_W.size(); ++tick)
-    scene.hip_W[tick].y() += height(scene.time_s(tick));
+MetamorphicScene held_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                            const PointCloud& cloud, const ScenePlace& at) {
+  MetamorphicScene scene = resting_scene(name, what, knots, cloud, at);
+  scene.hip_rests = true;
+  scene.views.erase(scene.views.begin() + 1, scene.views.begin() + 5);  // 150 ms to settle
+  return scene;
 }
 
-void place(MetamorphicScene& scene, const Eigen::Quaterniond& tilt, const Vec3& shift) {
-  const Eigen::Quaterniond q_WL = tilt.normalized();
-  const Eigen::Matrix3d R_WL = q_WL.toRotationMatrix();
-  for (Vec3& hip : scene.hip_W) hip = R_WL * hip + shift;
-  for (Eigen::Quaterniond& device : scene.device_WH) device = q_WL * device;
-  for (CloudView& view : scene.views) {
-    PointCloud& cloud = view.cloud;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const Vec3 p_W = R_WL * cloud.point(i) + shift;
-      cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
-      if (!cloud.has_normals()) continue;
-      const Vec3 n_W = R_WL * cloud.normal(i);
-      cloud.nx[i] = n_W.x(), cloud.ny[i] = n_W.y(), cloud.nz[i] = n_W.z();
-    }
-  }
+MetamorphicScene rising_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                              const std::function<double(double time_s)>& height,
+                              const std::function<PointCloud(int view, const SceneSurface& surface)>& cloud,
+                              const ScenePlace& at) {
+  MetamorphicScene scene = scene_of(name, what, knots, [&](int view, double time_s) {
+    return cloud(view, [&](double u, double v) { return Vec3(u, height(time_s), v); });
+  });
+  for (std::size_t tick = 0; tick < scene.hip_W.size(); ++tick)
+    scene.hip_W[tick].y() += height(scene.time_s(tick));
+  place(scene, at);
+  return scene;
 }
 
 }  // namespace remote_touch

@@ -42,15 +42,26 @@ PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view
 // the device turns evenly. The first knot is at tick 0.
 MetamorphicScene scene_of(const char* name, const char* what, const std::vector<SceneKnot>& knots,
                           const std::function<PointCloud(int view, double time_s)>& cloud);
-// Returns the same with one cloud that rests.
-MetamorphicScene resting_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
-                               const PointCloud& cloud);
-// Adds height(time_s) to the HIP's y, so that the HIP rises with the surface.
-void raise_hip(MetamorphicScene& scene, const std::function<double(double time_s)>& height);
 
 // Rotations from the surface's frame to the world. They need square roots and products only, so all machines
 // compute the same bits.
 inline const Eigen::Quaterniond kSlightTilt(1, 0.11, 0.23, -0.07), kSteepTilt(1, -0.35, 0.6, 0.28);
-void place(MetamorphicScene& scene, const Eigen::Quaterniond& tilt, const Vec3& shift);
+// The surface's frame in the world.
+struct ScenePlace {
+  const Eigen::Quaterniond& tilt;
+  Vec3 shift;
+};
+// Returns a scene at a place with one cloud that rests.
+MetamorphicScene resting_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                               const PointCloud& cloud, const ScenePlace& place);
+// Returns the same with the HIP held at the last knot. No view comes in the first 150 ms after the first one,
+// so that it settles.
+MetamorphicScene held_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                            const PointCloud& cloud, const ScenePlace& place);
+// Returns a scene at a place whose surface rises to height(time_s), and the HIP with it.
+MetamorphicScene rising_scene(const char* name, const char* what, const std::vector<SceneKnot>& knots,
+                              const std::function<double(double time_s)>& height,
+                              const std::function<PointCloud(int view, const SceneSurface& surface)>& cloud,
+                              const ScenePlace& place);
 
 }  // namespace remote_touch

@@ -17,54 +17,42 @@ Vec3 roof(double u, double v) {
 }
 
 MetamorphicScene bumpy_slide(const Kernels& kernels) {
-  MetamorphicScene scene =
-      resting_scene("bumpy-slide", "bumps at rest, pressed and slid over",
-                    {{0, {-0.02, 0.009, -0.01}}, {30, {-0.02, -0.009, -0.01}}, {320, {0.021, -0.012, 0.012}}},
-                    sheet(bumpy_surface, kJitter_m, 1, 0, kernels));
-  place(scene, kSlightTilt, {0.05, 0.02, -0.03});
-  return scene;
+  return resting_scene(
+      "bumpy-slide", "bumps at rest, pressed and slid over",
+      {{0, {-0.02, 0.009, -0.01}}, {30, {-0.02, -0.009, -0.01}}, {320, {0.021, -0.012, 0.012}}},
+      sheet(bumpy_surface, kJitter_m, 1, 0, kernels), {kSlightTilt, {0.05, 0.02, -0.03}});
 }
 
 MetamorphicScene held(const Kernels& kernels) {
-  MetamorphicScene scene = resting_scene("held", "bumps at rest, pressed and then held still",
-                                         {{0, {0.003, 0.009, 0.004}}, {20, {0.003, -0.009, 0.004}}},
-                                         sheet(bumpy_surface, kJitter_m, 2, 0, kernels));
-  scene.hip_rests = true;
-  scene.views.erase(scene.views.begin() + 1, scene.views.begin() + 5);  // 150 ms to settle
-  place(scene, kSteepTilt, {-0.02, 0.04, 0.01});
-  return scene;
+  return held_scene("held", "bumps at rest, pressed and then held still",
+                    {{0, {0.003, 0.009, 0.004}}, {20, {0.003, -0.009, 0.004}}},
+                    sheet(bumpy_surface, kJitter_m, 2, 0, kernels), {kSteepTilt, {-0.02, 0.04, 0.01}});
 }
 
 MetamorphicScene touch_and_go(const Kernels& kernels) {
-  MetamorphicScene scene = resting_scene("touch-and-go", "a rough plane at rest, entered, slid over and left",
-                                         {{0, {-0.015, 0.012, 0.01}},
-                                          {40, {-0.015, -0.007, 0.01}},
-                                          {250, {0.02, -0.01, -0.012}},
-                                          {290, {0.021, 0.015, -0.012}},
-                                          {320, {0.021, 0.016, -0.012}}},
-                                         sheet(flat_surface, 0.001, 3, 0, kernels));
-  place(scene, kSlightTilt, {0.01, -0.06, 0.02});
-  return scene;
+  return resting_scene("touch-and-go", "a rough plane at rest, entered, slid over and left",
+                       {{0, {-0.015, 0.012, 0.01}},
+                        {40, {-0.015, -0.007, 0.01}},
+                        {250, {0.02, -0.01, -0.012}},
+                        {290, {0.021, 0.015, -0.012}},
+                        {320, {0.021, 0.016, -0.012}}},
+                       sheet(flat_surface, 0.001, 3, 0, kernels), {kSlightTilt, {0.01, -0.06, 0.02}});
 }
 
 MetamorphicScene ridge(const Kernels& kernels) {
-  MetamorphicScene scene =
-      resting_scene("ridge", "a sharp ridge at rest, slid across",
-                    {{0, {-0.02, 0, 0.006}}, {30, {-0.016, -0.037, 0.004}}, {320, {0.018, -0.036, -0.008}}},
-                    sheet(roof, kJitter_m, 4, 0, kernels));
-  place(scene, kSteepTilt, {0.03, 0.01, 0.04});
-  return scene;
+  return resting_scene(
+      "ridge", "a sharp ridge at rest, slid across",
+      {{0, {-0.02, 0, 0.006}}, {30, {-0.016, -0.037, 0.004}}, {320, {0.018, -0.036, -0.008}}},
+      sheet(roof, kJitter_m, 4, 0, kernels), {kSteepTilt, {0.03, 0.01, 0.04}});
 }
 
 MetamorphicScene corner(const Kernels& kernels) {
-  MetamorphicScene scene = resting_scene("corner", "two walls that meet, pressed into and slid along",
-                                         {{0, {0.012, 0.02, -0.01}},
-                                          {30, {0.009, -0.008, -0.008}},
-                                          {120, {-0.002, -0.008, -0.003}},
-                                          {320, {-0.002, -0.008, 0.01}}},
-                                         sheet(groove_surface, kJitter_m, 5, 0, kernels));
-  place(scene, kSteepTilt, {-0.04, 0.02, -0.01});
-  return scene;
+  return resting_scene("corner", "two walls that meet, pressed into and slid along",
+                       {{0, {0.012, 0.02, -0.01}},
+                        {30, {0.009, -0.008, -0.008}},
+                        {120, {-0.002, -0.008, -0.003}},
+                        {320, {-0.002, -0.008, 0.01}}},
+                       sheet(groove_surface, kJitter_m, 5, 0, kernels), {kSteepTilt, {-0.04, 0.02, -0.01}});
 }
 
 // Chapter 5: points that are balls and have their own stiffness.
@@ -74,43 +62,34 @@ MetamorphicScene regions(const Kernels& kernels) {
     cloud.fixture_radius_m.push_back(std::max(0.0, 0.002 * wave(cloud.x[i] / 0.04)));
     cloud.stiffness_N_per_m.push_back(500 + 300 * wave(cloud.z[i] / 0.02));
   }
-  MetamorphicScene scene = resting_scene(
+  return resting_scene(
       "regions", "a plane at rest with forbidden regions and stiffness of its points, slid over",
-      {{0, {-0.022, 0.012, 0.01}}, {30, {-0.02, -0.006, 0.01}}, {320, {0.02, -0.008, -0.012}}}, cloud);
-  place(scene, kSlightTilt, {-0.03, 0.05, 0.02});
-  return scene;
+      {{0, {-0.022, 0.012, 0.01}}, {30, {-0.02, -0.006, 0.01}}, {320, {0.02, -0.008, -0.012}}}, cloud,
+      {kSlightTilt, {-0.03, 0.05, 0.02}});
 }
 
 MetamorphicScene rise(const Kernels& kernels) {
-  const auto height = [](double time_s) { return 0.05 * time_s + 0.1 * time_s * time_s; };
-  MetamorphicScene scene =
-      scene_of("rise", "a noisy plane that rises faster and faster, pressed",
-               {{0, {-0.01, 0.009, 0.005}}, {30, {-0.01, -0.012, 0.005}}, {320, {0.008, -0.014, -0.004}}},
-               [&](int view, double time_s) {
-                 return sheet([&](double u, double v) { return Vec3(u, height(time_s), v); }, 0.0005, 7, view,
-                              kernels);
-               });
-  raise_hip(scene, height);
-  place(scene, kSlightTilt, {0.02, -0.03, 0.05});
-  return scene;
+  return rising_scene(
+      "rise", "a noisy plane that rises faster and faster, pressed",
+      {{0, {-0.01, 0.009, 0.005}}, {30, {-0.01, -0.012, 0.005}}, {320, {0.008, -0.014, -0.004}}},
+      [](double time_s) { return 0.05 * time_s + 0.1 * time_s * time_s; },
+      [&](int view, const SceneSurface& surface) { return sheet(surface, 0.0005, 7, view, kernels); },
+      {kSlightTilt, {0.02, -0.03, 0.05}});
 }
 
 // Chapter 5 in motion: overlapping forbidden regions of different radii rise against the HIP.
 MetamorphicScene rising_regions(const Kernels& kernels) {
-  const auto height = [](double time_s) { return 0.04 * time_s + 0.08 * time_s * time_s; };
-  MetamorphicScene scene =
-      scene_of("rising-regions", "forbidden regions around a noisy plane that rises, pressed",
-               {{0, {-0.01, 0.02, 0.005}}, {30, {-0.01, 0.001, 0.005}}, {320, {0.008, -0.001, -0.004}}},
-               [&](int view, double time_s) {
-                 PointCloud cloud = sheet([&](double u, double v) { return Vec3(u, height(time_s), v); },
-                                          0.0003, 9, view, kernels);
-                 for (std::size_t i = 0; i < cloud.size(); ++i)
-                   cloud.fixture_radius_m.push_back(0.008 + 0.001 * wave(cloud.x[i] / 0.05));
-                 return cloud;
-               });
-  raise_hip(scene, height);
-  place(scene, kSteepTilt, {-0.01, 0.02, 0.03});
-  return scene;
+  return rising_scene(
+      "rising-regions", "forbidden regions around a noisy plane that rises, pressed",
+      {{0, {-0.01, 0.02, 0.005}}, {30, {-0.01, 0.001, 0.005}}, {320, {0.008, -0.001, -0.004}}},
+      [](double time_s) { return 0.04 * time_s + 0.08 * time_s * time_s; },
+      [&](int view, const SceneSurface& surface) {
+        PointCloud cloud = sheet(surface, 0.0003, 9, view, kernels);
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+          cloud.fixture_radius_m.push_back(0.008 + 0.001 * wave(cloud.x[i] / 0.05));
+        return cloud;
+      },
+      {kSteepTilt, {-0.01, 0.02, 0.03}});
 }
 
 // Depth along the optical axis of a table that falls away to the left.

@@ -1,6 +1,5 @@
 #include "runners/experiment/catalog/catalog.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
@@ -161,28 +160,10 @@ std::vector<RendererEntry> built_in_renderers() {
   };
 }
 
-// Returns true for a name that --set, lists and files can hold. Every entry must have such a name.
-bool is_name(const std::string& name) {
-  return !name.empty() &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") == std::string::npos;
-}
-
-template <class Entry>
-void append(std::vector<Entry>& entries, Entry entry, const std::string& kind) {
-  if (!is_name(entry.name))
-    throw InputError(kind + " \"" + entry.name + "\"",
-                     "expected a name of lower case letters, digits, - and _");
-  for (const Entry& other : entries)
-    if (other.name == entry.name)
-      throw InputError(kind + " \"" + entry.name + "\"", "is in the catalog already");
-  entries.push_back(std::move(entry));
-}
-
 template <class Entry>
 void add_new(std::span<const Entry> entries, std::span<const Entry> known, Catalog& own) {
   for (const Entry& entry : entries)
-    if (std::none_of(known.begin(), known.end(),
-                     [&](const Entry& other) { return other.name == entry.name; }))
+    if (std::ranges::none_of(known, [&](const Entry& other) { return other.name == entry.name; }))
       own.add(entry);
 }
 
@@ -204,26 +185,16 @@ std::optional<Catalog>& chosen_catalog() {
 
 }  // namespace
 
-Catalog& Catalog::add(ScenarioEntry entry) {
-  append(scenarios_, std::move(entry), "scenario");
-  return *this;
+// Throws InputError unless --set, lists and files can hold the name. Every entry must have such a name.
+void Catalog::require_name(const std::string& kind, const std::string& name, bool is_taken) {
+  if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") != std::string::npos)
+    throw InputError(kind + " \"" + name + "\"", "expected a name of lower case letters, digits, - and _");
+  if (is_taken) throw InputError(kind + " \"" + name + "\"", "is in the catalog already");
 }
-Catalog& Catalog::add(FixtureEntry entry) {
-  append(fixtures_, std::move(entry), "fixture rule");
-  return *this;
-}
-Catalog& Catalog::add(TrajectoryEntry entry) {
-  append(trajectories_, std::move(entry), "trajectory");
-  return *this;
-}
-Catalog& Catalog::add(RendererEntry entry) {
-  append(renderers_, std::move(entry), "renderer");
-  return *this;
-}
+
 Catalog& Catalog::add(Measure measure) {
   if (!measure.compute) throw InputError("measure \"" + measure.name + "\"", "has no function");
-  append(measures_, std::move(measure), "measure");
-  return *this;
+  return append(measures_, std::move(measure), "measure");
 }
 
 const Catalog& built_in_catalog() {

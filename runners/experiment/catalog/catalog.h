@@ -4,8 +4,10 @@
 // (runners/evaluation/contract) then check it.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/measures/measures.h"
@@ -18,10 +20,10 @@ class Catalog {
  public:
   // Each function throws InputError if the name is taken, is empty or has characters other than lower case
   // letters, digits, - and _. A measure without a function is refused too.
-  Catalog& add(ScenarioEntry entry);
-  Catalog& add(FixtureEntry entry);
-  Catalog& add(TrajectoryEntry entry);
-  Catalog& add(RendererEntry entry);
+  Catalog& add(ScenarioEntry entry) { return append(scenarios_, std::move(entry), "scenario"); }
+  Catalog& add(FixtureEntry entry) { return append(fixtures_, std::move(entry), "fixture rule"); }
+  Catalog& add(TrajectoryEntry entry) { return append(trajectories_, std::move(entry), "trajectory"); }
+  Catalog& add(RendererEntry entry) { return append(renderers_, std::move(entry), "renderer"); }
   Catalog& add(Measure measure);
 
   std::span<const ScenarioEntry> scenarios() const { return scenarios_; }
@@ -32,6 +34,15 @@ class Catalog {
   bool is_empty() const;
 
  private:
+  template <class Entry>
+  Catalog& append(std::vector<Entry>& entries, Entry entry, const char* kind) {
+    const auto has_its_name = [&](const Entry& other) { return other.name == entry.name; };
+    require_name(kind, entry.name, std::ranges::any_of(entries, has_its_name));
+    entries.push_back(std::move(entry));
+    return *this;
+  }
+  static void require_name(const std::string& kind, const std::string& name, bool is_taken);
+
   std::vector<ScenarioEntry> scenarios_;
   std::vector<FixtureEntry> fixtures_;
   std::vector<TrajectoryEntry> trajectories_;

@@ -46,8 +46,7 @@ std::vector<FixtureValues> ExperimentConfiguration::fixture_values() const {
 
 bool ExperimentConfiguration::has_guidance() const {
   const std::vector<FixtureValues> values = fixture_values();
-  return std::any_of(values.begin(), values.end(),
-                     [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
+  return std::ranges::any_of(values, [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
 }
 
 }  // namespace remote_touch

@@ -59,7 +59,7 @@ Json Experiment::value_at_start(const std::string& path) const {
 std::vector<RecordingPart> Experiment::inputs(const std::vector<std::string>& except) const {
   std::vector<RecordingPart> all;
   for (const ExperimentSection& section : experiment_sections())
-    if (std::find(except.begin(), except.end(), section.key) == except.end())
+    if (section.add_inputs && std::ranges::find(except, section.key) == except.end())
       section.add_inputs(configuration_, all);
   return all;
 }

@@ -15,9 +15,8 @@ Parameters parameters(RendererChange& change) {
 }
 
 const Parameter* find_in_changes(const Parameters& live, const std::string& name) {
-  const auto found = std::find_if(live.begin(), live.end(), [&](const Parameter& parameter) {
-    return name_in_changes(parameter) == name;
-  });
+  const auto found = std::ranges::find_if(
+      live, [&](const Parameter& parameter) { return name_in_changes(parameter) == name; });
   return found == live.end() ? nullptr : &*found;
 }
 

@@ -1,14 +1,10 @@
 #include "runners/experiment/catalog/renderer_contacts.h"
 
-#include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace remote_touch {
 
 namespace {
-
-constexpr double kUnknownRest = std::numeric_limits<double>::quiet_NaN();
 
 // Returns the integral of the weight over q^2, from q = h to q = 1. q: distance in units of R. h: height in
 // the same units.
@@ -31,26 +27,6 @@ RenderedContact rendered_contact(const ImplicitSurfaceParameters& p) {
   for (double middle = 0.5; middle > low && middle < high; middle = 0.5 * (low + high))
     (points * weight_above(p.weight, middle) > p.threshold ? low : high) = middle;
   return {p.support_radius_m * low};
-}
-
-RenderedContact rendered_contact(const LoadedTool::Settings&) {
-  return {kUnknownRest};
-}
-
-RenderedContact rendered_contact(const LoadedTrackedTool::Settings&) {
-  return {kUnknownRest};
-}
-
-RenderedContact rendered_contact(const LoadedToolPenalty::Settings&) {
-  return {kUnknownRest};
-}
-
-RenderedContact rendered_contact(const LoadedToolGodObject::Settings&) {
-  return {kUnknownRest};
-}
-
-RenderedContact rendered_contact(const LoadedSpheres::Settings&) {
-  return {kUnknownRest};
 }
 
 }  // namespace remote_touch

@@ -13,8 +13,6 @@
 #include "core/rivals/penalty_renderer.h"
 #include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/catalog/rendered_contact.h"
-#include "runners/experiment/tool_files/loaded_spheres.h"
-#include "runners/experiment/tool_files/loaded_tool.h"
 
 namespace remote_touch {
 
@@ -56,11 +54,6 @@ inline RenderedContact rendered_contact(const GodObjectParameters& p) {
 // the integral of w(q) over q^2, from h^2 to 1. The rest distance is the height at which this sum is T, found
 // by bisection. It is 0 if the sum is less than T even on the plane.
 RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
-// The rest distance of a tool is not known (NaN), because a tool has a shape and not a radius.
-RenderedContact rendered_contact(const LoadedTool::Settings&);
-RenderedContact rendered_contact(const LoadedTrackedTool::Settings&);
-RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);
-RenderedContact rendered_contact(const LoadedToolGodObject::Settings&);
-RenderedContact rendered_contact(const LoadedSpheres::Settings&);
+// Tools have no function here: their rest distance is not known, because a tool has a shape and not a radius.
 
 }  // namespace remote_touch

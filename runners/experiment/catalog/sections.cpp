@@ -121,8 +121,6 @@ Json list_json(const std::vector<Element>& elements, WriteOne write_one) {
 
 // --- the kinds of sections ---
 
-void no_inputs(const Configuration&, std::vector<RecordingPart>&) {}
-
 using Section = ExperimentSection;
 using Rule = void (*)(Configuration&);
 
@@ -130,8 +128,7 @@ template <auto kMember>
 using Member = std::remove_cvref_t<decltype(std::declval<Configuration>().*kMember)>;
 
 bool has(const Parameters& parameters, const std::string& name) {
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [&](const Parameter& p) { return p.name == name; });
+  return std::ranges::any_of(parameters, [&](const Parameter& p) { return p.name == name; });
 }
 
 // True if the section, as it is in the configuration, has a parameter of that name.
@@ -148,7 +145,7 @@ bool has(const Section& section, const Json& whole, const std::string& parameter
 // message names that section.
 void refuse_misplaced(const Json& whole, const Parameters& own, const std::vector<std::string>& sections) {
   for (const auto& item : whole.items()) {
-    const bool is_section = std::find(sections.begin(), sections.end(), item.key()) != sections.end();
+    const bool is_section = std::ranges::find(sections, item.key()) != sections.end();
     if (is_section || has(own, item.key())) continue;
     for (const Section& section : experiment_sections())
       if (!section.is_top_level && has(section, whole, item.key()))
@@ -173,7 +170,6 @@ Section top_level(const char* key, const char* summary) {
     Member<kMember> settings = configuration.*kMember;
     write_parameters(parameters(settings), whole);
   };
-  s.add_inputs = no_inputs;
   return s;
 }
 
@@ -229,7 +225,6 @@ Section optional(const char* key, const char* summary, Rule complete = nullptr) 
   s.write = [](const Section& section, const Configuration& configuration, Json& whole) {
     if (configuration.*kMember) whole[section.key] = settings_json(*(configuration.*kMember));
   };
-  s.add_inputs = no_inputs;
   s.complete = complete;
   return s;
 }
@@ -249,7 +244,6 @@ Section optional_list(const char* key, const char* summary, Rule complete = null
     if (!(configuration.*kMember).empty())
       whole[section.key] = list_json(configuration.*kMember, settings_json<Settings>);
   };
-  s.add_inputs = no_inputs;
   s.complete = complete;
   return s;
 }

@@ -36,7 +36,7 @@ struct ExperimentSection {
   // is not written; a list of catalog entries that was left out is written as an empty list.
   void (*write)(const ExperimentSection& section, const ExperimentConfiguration& configuration,
                 nlohmann::ordered_json& whole) = nullptr;
-  // Adds the files that its settings name.
+  // Adds the files that its settings name. Null: they name none.
   void (*add_inputs)(const ExperimentConfiguration& configuration,
                      std::vector<RecordingPart>& inputs) = nullptr;
   // Called after all sections are read. Checks this section against the others: throws InputError, or adds

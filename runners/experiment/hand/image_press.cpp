@@ -130,7 +130,7 @@ void ImagePress::note_missed_object(const NearestObject& object, const DepthImag
   const std::string pressed = pixel_text(row_, column_) + " is pressed, but ";
   if (object.is_whole_scene) {
     const auto nearer = nearer_small_object(measured, image_.camera, {pixel}, seen(0).supported_m);
-    if (nearer) missed_object_ = pressed + text_of(*nearer);
+    if (nearer) missed_object_ = pressed + text_of_nearer(*nearer);
   } else if (std::find(object.pixels.begin(), object.pixels.end(), pixel) == object.pixels.end()) {
     missed_object_ = pressed + "the nearest object is around " + pixel_text(object.row, object.column) +
                      ", and cannot be touched there";

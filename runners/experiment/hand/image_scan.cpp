@@ -12,14 +12,6 @@
 
 namespace remote_touch {
 
-namespace {
-
-ScanRowRequest request_of(const ImageScan::Settings& s) {
-  return {s.row, s.first_column, s.last_column, s.span_m, s.edge_jump_m, s.bridge_m, s.margin_m};
-}
-
-}  // namespace
-
 Parameters parameters(ImageScan::Settings& s) {
   return {
       {"row", &s.row, -1, 4095,
@@ -58,7 +50,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s)
     throw InputError(
         "trajectory.row, first_column, last_column",
         "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
-  scan_ = find_scan_row(first.depth, camera, request_of(s));
+  scan_ = find_scan_row(first.depth, camera, s);
   if (scan_.patches.empty()) refuse_row(first.depth, camera);
   if (s.row < 0) note_missed_object(first.depth, camera);
   plan_path(first.depth, first.layout);
@@ -70,7 +62,7 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
   if (settings_.row < 0) {
     expected = "another row, " + expected;
   } else {
-    ScanRowRequest request = request_of(settings_);
+    ScanRowRequest request = settings_;
     request.row = -1;
     const ScanRow other = find_scan_row(image, camera, request);
     expected = (other.patches.empty() ? "another row, "
@@ -101,7 +93,7 @@ void ImageScan::note_missed_object(const DepthImage& image, const CameraIntrinsi
         nearest_m = std::min(nearest_m, scan_.depth_m[static_cast<std::size_t>(u)]);
       }
     const auto nearer = nearer_small_object(image, camera, touched, nearest_m);
-    if (nearer) missed_object_ = row + " is scanned, but " + text_of(*nearer);
+    if (nearer) missed_object_ = row + " is scanned, but " + text_of_nearer(*nearer);
   }
 }
 
@@ -152,9 +144,8 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
 // The path follows the median of the depths over the margin. The depth of a single pixel may differ from it
 // by edge_jump_m, so this tolerance is added to the plan.
 std::optional<SurfacePlan> ImageScan::surface_plan(double time_s) const {
-  const bool touches = std::any_of(touches_.begin(), touches_.end(), [&](const Interval& touch) {
-    return touch.begins_s <= time_s && time_s <= touch.ends_s;
-  });
+  const bool touches = std::ranges::any_of(
+      touches_, [&](const Interval& touch) { return touch.begins_s <= time_s && time_s <= touch.ends_s; });
   return SurfacePlan{touches, std::min(settings_.depth_m, 0.0) - scan_.edge_jump_m,
                      std::max(settings_.depth_m, 0.0) + scan_.edge_jump_m, 0.5 * settings_.bridge_m};
 }

@@ -10,7 +10,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/polyline_path.h"
 #include "runners/experiment/hand/scan_row.h"
-#include "runners/experiment/hand/surface_support.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 
@@ -18,18 +17,10 @@ namespace remote_touch {
 
 class ImageScan final : public Trajectory {
  public:
-  struct Settings {
-    int row = -1;
-    int first_column = -1;
-    int last_column = -1;
+  struct Settings : ScanRowRequest {
     double depth_m = 0.01;
     double speed_m_per_s = 0.1;
     double clearance_m = 0.03;
-    double span_m = 0.3;
-    double edge_jump_m =
-        0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
-    double bridge_m = kBridge_m;
-    double margin_m = 0.01;
   };
 
   // Throws InputError if the first frame of the scenario is not an image, if the row or a column is outside

@@ -148,13 +148,14 @@ NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsic
   return !closed.is_whole_scene && (object.is_whole_scene || is_nearer) ? closed : object;
 }
 
-std::string text_of(const NearerObject& object) {
+std::string text_of_nearer(const NearestObject& object) {
   return "an object at row " + std::to_string(object.row) + ", column " + std::to_string(object.column) +
-         " is nearer, at " + millimetres(object.depth_m) + "; it does not fill 1 % of the image without gaps";
+         " is nearer, at " + millimetres(object.nearest_depth_m) +
+         "; it does not fill 1 % of the image without gaps";
 }
 
-std::optional<NearerObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
-                                                const std::vector<int>& touched, double touched_depth_m) {
+std::optional<NearestObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
+                                                 const std::vector<int>& touched, double touched_depth_m) {
   constexpr double kMinArea_m2 = 0.02 * 0.02;
   const std::optional<Plane> plane = dominant_plane(sample(image, camera));
   const auto is_in_front = [&](const Vec3& p) {
@@ -169,14 +170,14 @@ std::optional<NearerObject> nearer_small_object(const DepthImage& image, const C
   for (const int pixel : touched)
     if (open[static_cast<std::size_t>(pixel)]) take_patch(image, pixel, open, Joined::also_diagonally);
 
-  std::optional<NearerObject> nearest;
+  std::optional<NearestObject> nearest;
   for (int i = 0; i < image.width * image.height; ++i) {
     if (!open[static_cast<std::size_t>(i)]) continue;
     const std::vector<int> patch = take_patch(image, i, open, Joined::also_diagonally);
     if (area_m2(image, camera, patch) < kMinArea_m2) continue;
-    const NearestObject object = describe(image, patch);
-    if (object.nearest_depth_m < (nearest ? nearest->depth_m : touched_depth_m - kContinuous_m))
-      nearest = NearerObject{object.nearest_depth_m, object.row, object.column};
+    NearestObject object = describe(image, patch);
+    if (object.nearest_depth_m < (nearest ? nearest->nearest_depth_m : touched_depth_m - kContinuous_m))
+      nearest = std::move(object);
   }
   return nearest;
 }

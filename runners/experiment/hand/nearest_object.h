@@ -28,21 +28,16 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
 // if the measured pixels alone show no large object, or only one that is more than 10 mm farther away.
 NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera);
 
-// An object that is nearer than the one that a hand touches.
-struct NearerObject {
-  double depth_m = 0;       // depth of its nearest part (5th percentile)
-  int row = 0, column = 0;  // medians of its pixels
-};
-
+// Returns a text about an object that is nearer than the one that a hand touches:
 // "an object at row 110, column 150 is nearer, at 600 mm; it does not fill 1 % of the image without gaps"
-std::string text_of(const NearerObject& object);
+std::string text_of_nearer(const NearestObject& object);
 
 // Returns the nearest patch of continuous depth in front of the dominant plane that is more than 10 mm nearer
 // than touched_depth_m and contains no pixel of `touched` (row * width + column). The patch covers 4 cm^2 or
 // more, the square of twice the default margin_m, so that a hand could touch it. It need not fill 1 % of the
 // image, and its pixels may join diagonally. It is meant for hands that touch the whole scene, because
 // nearest_large_object() found no large object. Returns nothing if there is no such patch.
-std::optional<NearerObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
-                                                const std::vector<int>& touched, double touched_depth_m);
+std::optional<NearestObject> nearer_small_object(const DepthImage& image, const CameraIntrinsics& camera,
+                                                 const std::vector<int>& touched, double touched_depth_m);
 
 }  // namespace remote_touch

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "runners/experiment/hand/nearest_object.h"
-#include "runners/experiment/hand/surface_support.h"
 
 namespace remote_touch {
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "runners/experiment/hand/surface_support.h"
 
 namespace remote_touch {
 
@@ -17,8 +18,9 @@ struct ScanRowRequest {
   int row = -1;
   int first_column = -1, last_column = -1;
   double span_m = 0.3;
-  double edge_jump_m = 0.006;
-  double bridge_m = 0.008;
+  double edge_jump_m =
+      0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
+  double bridge_m = kBridge_m;
   double margin_m = 0.01;
 };
 

@@ -77,8 +77,7 @@ std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library) {
             "clGetDeviceIDs");
     for (cl_uint d = 0; d < devices; ++d) {
       OpenClDevice device;
-      device.platform = static_cast<int>(p), device.number = static_cast<int>(d);
-      device.platform_id = platforms[p], device.id = ids[d];
+      device.platform = static_cast<int>(p), device.number = static_cast<int>(d), device.id = ids[d];
       device.name = text_info("clGetDeviceInfo", [&](auto... to) {
         return library.GetDeviceInfo(ids[d], CL_DEVICE_NAME, to...);
       });

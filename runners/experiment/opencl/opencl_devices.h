@@ -11,7 +11,6 @@ namespace remote_touch {
 
 struct OpenClDevice {
   int platform = 0, number = 0;  // the numbers in opencl:PLATFORM:DEVICE
-  cl_platform_id platform_id = nullptr;
   cl_device_id id = nullptr;
   std::string name;  // "pthread-..., Portable Computing Language"
   bool is_gpu = false;

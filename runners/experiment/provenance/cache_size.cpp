@@ -88,8 +88,7 @@ CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
   std::vector<CachedFile> files = files_in(folder);
   remove_abandoned(files);
   std::erase_if(files, [](const CachedFile& file) { return !is_ours(file.path); });
-  std::sort(files.begin(), files.end(),
-            [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });
+  std::ranges::sort(files, [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });
   CacheSize left{files.size(), 0};
   for (const CachedFile& file : files) left.bytes += file.bytes;
   for (const CachedFile& file : files) {

@@ -27,11 +27,6 @@ std::string cell_text(const Recipe& recipe) {
   return text;
 }
 
-template <class Value>
-void take(const Json& json, const char* name, Value& value) {
-  if (const auto found = json.find(name); found != json.end()) value = found->get<Value>();
-}
-
 // Accepts integers only. The library would convert any number.
 void take_integer(const Json& json, const char* name, int& value) {
   const auto found = json.find(name);
@@ -53,9 +48,10 @@ void take_cell(const Json& json, std::vector<std::size_t>& cell) {
 
 Recipe recipe_in(const Json& json) {
   Recipe recipe{json.at("action").get<std::string>(), json.at("subject").get<std::string>()};
-  take(json, "set", recipe.overrides), take_cell(json, recipe.cell);
+  recipe.overrides = json.value("set", Words()), recipe.tolerances = json.value("tolerances", Words());
+  recipe.candidate = json.value("candidate", std::string());
+  take_cell(json, recipe.cell);
   take_integer(json, "replicate", recipe.replicate), take_integer(json, "coarse", recipe.coarse);
-  take(json, "candidate", recipe.candidate), take(json, "tolerances", recipe.tolerances);
   return recipe;
 }
 

@@ -6,15 +6,7 @@
 
 namespace remote_touch {
 
-namespace {
-
-struct Counted {
-  std::uint64_t points = 0, measured = 0;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  double farthest_m = -std::numeric_limits<double>::infinity();
-};
-
-Counted count_image(const SensorFrame& frame, double metres_per_unit) {
+void SensedPoints::add_image(const SensorFrame& frame, double metres_per_unit) {
   std::uint64_t measured = 0;
   std::uint16_t nearest = std::numeric_limits<std::uint16_t>::max(), farthest = 0;
   for (const std::uint16_t depth : frame.depth) {
@@ -22,33 +14,29 @@ Counted count_image(const SensorFrame& frame, double metres_per_unit) {
     nearest = depth != 0 ? std::min(nearest, depth) : nearest;
     farthest = std::max(farthest, depth);
   }
-  Counted counted{frame.depth.size(), measured};
-  if (measured > 0)
-    counted.nearest_m = nearest * metres_per_unit, counted.farthest_m = farthest * metres_per_unit;
-  return counted;
+  points_ += frame.depth.size(), measured_ += measured;
+  if (measured == 0) return;
+  nearest_m_ = std::min(nearest_m_, nearest * metres_per_unit);
+  farthest_m_ = std::max(farthest_m_, farthest * metres_per_unit);
 }
 
-Counted count_cloud(const SensorFrame& frame, std::size_t numbers_per_point) {
-  Counted counted{frame.points.size() / numbers_per_point};
+void SensedPoints::add_cloud(const SensorFrame& frame, std::size_t numbers_per_point) {
+  points_ += frame.points.size() / numbers_per_point;
   for (std::size_t at = 0; at + numbers_per_point <= frame.points.size(); at += numbers_per_point) {
     const float* const p = frame.points.data() + at;
     if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
-    ++counted.measured;
-    counted.nearest_m = std::min<double>(counted.nearest_m, p[2]);
-    counted.farthest_m = std::max<double>(counted.farthest_m, p[2]);
+    ++measured_;
+    nearest_m_ = std::min<double>(nearest_m_, p[2]);
+    farthest_m_ = std::max<double>(farthest_m_, p[2]);
   }
-  return counted;
 }
 
-}  // namespace
-
 void SensedPoints::add(const SensorFrame& frame, const SensorView& view) {
-  const Counted counted = view.cloud ? count_cloud(frame, view.cloud->numbers_per_point())
-                                     : count_image(frame, view.metres_per_unit);
   ++frames_;
-  points_ += counted.points, measured_ += counted.measured;
-  nearest_m_ = std::min(nearest_m_, counted.nearest_m);
-  farthest_m_ = std::max(farthest_m_, counted.farthest_m);
+  if (view.cloud)
+    add_cloud(frame, view.cloud->numbers_per_point());
+  else
+    add_image(frame, view.metres_per_unit);
   are_clouds_ = view.cloud.has_value(), has_colours_ = view.has_colour;
 }
 

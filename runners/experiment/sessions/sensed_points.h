@@ -20,6 +20,9 @@ class SensedPoints {
   std::string text() const;
 
  private:
+  void add_image(const SensorFrame& frame, double metres_per_unit);
+  void add_cloud(const SensorFrame& frame, std::size_t numbers_per_point);
+
   std::int64_t frames_ = 0;
   std::uint64_t points_ = 0, measured_ = 0;
   double nearest_m_ = std::numeric_limits<double>::infinity();

@@ -12,34 +12,15 @@
 
 namespace remote_touch {
 
-namespace {
-
-Parameters path_alone(std::string& path) {
-  return {{"path", &path, 0, 0, "file of remote-touch live --record"}};
+Parameters parameters(SessionSettings& s) {
+  return {{"path", &s.path, 0, 0, "file of remote-touch live --record"}};
 }
 
-std::string missing_path(const std::string& path) {
-  return path.empty() ? "path = \"\": expected a file of remote-touch live --record" : std::string();
+std::string validate(const SessionSettings& s) {
+  return s.path.empty() ? "path = \"\": expected a file of remote-touch live --record" : "";
 }
 
-}  // namespace
-
-Parameters parameters(SessionScene::Settings& s) {
-  return path_alone(s.path);
-}
-std::string validate(const SessionScene::Settings& s) {
-  return missing_path(s.path);
-}
-RecordingPart input_files(const SessionScene::Settings& s) {
-  return {s.path};
-}
-Parameters parameters(SessionHand::Settings& s) {
-  return path_alone(s.path);
-}
-std::string validate(const SessionHand::Settings& s) {
-  return missing_path(s.path);
-}
-RecordingPart input_files(const SessionHand::Settings& s) {
+RecordingPart input_files(const SessionSettings& s) {
   return {s.path};
 }
 
@@ -80,10 +61,6 @@ std::vector<Note> SessionScene::input_notes() const {
   if (session_.ended() == kInterruptedRecording)
     notes.push_back({"recording incomplete", path_ + ": the recording was interrupted"});
   return notes;
-}
-
-std::shared_ptr<const NeighbourSearch> SessionScene::points(int frame) const {
-  return make_search(cloud(frame));
 }
 
 double SessionScene::signed_distance(const Vec3&, double) const {

@@ -13,12 +13,18 @@
 
 namespace remote_touch {
 
+struct SessionSettings {
+  std::string path;
+};
+
+Parameters parameters(SessionSettings& s);
+std::string validate(const SessionSettings& s);
+RecordingPart input_files(const SessionSettings& s);
+
 // The frames as the sensor sent them, at the times when the live renderer received them.
 class SessionScene final : public Scenario {
  public:
-  struct Settings {
-    std::string path;
-  };
+  using Settings = SessionSettings;
   // Throws InputError when the session cannot be read.
   SessionScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
@@ -26,7 +32,6 @@ class SessionScene final : public Scenario {
   int frame_count() const override { return static_cast<int>(session_.frame_count()); }
   double captured_s(int frame) const override { return session_.captured_s(static_cast<std::size_t>(frame)); }
   bool ends() const override { return true; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // NaN: the truth is not known.
   double signed_distance(const Vec3& p_W, double time_s) const override;
@@ -51,17 +56,11 @@ class SessionScene final : public Scenario {
   mutable std::vector<bool> is_read_;
 };
 
-Parameters parameters(SessionScene::Settings& s);
-std::string validate(const SessionScene::Settings& s);
-RecordingPart input_files(const SessionScene::Settings& s);
-
 // Returns the state of the session's device at the nearest tick. If that tick was missed, it is the state at
 // the tick before.
 class SessionHand final : public Trajectory {
  public:
-  struct Settings {
-    std::string path;
-  };
+  using Settings = SessionSettings;
   SessionHand(const Settings& settings, const Scenario& scenario);
 
   DeviceState at(double time_s) const override;
@@ -73,10 +72,6 @@ class SessionHand final : public Trajectory {
 
   const SessionReader session_;
 };
-
-Parameters parameters(SessionHand::Settings& s);
-std::string validate(const SessionHand::Settings& s);
-RecordingPart input_files(const SessionHand::Settings& s);
 
 // Returns the experiment of a session, as JSON: the experiment that was run, with the recorded frames and
 // hand.

@@ -19,36 +19,33 @@ namespace {
 constexpr std::uint32_t kMaxImageSide_px = 65535;
 constexpr std::int64_t kMaxTickNumber = std::numeric_limits<std::int32_t>::max();
 
-void pack(Packer& packer, const Vec3& v) {
-  for (int i = 0; i < 3; ++i) packer.value(v[i]);
+// These functions pack or unpack every field, in the same order.
+template <class Direction, class Vector>
+void visit_vector(Direction& pack, Vector& v) {
+  for (int i = 0; i < 3; ++i) pack.value(v[i]);
 }
 
-void unpack(Unpacker& unpacker, Vec3& v) {
-  for (int i = 0; i < 3; ++i) unpacker.value(v[i]);
+template <class Direction, class Tick>
+void visit_tick(Direction& pack, Tick& tick) {
+  pack.value(tick.number);
+  visit_vector(pack, tick.device.position_W);
+  auto& q = tick.device.orientation_W;
+  pack.value(q.w()), pack.value(q.x()), pack.value(q.y()), pack.value(q.z());
+  pack.value(tick.device.buttons), pack.value(tick.taken);
+  visit_vector(pack, tick.written.force_N), visit_vector(pack, tick.written.torque_Nm);
+  pack.value(tick.gate);
 }
 
-void pack(Packer& packer, const SessionTick& tick) {
-  packer.value(tick.number);
-  pack(packer, tick.device.position_W);
-  const Eigen::Quaterniond& q = tick.device.orientation_W;
-  for (const double part : {q.w(), q.x(), q.y(), q.z()}) packer.value(part);
-  packer.value(tick.device.buttons);
-  packer.value(tick.taken);
-  pack(packer, tick.written.force_N), pack(packer, tick.written.torque_Nm);
-  packer.value(tick.gate);
+template <class Direction, class Change>
+void visit_change(Direction& pack, Change& change) {
+  pack.value(change.tick), pack.value(change.parameter), pack.value(change.value);
 }
 
-SessionTick unpacked_tick(Unpacker& unpacker) {
-  SessionTick tick;
-  unpacker.value(tick.number);
-  unpack(unpacker, tick.device.position_W);
-  Eigen::Quaterniond& q = tick.device.orientation_W;
-  for (double* part : {&q.w(), &q.x(), &q.y(), &q.z()}) unpacker.value(*part);
-  unpacker.value(tick.device.buttons);
-  unpacker.value(tick.taken);
-  unpack(unpacker, tick.written.force_N), unpack(unpacker, tick.written.torque_Nm);
-  unpacker.value(tick.gate);
-  return tick;
+template <class Direction, class Frame>
+void visit_frame(Direction& pack, Frame& frame) {
+  pack.value(frame.number), pack.value(frame.captured_s), pack.value(frame.fixtures_off);
+  pack.value(frame.point_count);
+  pack.text(frame.depth), pack.text(frame.colour);
 }
 
 // Packs names and values alternately.
@@ -91,11 +88,9 @@ std::optional<TickBlock> unpacked_ticks(const std::string& content) {
   std::uint64_t tick_count = 0, change_count = 0;
   unpacker.value(tick_count), unpacker.value(change_count);
   for (std::uint64_t i = 0; i < tick_count && unpacker.good(); ++i)
-    block.ticks.push_back(unpacked_tick(unpacker));
-  for (std::uint64_t i = 0; i < change_count && unpacker.good(); ++i) {
-    SessionChange& change = block.changes.emplace_back();
-    unpacker.value(change.tick), unpacker.value(change.parameter), unpacker.value(change.value);
-  }
+    visit_tick(unpacker, block.ticks.emplace_back());
+  for (std::uint64_t i = 0; i < change_count && unpacker.good(); ++i)
+    visit_change(unpacker, block.changes.emplace_back());
   if (!unpacker.done()) return {};
   return block;
 }
@@ -103,9 +98,7 @@ std::optional<TickBlock> unpacked_ticks(const std::string& content) {
 std::optional<StoredFrame> unpacked_frame(const std::string& content) {
   Unpacker unpacker(content);
   StoredFrame frame;
-  unpacker.value(frame.number), unpacker.value(frame.captured_s), unpacker.value(frame.fixtures_off);
-  unpacker.value(frame.point_count);
-  unpacker.text(frame.depth), unpacker.text(frame.colour);
+  visit_frame(unpacker, frame);
   if (!unpacker.done()) return {};
   return frame;
 }
@@ -304,17 +297,14 @@ std::string packed_ticks(std::span<const SessionTick> ticks, std::span<const Ses
   MemoryPacker packer;
   packer.value(static_cast<std::uint64_t>(ticks.size()));
   packer.value(static_cast<std::uint64_t>(changes.size()));
-  for (const SessionTick& tick : ticks) pack(packer, tick);
-  for (const SessionChange& change : changes)
-    packer.value(change.tick), packer.value(change.parameter), packer.value(change.value);
+  for (const SessionTick& tick : ticks) visit_tick(packer, tick);
+  for (const SessionChange& change : changes) visit_change(packer, change);
   return packer.take();
 }
 
 std::string packed_frame(const StoredFrame& frame) {
   MemoryPacker packer;
-  packer.value(frame.number), packer.value(frame.captured_s), packer.value(frame.fixtures_off);
-  packer.value(frame.point_count);
-  packer.text(frame.depth), packer.text(frame.colour);
+  visit_frame(packer, frame);
   return packer.take();
 }
 

@@ -89,7 +89,7 @@ struct Reader {
   }
   bool operator()(const Choice& choice) const {
     if (!json.is_string()) return false;
-    const auto found = std::find(choice.names.begin(), choice.names.end(), json.get<std::string>());
+    const auto found = std::ranges::find(choice.names, json.get<std::string>());
     if (found == choice.names.end()) return false;
     choice.set(static_cast<int>(found - choice.names.begin()));
     return true;
@@ -155,7 +155,7 @@ std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const st
       row[j] = std::min({row[j] + 1, row[j - 1] + 1, swapped});
     }
   }
-  return {*std::min_element(row.begin(), row.end()), row.back()};
+  return {*std::ranges::min_element(row), row.back()};
 }
 
 std::vector<std::string> all_keys(const Parameters& parameters, const std::vector<std::string>& others) {
@@ -168,10 +168,9 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
 // Returns the present name of a key that was renamed, otherwise the known key with the most similar spelling.
 // pre: there is a known key.
 std::string intended_key(const std::string& key, const std::vector<std::string>& known) {
-  return new_name(key, known)
-      .value_or(*std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(key, a) < edit_distance(key, b);
-      }));
+  return new_name(key, known).value_or(*std::ranges::min_element(known, [&](const auto& a, const auto& b) {
+    return edit_distance(key, a) < edit_distance(key, b);
+  }));
 }
 
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
@@ -197,9 +196,8 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
   for (const auto& item : object.items()) {
     const std::string& key = item.key();
     const Json& value = item.value();
-    if (std::find(elsewhere.begin(), elsewhere.end(), key) != elsewhere.end()) continue;
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });
+    if (std::ranges::find(elsewhere, key) != elsewhere.end()) continue;
+    const auto found = std::ranges::find_if(parameters, [&](const auto& p) { return p.name == key; });
     if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix);
     if (!std::visit(Reader{value, *found}, found->value))
       throw InputError(prefix + key + " = " + shown(value), "expected " + allowed(*found));
@@ -278,7 +276,7 @@ const Json* find_value(const Json& json, std::span<const std::string> keys) {
 }
 
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject) {
-  if (std::count(path.begin(), path.end(), '.') >= kMaxJsonDepth)
+  if (std::ranges::count(path, '.') >= kMaxJsonDepth)
     throw InputError(subject.substr(0, 64) + "...",
                      "expected at most " + std::to_string(kMaxJsonDepth) + " levels");
   Json* place = &configuration;

@@ -44,8 +44,7 @@ double nearest_m(const std::vector<Vec2>& points, const Vec2& centre) {
 
 bool has_point_within(const std::vector<Vec2>& points, const Vec2& centre, double radius_m) {
   const double squared = radius_m * radius_m;
-  return std::any_of(points.begin(), points.end(),
-                     [&](const Vec2& p) { return (p - centre).squaredNorm() <= squared; });
+  return std::ranges::any_of(points, [&](const Vec2& p) { return (p - centre).squaredNorm() <= squared; });
 }
 
 struct Disk {
@@ -67,7 +66,7 @@ OpenAngle widest_open_angle(const std::vector<Vec2>& points, const Disk& disk) {
     if (apart.norm() <= disk.radius_m * (1 + kRounding))
       border.emplace_back(std::atan2(apart.y(), apart.x()), p);
   }
-  std::sort(border.begin(), border.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::sort(border, [](const auto& a, const auto& b) { return a.first < b.first; });
   OpenAngle widest{-1, Vec2::Zero(), Vec2::Zero()};
   for (std::size_t i = 0; i < border.size(); ++i) {
     const bool is_last = i + 1 == border.size();

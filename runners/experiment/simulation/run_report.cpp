@@ -32,10 +32,9 @@ void add_late_phases(const std::vector<Phase>& of_scene, const std::vector<Phase
 void add_contact(const Trace& trace, std::vector<Note>& notes) {
   const auto is_none = [](int count) { return count == 0; };
   const auto is_zero = [](const Vec3& force) { return force.norm() == 0; };
-  if (std::all_of(trace.frame_index.begin(), trace.frame_index.end(), [](int frame) { return frame < 0; }))
+  if (std::ranges::all_of(trace.frame_index, [](int frame) { return frame < 0; }))
     notes.push_back({"no frame", "no frame arrived before the run ended"});
-  else if (std::all_of(trace.contact_count.begin(), trace.contact_count.end(), is_none) &&
-           std::all_of(trace.force_N.begin(), trace.force_N.end(), is_zero))
+  else if (std::ranges::all_of(trace.contact_count, is_none) && std::ranges::all_of(trace.force_N, is_zero))
     notes.push_back(no_contact_note());
 }
 

@@ -12,8 +12,6 @@
 
 namespace remote_touch {
 
-struct Trace;
-
 struct SimulationOptions {
   const Kernels* kernels = nullptr;                 // null: the machine's best
   const std::atomic<bool>* stop = nullptr;          // when set, the run ends with Interrupted

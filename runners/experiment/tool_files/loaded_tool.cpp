@@ -1,23 +1,8 @@
 #include "runners/experiment/tool_files/loaded_tool.h"
 
-#include <utility>
-
 namespace remote_touch {
 
 namespace {
-
-template <class Settings>
-Parameters parameters_of(Settings& s) {
-  Parameters all = parameters(s.tool);
-  for (Parameter& p : parameters(s.motion)) all.push_back(std::move(p));
-  return all;
-}
-
-template <class Settings>
-std::string problem_of(const Settings& s) {
-  const std::string tool = validate(s.tool);
-  return tool.empty() ? validate(s.motion) : tool;
-}
 
 std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion,
                                       const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
@@ -63,45 +48,6 @@ ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameter
 }
 
 }  // namespace
-
-Parameters parameters(LoadedTool::Settings& s) {
-  return parameters_of(s);
-}
-Parameters parameters(LoadedTrackedTool::Settings& s) {
-  return parameters_of(s);
-}
-Parameters parameters(LoadedToolPenalty::Settings& s) {
-  return parameters_of(s);
-}
-Parameters parameters(LoadedToolGodObject::Settings& s) {
-  return parameters_of(s);
-}
-
-std::string validate(const LoadedTool::Settings& s) {
-  return problem_of(s);
-}
-std::string validate(const LoadedTrackedTool::Settings& s) {
-  return problem_of(s);
-}
-std::string validate(const LoadedToolPenalty::Settings& s) {
-  return problem_of(s);
-}
-std::string validate(const LoadedToolGodObject::Settings& s) {
-  return problem_of(s);
-}
-
-std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {
-  return input_files(s.tool);
-}
-std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s) {
-  return input_files(s.tool);
-}
-std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
-  return input_files(s.tool);
-}
-std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s) {
-  return input_files(s.tool);
-}
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)

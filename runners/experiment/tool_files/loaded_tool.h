@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/beyond/tracked_surface/tracked_tool_renderer.h"
 #include "core/dissertation/tool/motion/god_object_motion.h"
@@ -15,12 +17,15 @@ namespace remote_touch {
 
 // MotionSettings: ToolParameters, TrackedToolParameters, ToolPenaltyParameters or ToolGodObjectParameters.
 template <class MotionSettings>
+struct MovedToolSettings {
+  ToolSettings tool;
+  MotionSettings motion;
+};
+
+template <class MotionSettings>
 class ToolFromMesh final : public Renderer {
  public:
-  struct Settings {
-    ToolSettings tool;
-    MotionSettings motion;
-  };
+  using Settings = MovedToolSettings<MotionSettings>;
 
   // Throws InputError when the tool cannot be made.
   ToolFromMesh(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
@@ -42,28 +47,23 @@ using LoadedTrackedTool = ToolFromMesh<TrackedToolParameters>;
 using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
 using LoadedToolGodObject = ToolFromMesh<ToolGodObjectParameters>;
 
-Parameters parameters(LoadedTool::Settings& s);
-Parameters parameters(LoadedTrackedTool::Settings& s);
-Parameters parameters(LoadedToolPenalty::Settings& s);
-Parameters parameters(LoadedToolGodObject::Settings& s);
-std::string validate(const LoadedTool::Settings& s);
-std::string validate(const LoadedTrackedTool::Settings& s);
-std::string validate(const LoadedToolPenalty::Settings& s);
-std::string validate(const LoadedToolGodObject::Settings& s);
-std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
-std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s);
-std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s);
-std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s);
-inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
-  return max_stiffness_N_per_m(s.motion);
+template <class MotionSettings>
+Parameters parameters(MovedToolSettings<MotionSettings>& s) {
+  Parameters all = parameters(s.tool);
+  for (Parameter& p : parameters(s.motion)) all.push_back(std::move(p));
+  return all;
 }
-inline double max_stiffness_N_per_m(const LoadedTrackedTool::Settings& s) {
-  return max_stiffness_N_per_m(s.motion);
+template <class MotionSettings>
+std::string validate(const MovedToolSettings<MotionSettings>& s) {
+  const std::string tool = validate(s.tool);
+  return tool.empty() ? validate(s.motion) : tool;
 }
-inline double max_stiffness_N_per_m(const LoadedToolPenalty::Settings& s) {
-  return max_stiffness_N_per_m(s.motion);
+template <class MotionSettings>
+std::vector<RecordingPart> input_files(const MovedToolSettings<MotionSettings>& s) {
+  return input_files(s.tool);
 }
-inline double max_stiffness_N_per_m(const LoadedToolGodObject::Settings& s) {
+template <class MotionSettings>
+double max_stiffness_N_per_m(const MovedToolSettings<MotionSettings>& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 

@@ -32,8 +32,7 @@ constexpr std::size_t kMemoryPerByte = 64;  // memory per byte of a file: the co
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   return ending;
 }
 
@@ -79,7 +78,7 @@ void add_polygon(std::vector<int> polygon, TriangleMesh& mesh) {
   if (polygon.size() < 3) return;
   std::vector<Vec3> corners;
   for (const int v : polygon) corners.push_back(mesh.vertices[v]);
-  if (!std::all_of(corners.begin(), corners.end(), [](const Vec3& v) { return v.allFinite(); }))
+  if (!std::ranges::all_of(corners, [](const Vec3& v) { return v.allFinite(); }))
     throw std::runtime_error("a face has a vertex that is not finite");
   const auto triangles = polygon_triangles(corners);
   if (!triangles) refuse_polygon(corners.front(), corners.size());

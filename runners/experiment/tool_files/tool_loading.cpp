@@ -45,10 +45,9 @@ Parameters parameters(ToolSettings& s) {
 }
 
 std::string validate(const ToolSettings& s) {
-  if (s.mesh.empty())
-    return "tool_mesh = \"\": expected " + names_of_built_in() + ", or an OBJ, PLY or STL file";
   if (find_generated_tool(s.mesh) == nullptr && !is_mesh_file(s.mesh))
-    return "tool_mesh = " + s.mesh + ": expected " + names_of_built_in() + ", or an OBJ, PLY or STL file";
+    return "tool_mesh = " + (s.mesh.empty() ? "\"\"" : s.mesh) + ": expected " + names_of_built_in() +
+           ", or an OBJ, PLY or STL file";
   if (s.size_m > 0 && s.size_m < 2 * s.voxel_m)
     return "tool_size_m = " + std::to_string(s.size_m) +
            ": expected two voxels (tool_voxel_m = " + std::to_string(s.voxel_m) + ") or more, or 0";

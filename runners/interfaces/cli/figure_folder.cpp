@@ -7,7 +7,6 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 
@@ -46,12 +45,8 @@ bool was_made(const Figure& figure) {
                       [](const Claim& claim) { return claim.verdict == Verdict::not_run; });
 }
 
-fs::path make(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure)
-    throw InputError(folder.string(),
-                     "cannot be made (" + failure.message() + "): expected a writable folder");
+fs::path made(const fs::path& folder) {
+  make_folder(folder);
   return folder;
 }
 
@@ -68,7 +63,7 @@ FigureFolder::FigureFolder(const CommandLine& line, const std::string& folder,
     : line_(line),
       folder_(folder),
       runs_(runs),
-      claims_(make(folder_) / "claims.json", names_of_figures()),
+      claims_(made(folder_) / "claims.json", names_of_figures()),
       printed_(runs.size()) {
   for (const FigureRun& run : runs) require_result(line, file_of(run.entry->name), {});
   write_progress({std::vector<JobProgress>(runs.size()), TimeLeft{std::vector<double>(runs.size()), 0}});

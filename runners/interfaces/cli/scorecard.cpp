@@ -1,15 +1,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/benchmark_choice.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "runners/evaluation/scorecard/report_json.h"
-#include "runners/evaluation/scorecard/stored_card.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
@@ -18,25 +14,6 @@
 namespace remote_touch {
 
 namespace {
-
-std::string normalised(const ScorecardRequest& request) {
-  std::string command = program_text() + " scorecard";
-  for (const std::string& name : request.methods) command += " " + name;
-  if (!request.scenes.empty()) command += " --scene";
-  for (const std::string& name : request.scenes) command += " " + name;
-  return command + " --seeds " + std::to_string(request.seeds);
-}
-
-// Writes the HDF5 file and the JSON file of the scorecard. Returns the digest.
-std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& plan,
-                          const ScorecardReport& report) {
-  const std::filesystem::path folder = request.folder;
-  std::string card_digest = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
-                                         provenance(configuration_of(plan), normalised(request), ""));
-  const std::string text = to_json(report);
-  write_file_atomically(folder / "scorecard.json", text.data(), text.size());
-  return card_digest;
-}
 
 // Throws InputError if a method or a scene is one of the files that are written to the folder. It may be any
 // other file there.
@@ -81,7 +58,8 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
     });
     after.clear();
     if (request.view) make_failure_pages(line, request.folder, report);
-    const std::string card_digest = write_results(request, plan, report);
+    const std::string card_digest = write_scorecard(
+        request.folder, plan, report, scorecard_command(request.methods, request.scenes, request.seeds));
     print(report);
     std::printf("%s: %zu scenes, %zu methods, digest %s\n",
                 (std::filesystem::path(request.folder) / kScorecardFile).c_str(), report.card.scenes.size(),

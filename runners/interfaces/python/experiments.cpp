@@ -51,7 +51,7 @@ std::vector<Column> measures_of(const Trace& trace) {
   for (const Measure& measure : measures())
     if (applies(measure, trace))
       list.push_back(
-          {measure.name, measure.unit, measure.meaning, std::vector<double>{measure.compute(trace)}, 1, {}});
+          {measure.name, measure.unit, measure.meaning, std::vector<double>{measure.compute(trace)}});
   return list;
 }
 
@@ -59,34 +59,25 @@ TextAttributes trace_attributes(const TextAttributes& origin, const std::string&
                                 const std::vector<Column>& columns) {
   TextAttributes list = {{"schema", schema_name("trace")}};
   list.insert(list.end(), origin.begin(), origin.end());
-  std::string names;
-  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
-  list.insert(list.end(), {{"digest", digest_of_all}, {"columns", names}});
+  list.insert(list.end(), {{"digest", digest_of_all}, {"columns", joined(names_of(columns), ",")}});
   return list;
 }
 
-struct RunRequest {
-  std::string subject;              // a name or a file; if `text` is given, its label
-  std::optional<std::string> text;  // JSON
-  Texts overrides;
-  std::string output;  // empty: no file
-  bool force = false, timing = false;
-};
-
-RunResult run(const RunRequest& request, const LongWork& work) {
-  const Experiment experiment = request.text
-                                    ? Experiment::from_json(*request.text, request.subject, request.overrides)
-                                    : Experiment::load(request.subject, request.overrides);
-  const OutputFile output(request.output, request.force, request.subject, experiment.inputs());
+// Runs the experiment of a name or a file, or the one of a text in JSON, whose label the subject then is.
+RunResult run(const std::string& subject, const std::optional<std::string>& text, const Texts& overrides,
+              const std::string& file_or_none, bool force, bool timing, const LongWork& work) {
+  const Experiment experiment =
+      text ? Experiment::from_json(*text, subject, overrides) : Experiment::load(subject, overrides);
+  const OutputFile output(file_or_none, force, subject, experiment.inputs());
   SimulationOptions options = options_of(work);
   options.hash_frames = options.find_true_contact = true;
   std::vector<double> durations;
   RunReport report;
   options.report = &report;
-  if (request.timing) options.step_duration_s = &durations;
+  if (timing) options.step_duration_s = &durations;
   const std::string inputs = input_hashes(experiment.inputs());
-  TextAttributes origin = provenance(experiment.to_json(), Recipe{"run", request.subject, request.overrides},
-                                     work.kernels.isa, inputs);
+  TextAttributes origin =
+      provenance(experiment.to_json(), Recipe{"run", subject, overrides}, work.kernels.isa, inputs);
   const Trace trace = simulate(experiment, options);
   require_unchanged(experiment.inputs(), inputs);
   experiment.add_depth_device(origin);
@@ -97,8 +88,7 @@ RunResult run(const RunRequest& request, const LongWork& work) {
       output.write([&](const auto& file) { return write_trace(file, result.columns, origin, durations); },
                    [&] { return digest(result.columns); }),
       result.columns);
-  if (request.timing)
-    result.timing.push_back({"step_duration", "s", "wall clock of one tick", std::move(durations), 1, {}});
+  if (timing) result.timing.push_back({"step_duration", "s", "wall clock of one tick", std::move(durations)});
   return result;
 }
 
@@ -114,9 +104,10 @@ py::dict as_dict(RunResult result) {
 py::dict run_experiment(const std::string& subject, const std::optional<std::string>& text,
                         const Texts& overrides, const std::string& output, bool force, bool timing,
                         const py::object& report) {
-  const RunRequest request{subject, text, overrides, output, force, timing};
   RunResult result;
-  do_long_work(report, 0, [&](const LongWork& work) { result = run(request, work); });
+  do_long_work(report, 0, [&](const LongWork& work) {
+    result = run(subject, text, overrides, output, force, timing, work);
+  });
   return as_dict(std::move(result));
 }
 
@@ -137,28 +128,21 @@ StoredSweep sweep_of(const TextAttributes& attributes) {
   return stored;
 }
 
-struct ReplayRequest {
-  std::string file;  // empty: by the attributes
-  TextAttributes attributes;
-  std::string cell;
-  int replicate;
-  std::string output;
-  bool force;
-};
-
-RunResult replay(const ReplayRequest& request, const LongWork& work) {
-  const StoredSweep stored = request.file.empty() ? sweep_of(request.attributes) : stored_sweep(request.file);
+// Runs a run of the sweep in a file again, or, without a file, of the sweep that these attributes describe.
+RunResult replay(const std::string& file, const TextAttributes& attributes, const std::string& cell_text,
+                 int replicate, const std::string& file_or_none, bool force, const LongWork& work) {
+  const StoredSweep stored = file.empty() ? sweep_of(attributes) : stored_sweep(file);
   const Sweep sweep = Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
-                                       request.file.empty() ? "config" : request.file + " config");
-  sweep.require_fits(stored.result, request.file);
-  const std::size_t cell = cell_of({"cell", request.cell}, stored.result);
-  if (request.replicate < 0 || request.replicate >= stored.result.replicates)
-    throw InputError("replicate = " + std::to_string(request.replicate),
+                                       file.empty() ? "config" : file + " config");
+  sweep.require_fits(stored.result, file);
+  const std::size_t cell = cell_of({"cell", cell_text}, stored.result);
+  if (replicate < 0 || replicate >= stored.result.replicates)
+    throw InputError("replicate = " + std::to_string(replicate),
                      "expected 0 to " + std::to_string(stored.result.replicates - 1));
-  const OutputFile output(request.output, request.force, request.file, {});
-  Replay again = replay_run(stored, sweep, stored.result.run(cell, request.replicate), options_of(work), "");
+  const OutputFile output(file_or_none, force, file, {});
+  Replay again = replay_run(stored, sweep, stored.result.run(cell, replicate), options_of(work), "");
   RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};
-  output.write([&](const auto& file) { return write_trace(file, result.columns, again.attributes, {}); },
+  output.write([&](const auto& path) { return write_trace(path, result.columns, again.attributes, {}); },
                [] { return std::string(); });
   result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
   return result;
@@ -166,9 +150,10 @@ RunResult replay(const ReplayRequest& request, const LongWork& work) {
 
 py::dict replay_sweep(const std::string& file, const TextAttributes& attributes, const std::string& cell,
                       int replicate, const std::string& output, bool force, const py::object& report) {
-  const ReplayRequest request{file, attributes, cell, replicate, output, force};
   RunResult result;
-  do_long_work(report, 0, [&](const LongWork& work) { result = replay(request, work); });
+  do_long_work(report, 0, [&](const LongWork& work) {
+    result = replay(file, attributes, cell, replicate, output, force, work);
+  });
   return as_dict(std::move(result));
 }
 

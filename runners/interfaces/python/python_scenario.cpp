@@ -25,7 +25,8 @@ py::object value_of(const py::object& object, const char* name) {
 
 class PythonScenario final : public Scenario {
  public:
-  PythonScenario(std::shared_ptr<const PythonClass> type, const PythonSettings& settings, const NoiseKey& key)
+  PythonScenario(std::shared_ptr<const PythonClass> type, const PythonSettings& settings, const NoiseKey& key,
+                 const Kernels&)
       : type_(std::move(type)) {
     type_->call("__init__", [&] {
       py::dict given;
@@ -42,9 +43,6 @@ class PythonScenario final : public Scenario {
 
   double frame_rate_hz() const override { return frame_rate_hz_; }
   int frame_count() const override { return frame_count_; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override {
     return type_->call("cloud", [&] {
       const py::object given = (*object_).attr("cloud")(frame);
@@ -109,21 +107,17 @@ class PythonTrajectory final : public Trajectory {
   double duration_s_ = 0;
 };
 
-class PythonScenarioFactory final : public PythonFactory<Scenario, const NoiseKey&, const Kernels&> {
+// A factory of objects that are made from the class, the settings and these arguments.
+template <class Made, class Interface, class... From>
+class FactoryOf final : public PythonFactory<Interface, From...> {
  public:
-  using PythonFactory::PythonFactory;
-  std::unique_ptr<Scenario> build(const NoiseKey& key, const Kernels&) const override {
-    return std::make_unique<PythonScenario>(type_, settings_, key);
+  using PythonFactory<Interface, From...>::PythonFactory;
+  std::unique_ptr<Interface> build(From... from) const override {
+    return std::make_unique<Made>(this->type_, this->settings_, from...);
   }
 };
-
-class PythonTrajectoryFactory final : public PythonFactory<Trajectory, const Scenario&> {
- public:
-  using PythonFactory::PythonFactory;
-  std::unique_ptr<Trajectory> build(const Scenario& scenario) const override {
-    return std::make_unique<PythonTrajectory>(type_, settings_, scenario);
-  }
-};
+using PythonScenarioFactory = FactoryOf<PythonScenario, Scenario, const NoiseKey&, const Kernels&>;
+using PythonTrajectoryFactory = FactoryOf<PythonTrajectory, Trajectory, const Scenario&>;
 
 }  // namespace
 

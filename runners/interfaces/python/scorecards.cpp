@@ -3,15 +3,9 @@
 
 #include <filesystem>
 
-#include "analysis/figures/result_file.h"
-#include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/benchmark_choice.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "runners/evaluation/scorecard/report_json.h"
-#include "runners/evaluation/scorecard/stored_card.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
@@ -23,14 +17,6 @@ namespace py = pybind11;
 namespace {
 
 using Texts = std::vector<std::string>;
-
-std::string command_of(const Texts& methods, const Texts& scenes, int seeds) {
-  std::string command = program_text() + " scorecard";
-  for (const std::string& name : methods) command += " " + name;
-  if (!scenes.empty()) command += " --scene";
-  for (const std::string& name : scenes) command += " " + name;
-  return command + " --seeds " + std::to_string(seeds);
-}
 
 struct FailedRuns {
   std::size_t count = 0;
@@ -61,10 +47,7 @@ FailedRuns make_scorecard(const Texts& methods, const Texts& scenes, int seeds,
     work.progress((static_cast<double>(done) + fraction) / static_cast<double>(all + 1));
   });
   const ScorecardReport report = evaluate(plan, work.kernels, &work.stop, [](std::size_t, std::size_t) {});
-  write_figure(folder / kScorecardFile, scorecard_figure(report.card),
-               provenance(configuration_of(plan), command_of(methods, scenes, seeds), ""));
-  const std::string text = to_json(report);
-  write_file_atomically(folder / "scorecard.json", text.data(), text.size());
+  write_scorecard(folder, plan, report, scorecard_command(methods, scenes, seeds));
   return failed_runs(sweeps);
 }
 

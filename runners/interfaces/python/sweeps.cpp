@@ -24,13 +24,6 @@ namespace py = pybind11;
 
 namespace {
 
-struct SweepRequest {
-  std::string subject;
-  std::optional<std::string> text;  // JSON
-  std::vector<std::string> overrides;
-  std::string output;  // empty: in memory
-};
-
 SweepResult in_memory(const Sweep& sweep, const LongWork& work) {
   SweepResult result = sweep.plan();
   std::size_t done = 0;
@@ -57,22 +50,16 @@ SweepResult in_file(const Sweep& sweep, const TextAttributes& origin, const std:
   return session.result();
 }
 
-void run(const SweepRequest& request, const LongWork& work, StoredSweep& stored) {
-  const Sweep sweep = request.text ? Sweep::from_json(*request.text, request.subject, request.overrides)
-                                   : Sweep::load(request.subject, request.overrides);
-  const TextAttributes origin = provenance(
-      sweep.to_json(), Recipe{"sweep", request.subject, request.overrides}, "", input_hashes(sweep.inputs()));
-  stored.result =
-      request.output.empty() ? in_memory(sweep, work) : in_file(sweep, origin, request.output, work);
-  stored.attributes = origin;
-}
-
 py::dict run_sweep_of(const std::string& subject, const std::optional<std::string>& text,
                       const std::vector<std::string>& overrides, int threads, const std::string& output,
                       const py::object& report) {
-  const SweepRequest request{subject, text, overrides, output};
   StoredSweep stored;
-  do_long_work(report, threads, [&](const LongWork& work) { run(request, work, stored); });
+  do_long_work(report, threads, [&](const LongWork& work) {
+    const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
+    stored.attributes =
+        provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", input_hashes(sweep.inputs()));
+    stored.result = output.empty() ? in_memory(sweep, work) : in_file(sweep, stored.attributes, output, work);
+  });
   return to_python(std::move(stored));
 }
 
@@ -83,7 +70,7 @@ py::dict to_python(StoredSweep stored) {
   TextAttributes attributes = {{"schema", schema_name("sweep")}};
   attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
   attributes.emplace_back("digest", digest(result));
-  if (!result.note_kinds.empty()) attributes.emplace_back("note_kinds", joined_names(result.note_kinds));
+  if (!result.note_kinds.empty()) attributes.emplace_back("note_kinds", joined(result.note_kinds, ","));
   std::vector<py::ssize_t> shape;
   for (const Column& axis : result.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
   shape.push_back(result.replicates);
@@ -92,19 +79,10 @@ py::dict to_python(StoredSweep stored) {
   all["axes"] = to_python(std::move(result.axes));
   py::list measures;
   for (Column& measure : result.measures) measures.append(to_python(std::move(measure), shape));
-  std::vector<std::int32_t> states;
-  for (const RunState state : result.state) states.push_back(static_cast<std::int32_t>(state));
-  measures.append(to_python(Column{"state",
-                                   "1",
-                                   "state of the run",
-                                   std::move(states),
-                                   1,
-                                   {"not_sampled", "pending", "done", "failed", "elsewhere"}},
-                            shape));
+  measures.append(to_python(state_column(result), shape));
   if (!result.round.empty())
     measures.append(to_python(
-        Column{"round", "1", "round of refinement that added the run", std::move(result.round), 1, {}},
-        shape));
+        Column{"round", "1", "round of refinement that added the run", std::move(result.round)}, shape));
   if (!result.notes.empty())
     measures.append(to_python(
         Column{

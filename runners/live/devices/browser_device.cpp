@@ -7,10 +7,11 @@ namespace remote_touch {
 
 BrowserDevice::BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start,
                              const DevicePlacement& placement, double rate_hz, Clock& clock)
-    : HapticDevice(clock),
+    : HapticDevice(
+          clock,
+          {.name = "mouse in a browser", .sensed_axes = 6, .actuated_axes = 0, .tick_rate_hz = rate_hz}),
       poses_(std::move(poses)),
       placement_(placement),
-      traits_{.name = "mouse in a browser", .sensed_axes = 6, .actuated_axes = 0, .tick_rate_hz = rate_hz},
       wanted_{start.position_W, start.orientation_W, 0},
       now_(start) {}
 

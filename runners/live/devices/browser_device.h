@@ -37,7 +37,6 @@ class BrowserDevice final : public HapticDevice {
   BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
                 double rate_hz, Clock& clock);
 
-  const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override;
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench&) noexcept override { return {}; }
@@ -53,7 +52,6 @@ class BrowserDevice final : public HapticDevice {
 
   const std::shared_ptr<HandPoses> poses_;
   const DevicePlacement placement_;
-  const DeviceTraits traits_;
   HandPose wanted_;
   DeviceState now_;
   Vec3 velocity_m_per_s_ = Vec3::Zero();

@@ -8,12 +8,6 @@ namespace remote_touch {
 
 namespace {
 
-std::string list_of(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-  return list;
-}
-
 std::string short_text(double value) {
   std::ostringstream text;
   text.exceptions(std::ios::badbit);
@@ -22,6 +16,12 @@ std::string short_text(double value) {
 }
 
 }  // namespace
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
 
 DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& address,
                              const std::vector<std::string>& known)

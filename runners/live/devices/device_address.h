@@ -10,14 +10,15 @@
 
 namespace remote_touch {
 
+// Returns the words, separated by commas, for messages.
+std::string list_of(const std::vector<std::string>& words);
+
 class DeviceAddress {
  public:
   // address: without the scheme. Throws InputError if a setting is unknown, has no value or is given twice.
   DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
 
   const std::string& place() const { return place_; }  // empty if the user gave none
-  // Returns the address as the user wrote it, for messages.
-  const std::string& written() const { return written_; }
 
   bool has(const std::string& key) const { return settings_.count(key) > 0; }
   std::string word(const std::string& key, const std::string& otherwise) const;

@@ -74,14 +74,9 @@ std::unique_ptr<HapticDevice> open_at(const std::string& address, const DeviceCo
 
 constexpr DeviceEntry kDevices[] = {
     {"sim", "sim:", "the experiment's trajectory, with its operator who feels the force; no hardware",
-     open_simulated,
-     [] {
-       return Availability{true, true, "simulated"};
-     }},
+     open_simulated, [] { return always("simulated"); }},
     {"browser", "browser:", "the mouse, in the page of --view; input only", open_browser,
-     [] {
-       return Availability{true, true, "with --view"};
-     }},
+     [] { return always("with --view"); }},
     {"fd", "fd:NUMBER", "Force Dimension omega, sigma, delta, lambda, and Novint Falcon",
      open_at<open_force_dimension>, force_dimension_availability},
     {"touch", "touch:NAME", "Touch, Touch X and Phantoms, by OpenHaptics", open_at<open_open_haptics>,
@@ -92,9 +87,7 @@ constexpr DeviceEntry kDevices[] = {
     {"spnav", "spnav:PATH", "3Dconnexion SpaceMouse, by spacenavd; input only", open_at<open_spacenav>,
      [] { return spacenav_availability("", steady_clock()); }},
     {"replay", "replay:FILE", "the hand of a recorded live session; no hardware", open_session,
-     [] {
-       return Availability{true, true, "reads files"};
-     }},
+     [] { return always("reads files"); }},
 };
 
 }  // namespace

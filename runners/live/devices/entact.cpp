@@ -4,10 +4,10 @@
 #include <atomic>
 
 #include "core/parameters/input_error.h"
-#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/gated_device.h"
 #include "runners/live/devices/known_fault.h"
 #include "runners/live/devices/vendor_axes.h"
+#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 
@@ -15,41 +15,25 @@ namespace {
 
 // The EntactAPI: mm, mm/s, rad/s, N and N mm, x towards the user, y to the right, z up.
 struct Eapi {
-  Eapi();
-
   using Handle = void*;
   enum Mode { disabled = 0, force_control = 1 };
   static constexpr int kOk = 1;
 
-  SharedLibrary library;
-  int (*open)(Handle handles[], int size) = nullptr;  // returns the number of devices that answered
-  int (*connect_device)(Handle handles[], int index, char ip_address[]) = nullptr;
-  int (*close)() = nullptr;
-  int (*set_mode)(Handle, int mode) = nullptr;
-  int (*home_device)(Handle) = nullptr;
-  int (*read_task_position)(Handle, double* position, int size) = nullptr;
-  int (*read_task_velocity)(Handle, double* velocity, int size) = nullptr;
-  int (*write_force)(Handle, double* force, int size) = nullptr;
+  VendorLibrary library{SharedLibrary::Lookup{
+      {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"}};
+  int (*open)(Handle handles[],
+              int size) = library["openEAPI"];  // returns the number of devices that answered
+  int (*connect_device)(Handle handles[], int index, char ip_address[]) = library["connectDeviceEAPI"];
+  int (*close)() = library["closeEAPI"];
+  int (*set_mode)(Handle, int mode) = library["setModeEAPI"];
+  int (*home_device)(Handle) = library["homeDeviceEAPI"];
+  int (*read_task_position)(Handle, double* position, int size) = library["readTaskPositionEAPI"];
+  int (*read_task_velocity)(Handle, double* velocity, int size) = library["readTaskVelocityEAPI"];
+  int (*write_force)(Handle, double* force, int size) = library["writeForceEAPI"];
   // Functions that some versions lack. A function that is missing is null.
-  int (*is_homed)(Handle) = nullptr;
-  int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
+  int (*is_homed)(Handle) = library.optional("isHomedEAPI");
+  int (*get_device_info)(Handle, char* product, char* name, int size) = library.optional("getDeviceInfoEAPI");
 };
-
-const SharedLibrary::Lookup kEapiLibrary{
-    {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"};
-
-Eapi::Eapi() : library(kEapiLibrary) {
-  library.find("openEAPI", open);
-  library.find("connectDeviceEAPI", connect_device);
-  library.find("closeEAPI", close);
-  library.find("setModeEAPI", set_mode);
-  library.find("homeDeviceEAPI", home_device);
-  library.find("readTaskPositionEAPI", read_task_position);
-  library.find("readTaskVelocityEAPI", read_task_velocity);
-  library.find("writeForceEAPI", write_force);
-  library.find_optional("isHomedEAPI", is_homed);
-  library.find_optional("getDeviceInfoEAPI", get_device_info);
-}
 
 constexpr double kMetrePerMm = 1e-3, kNmmPerNm = 1e3;
 
@@ -57,10 +41,6 @@ class Entact : public GatedDevice {
  public:
   Entact(const std::string& address, const std::string& subject, Clock& clock);
   ~Entact() override;
-  Entact(const Entact&) = delete;
-  Entact& operator=(const Entact&) = delete;
-
-  const DeviceTraits& traits() const override { return traits_; }
 
  private:
   DeviceFault sense(DeviceReading& reading) noexcept override;
@@ -75,7 +55,6 @@ class Entact : public GatedDevice {
 
   Eapi eapi_;
   Eapi::Handle handle_ = nullptr;
-  DeviceTraits traits_;
   std::atomic<bool> has_motors_on_{false};
 };
 
@@ -184,15 +163,7 @@ std::unique_ptr<HapticDevice> open_entact(const std::string& address, Clock& clo
 }
 
 Availability entact_availability() {
-  Availability availability;
-  try {
-    const Eapi eapi;
-    availability.found = true;
-    availability.detail = eapi.library.file() + ": a device is detected only when one is opened";
-  } catch (const InputError& error) {
-    availability.detail = error.what();
-  }
-  return availability;
+  return availability_of_library<Eapi>();
 }
 
 }  // namespace remote_touch

@@ -5,10 +5,10 @@
 #include <charconv>
 
 #include "core/parameters/input_error.h"
-#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/gated_device.h"
 #include "runners/live/devices/known_fault.h"
 #include "runners/live/devices/vendor_axes.h"
+#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 
@@ -17,53 +17,31 @@ namespace {
 // The DHD library, version 3: SI units, x towards the user, y to the right, z up. A result below 0 is an
 // error. A result above 0 is a notice about the timing or about motors at their limit.
 struct Dhd {
-  Dhd();
-
-  SharedLibrary library;
-  int (*get_device_count)() = nullptr;
-  int (*open_id)(char id) = nullptr;
-  int (*close)(char id) = nullptr;
-  bool (*has_wrist)(char id) = nullptr;
-  int (*enable_force)(unsigned char on, char id) = nullptr;
-  unsigned (*get_button_mask)(char id) = nullptr;
+  VendorLibrary library{
+      SharedLibrary::Lookup{{"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"}};
+  int (*get_device_count)() = library["dhdGetDeviceCount"];
+  int (*open_id)(char id) = library["dhdOpenID"];
+  int (*close)(char id) = library["dhdClose"];
+  bool (*has_wrist)(char id) = library["dhdHasWrist"];
+  int (*enable_force)(unsigned char on, char id) = library["dhdEnableForce"];
+  unsigned (*get_button_mask)(char id) = library["dhdGetButtonMask"];
   int (*get_position_and_orientation_frame)(double* x, double* y, double* z, double frame[3][3],
-                                            char id) = nullptr;
-  int (*get_linear_velocity)(double* x, double* y, double* z, char id) = nullptr;
-  int (*get_angular_velocity_rad)(double* x, double* y, double* z, char id) = nullptr;
+                                            char id) = library["dhdGetPositionAndOrientationFrame"];
+  int (*get_linear_velocity)(double* x, double* y, double* z, char id) = library["dhdGetLinearVelocity"];
+  int (*get_angular_velocity_rad)(double* x, double* y, double* z,
+                                  char id) = library["dhdGetAngularVelocityRad"];
   int (*set_force_and_torque_and_gripper_force)(double fx, double fy, double fz, double tx, double ty,
-                                                double tz, double gripper, char id) = nullptr;
-  const char* (*error_get_last_str)() = nullptr;
+                                                double tz, double gripper,
+                                                char id) = library["dhdSetForceAndTorqueAndGripperForce"];
+  const char* (*error_get_last_str)() = library["dhdErrorGetLastStr"];
   // Functions that older versions lack. A function that is missing is null.
-  int (*error_get_last)() = nullptr;
-  const char* (*get_system_name)(char id) = nullptr;
-  bool (*has_active_wrist)(char id) = nullptr;
-  int (*stop)(char id) = nullptr;
-  double (*get_max_force)(char id) = nullptr;
-  double (*get_max_torque)(char id) = nullptr;
+  int (*error_get_last)() = library.optional("dhdErrorGetLast");
+  const char* (*get_system_name)(char id) = library.optional("dhdGetSystemName");
+  bool (*has_active_wrist)(char id) = library.optional("dhdHasActiveWrist");
+  int (*stop)(char id) = library.optional("dhdStop");
+  double (*get_max_force)(char id) = library.optional("dhdGetMaxForce");
+  double (*get_max_torque)(char id) = library.optional("dhdGetMaxTorque");
 };
-
-const SharedLibrary::Lookup kDhdLibrary{
-    {"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"};
-
-Dhd::Dhd() : library(kDhdLibrary) {
-  library.find("dhdGetDeviceCount", get_device_count);
-  library.find("dhdOpenID", open_id);
-  library.find("dhdClose", close);
-  library.find("dhdHasWrist", has_wrist);
-  library.find("dhdEnableForce", enable_force);
-  library.find("dhdGetButtonMask", get_button_mask);
-  library.find("dhdGetPositionAndOrientationFrame", get_position_and_orientation_frame);
-  library.find("dhdGetLinearVelocity", get_linear_velocity);
-  library.find("dhdGetAngularVelocityRad", get_angular_velocity_rad);
-  library.find("dhdSetForceAndTorqueAndGripperForce", set_force_and_torque_and_gripper_force);
-  library.find("dhdErrorGetLastStr", error_get_last_str);
-  library.find_optional("dhdErrorGetLast", error_get_last);
-  library.find_optional("dhdGetSystemName", get_system_name);
-  library.find_optional("dhdHasActiveWrist", has_active_wrist);
-  library.find_optional("dhdStop", stop);
-  library.find_optional("dhdGetMaxForce", get_max_force);
-  library.find_optional("dhdGetMaxTorque", get_max_torque);
-}
 
 constexpr std::array<KnownFault, 5> kDhdFaults{{
     {2, "Force Dimension: the device does not communicate"},
@@ -77,10 +55,6 @@ class ForceDimension : public GatedDevice {
  public:
   ForceDimension(int number, const std::string& subject, Clock& clock);
   ~ForceDimension() override;
-  ForceDimension(const ForceDimension&) = delete;
-  ForceDimension& operator=(const ForceDimension&) = delete;
-
-  const DeviceTraits& traits() const override { return traits_; }
 
  private:
   DeviceFault sense(DeviceReading& reading) noexcept override;
@@ -94,7 +68,6 @@ class ForceDimension : public GatedDevice {
 
   Dhd dhd_;
   char id_ = -1;
-  DeviceTraits traits_;
 };
 
 ForceDimension::ForceDimension(int number, const std::string& subject, Clock& clock) : GatedDevice(clock) {
@@ -198,18 +171,15 @@ std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address, C
 }
 
 Availability force_dimension_availability() {
-  Availability availability;
-  try {
+  return availability_of([] {
     const Dhd dhd;
     const int count = dhd.get_device_count();
-    availability.found = count > 0;
-    availability.detail = dhd.library.file() + ": " +
-                          (count > 0 ? std::to_string(count) + (count == 1 ? " device" : " devices")
-                                     : "no device is connected or this user may not open its USB port");
-  } catch (const InputError& error) {
-    availability.detail = error.what();
-  }
-  return availability;
+    return Availability{
+        .found = count > 0,
+        .detail = dhd.library.file() + ": " +
+                  (count > 0 ? std::to_string(count) + (count == 1 ? " device" : " devices")
+                             : "no device is connected or this user may not open its USB port")};
+  });
 }
 
 }  // namespace remote_touch

@@ -6,11 +6,6 @@ namespace {
 
 constexpr std::int64_t kMaxCallWait_ns = 5'000'000, kCallPollPeriod_ns = 100'000;
 
-bool is_finite(const DeviceReading& r) {
-  return r.position_m.allFinite() && r.orientation.coeffs().allFinite() && r.velocity_m_per_s.allFinite() &&
-         r.angular_velocity_rad_per_s.allFinite();
-}
-
 }  // namespace
 
 // If a call and release() overlap, release() sees that a call is in progress and waits for it, or the call
@@ -25,7 +20,7 @@ DeviceFault GatedDevice::read(DeviceReading& reading) noexcept {
   is_call_in_progress_ = true;
   DeviceFault fault = sense(reading);
   end_call();
-  if (!fault && !is_finite(reading)) fault = {"the device reports a state that is not finite", 0};
+  if (!fault && !reading.is_finite()) fault = {"the device reports a state that is not finite", 0};
   return fault;
 }
 

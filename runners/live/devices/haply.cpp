@@ -135,8 +135,6 @@ class Haply final : public HapticDevice {
   }
   ~Haply() override { release(); }
 
-  const DeviceTraits& traits() const override { return traits_; }
-
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
   void release() noexcept override;
@@ -162,7 +160,6 @@ class Haply final : public HapticDevice {
   DeviceFault newest(std::string_view& text, double deadline_s) noexcept;
   DeviceFault read_within(DeviceReading& reading, double time_s) noexcept;
 
-  DeviceTraits traits_;
   Opened opened_;
   HaplyForceCommand command_;
   HaplyForceKey key_ = HaplyForceKey::vector;
@@ -260,17 +257,14 @@ std::unique_ptr<HapticDevice> open_haply(const std::string& address, Clock& cloc
 }
 
 Availability haply_availability(const Clock& clock) {
-  Availability availability;
-  availability.compiled_in = haply_link_is_compiled_in();
-  try {
+  Availability availability = availability_of([&] {
     const Opened opened = open_service(haply_address(""), clock, 0.3, open_haply_link);
-    availability.found = true;
-    availability.detail =
-        "Inverse3 " + opened.device_id +
-        (opened.handle_id.empty() ? " without a handle" : " with the handle " + opened.handle_id);
-  } catch (const InputError& error) {
-    availability.detail = error.what();
-  }
+    return Availability{
+        .found = true,
+        .detail = "Inverse3 " + opened.device_id +
+                  (opened.handle_id.empty() ? " without a handle" : " with the handle " + opened.handle_id)};
+  });
+  availability.compiled_in = haply_link_is_compiled_in();
   return availability;
 }
 

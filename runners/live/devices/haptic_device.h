@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "core/geometry/vector.h"
 #include "core/rendering/wrench.h"
@@ -29,6 +30,11 @@ struct DeviceReading {
   Vec3 velocity_m_per_s = Vec3::Zero();
   Vec3 angular_velocity_rad_per_s = Vec3::Zero();
   std::uint32_t buttons = 0;  // one bit for each button, set while it is down
+
+  bool is_finite() const {
+    return position_m.allFinite() && orientation.coeffs().allFinite() && velocity_m_per_s.allFinite() &&
+           angular_velocity_rad_per_s.allFinite();
+  }
 };
 
 // The capabilities of a device. A force, torque or stiffness is 0 if the vendor does not report it.
@@ -55,10 +61,10 @@ class DeviceCycle {
 // InputError, which says what is missing and what would help. The force is off until the first write().
 class HapticDevice {
  public:
-  explicit HapticDevice(Clock& clock) : clock_(clock) {}
+  explicit HapticDevice(Clock& clock, DeviceTraits traits = {}) : traits_(std::move(traits)), clock_(clock) {}
   virtual ~HapticDevice() = default;  // an adapter's destructor releases and closes the device
 
-  virtual const DeviceTraits& traits() const = 0;
+  const DeviceTraits& traits() const { return traits_; }
 
   // Calls tick() at the device's rate until tick() returns false. The default version uses the clock and
   // traits().tick_rate_hz. A tick that was missed is skipped, not made later.
@@ -79,6 +85,8 @@ class HapticDevice {
 
  protected:
   Clock& clock() const noexcept { return clock_; }
+
+  DeviceTraits traits_;  // fixed when the constructor of the adapter ends
 
  private:
   Clock& clock_;

@@ -2,13 +2,11 @@
 // Matrices are stored column by column. Axes: x to the right, y up, z towards the user.
 #pragma once
 
-#include "runners/libraries/shared_library.h"
+#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 
 struct HdLibrary {
-  HdLibrary();  // throws InputError if the library is not found
-
   struct Error {
     unsigned code = 0;
     int internal_code = 0;
@@ -37,24 +35,27 @@ struct HdLibrary {
   };
   static constexpr unsigned short kMaxPriority = 0xFFFF;
 
-  SharedLibrary library;
-  unsigned (*init_device)(const char* name) = nullptr;
-  void (*disable_device)(unsigned device) = nullptr;
-  void (*make_current_device)(unsigned device) = nullptr;
-  void (*begin_frame)(unsigned device) = nullptr;
-  void (*end_frame)(unsigned device) = nullptr;
-  Error (*get_error)() = nullptr;
-  const char* (*get_error_string)(unsigned code) = nullptr;
-  void (*enable)(unsigned capability) = nullptr;
-  void (*disable)(unsigned capability) = nullptr;
-  void (*get_doublev)(unsigned what, double* values) = nullptr;
-  void (*get_integerv)(unsigned what, int* values) = nullptr;
-  void (*set_doublev)(unsigned what, const double* values) = nullptr;
-  const char* (*get_string)(unsigned what) = nullptr;
-  unsigned long (*schedule_asynchronous)(Callback*, void* self, unsigned short priority) = nullptr;
-  void (*unschedule)(unsigned long callback) = nullptr;
-  void (*start_scheduler)() = nullptr;
-  void (*stop_scheduler)() = nullptr;
+  // The constructor throws InputError if the library is not found.
+  VendorLibrary library{SharedLibrary::Lookup{
+      {"libHD.so", "libHD.so.3.5", "libHD.so.3.4"}, "REMOTE_TOUCH_LIBHD", "3D Systems' OpenHaptics"}};
+  unsigned (*init_device)(const char* name) = library["hdInitDevice"];
+  void (*disable_device)(unsigned device) = library["hdDisableDevice"];
+  void (*make_current_device)(unsigned device) = library["hdMakeCurrentDevice"];
+  void (*begin_frame)(unsigned device) = library["hdBeginFrame"];
+  void (*end_frame)(unsigned device) = library["hdEndFrame"];
+  Error (*get_error)() = library["hdGetError"];
+  const char* (*get_error_string)(unsigned code) = library["hdGetErrorString"];
+  void (*enable)(unsigned capability) = library["hdEnable"];
+  void (*disable)(unsigned capability) = library["hdDisable"];
+  void (*get_doublev)(unsigned what, double* values) = library["hdGetDoublev"];
+  void (*get_integerv)(unsigned what, int* values) = library["hdGetIntegerv"];
+  void (*set_doublev)(unsigned what, const double* values) = library["hdSetDoublev"];
+  const char* (*get_string)(unsigned what) = library["hdGetString"];
+  unsigned long (*schedule_asynchronous)(Callback*, void* self,
+                                         unsigned short priority) = library["hdScheduleAsynchronous"];
+  void (*unschedule)(unsigned long callback) = library["hdUnschedule"];
+  void (*start_scheduler)() = library["hdStartScheduler"];
+  void (*stop_scheduler)() = library["hdStopScheduler"];
 };
 
 }  // namespace remote_touch

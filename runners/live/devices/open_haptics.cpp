@@ -33,10 +33,7 @@ class OpenHaptics : public GatedDevice {
  public:
   OpenHaptics(const std::string& address, const std::string& subject, Clock& clock);
   ~OpenHaptics() override;
-  OpenHaptics(const OpenHaptics&) = delete;
-  OpenHaptics& operator=(const OpenHaptics&) = delete;
 
-  const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override;
 
  private:
@@ -53,7 +50,6 @@ class OpenHaptics : public GatedDevice {
 
   HdLibrary hd_;
   unsigned device_ = HdLibrary::invalid_handle;
-  DeviceTraits traits_;
 
   // Members used only by the thread of the ticks.
   DeviceFault frame_fault_;   // fault at the end of the frame before, or at the beginning of this one
@@ -227,15 +223,7 @@ std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address, Cloc
 }
 
 Availability open_haptics_availability() {
-  Availability availability;
-  try {
-    const HdLibrary hd;
-    availability.found = true;
-    availability.detail = hd.library.file() + ": a device is detected only when one is opened";
-  } catch (const InputError& error) {
-    availability.detail = error.what();
-  }
-  return availability;
+  return availability_of_library<HdLibrary>();
 }
 
 }  // namespace remote_touch

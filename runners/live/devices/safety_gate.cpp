@@ -44,9 +44,7 @@ void SafetyGate::restart() noexcept {
 DeviceFault SafetyGate::trouble(const DeviceReading& reading, const DeviceFault& fault,
                                 const Wrench& command) const noexcept {
   if (fault) return fault;
-  if (!reading.position_m.allFinite() || !reading.orientation.coeffs().allFinite() ||
-      !reading.velocity_m_per_s.allFinite() || !reading.angular_velocity_rad_per_s.allFinite())
-    return {"the device reported a number that is not finite"};
+  if (!reading.is_finite()) return {"the device reported a number that is not finite"};
   if (reading.velocity_m_per_s.norm() > limits_.max_speed_m_per_s) return {"the hand is too fast"};
   if (reading.angular_velocity_rad_per_s.norm() > limits_.max_angular_speed_rad_per_s)
     return {"the handle turns too fast"};

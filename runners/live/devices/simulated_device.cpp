@@ -7,11 +7,11 @@ namespace remote_touch {
 
 SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
                                  const DevicePlacement& placement, double rate_hz, Clock& clock)
-    : HapticDevice(clock),
+    : HapticDevice(
+          clock, {.name = "simulated device", .sensed_axes = 6, .actuated_axes = 6, .tick_rate_hz = rate_hz}),
       script_(std::move(script)),
       hand_(hand),
-      placement_(placement),
-      traits_{.name = "simulated device", .sensed_axes = 6, .actuated_axes = 6, .tick_rate_hz = rate_hz} {}
+      placement_(placement) {}
 
 void SimulatedDevice::run(DeviceCycle& cycle) {
   start_s_ = clock().now_s();

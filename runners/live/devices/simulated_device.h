@@ -21,7 +21,6 @@ class SimulatedDevice final : public HapticDevice {
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
-  const DeviceTraits& traits() const override { return traits_; }
   // Rethrows the exception of the script after the loop has ended, such as an InputError for an unusable
   // frame.
   void run(DeviceCycle& cycle) override;
@@ -44,7 +43,6 @@ class SimulatedDevice final : public HapticDevice {
   const std::unique_ptr<const Trajectory> script_;
   SimulatedHand hand_;
   const DevicePlacement placement_;
-  const DeviceTraits traits_;
   double start_s_ = 0;
   long long ticks_ = 0;
   DeviceState state_;

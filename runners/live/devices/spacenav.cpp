@@ -63,8 +63,6 @@ class Spacenav final : public HapticDevice {
     traits_.actuated_axes = 0;
   }
 
-  const DeviceTraits& traits() const override { return traits_; }
-
   DeviceFault read(DeviceReading& reading) noexcept override {
     const double now_s = clock().now_s();
     if (!fault_) fault_ = take_frames(now_s);
@@ -88,7 +86,6 @@ class Spacenav final : public HapticDevice {
   const double speed_per_count_, turning_per_count_;  // m/s and rad/s
   const double box_m_;
   DeadlineSocket socket_;
-  DeviceTraits traits_;
   DeviceFault fault_;
 
   std::array<char, sizeof(Frame)> bytes_{};  // bytes received of a frame that is not yet whole
@@ -153,16 +150,11 @@ std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& c
 }
 
 Availability spacenav_availability(const std::string& address, const Clock& clock) {
-  Availability availability;
-  try {
+  return availability_of([&] {
     const DeviceAddress parsed = spacenav_address(address);
     connect(parsed, clock);
-    availability.found = true;
-    availability.detail = "spacenavd at " + socket_of(parsed);
-  } catch (const InputError& error) {
-    availability.detail = error.what();
-  }
-  return availability;
+    return Availability{.found = true, .detail = "spacenavd at " + socket_of(parsed)};
+  });
 }
 
 }  // namespace remote_touch

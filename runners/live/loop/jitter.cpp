@@ -16,14 +16,11 @@ namespace {
 
 class NoDevice final : public HapticDevice {
  public:
-  NoDevice(double rate_hz, Clock& clock) : HapticDevice(clock) { traits_.tick_rate_hz = rate_hz; }
-  const DeviceTraits& traits() const override { return traits_; }
+  NoDevice(double rate_hz, Clock& clock)
+      : HapticDevice(clock, {.name = "no device", .tick_rate_hz = rate_hz}) {}
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
   void release() noexcept override {}
-
- private:
-  DeviceTraits traits_;
 };
 
 // Measures lateness against the grid of the loop: it starts when the loop does, and its period is a whole

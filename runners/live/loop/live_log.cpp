@@ -5,15 +5,13 @@
 
 namespace remote_touch {
 
-void LiveLog::add_row(const LiveTick& tick, double time_s) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  if (trace.length() >= max_rows) return;
-  trace.append(time_s, tick.device, tick.out, {kUnknown, kUnknown, tick.hash});
-  row_step_s.push_back(tick.step_s);
-}
-
 void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
-  add_row(tick, static_cast<double>(tick.number) / haptic_rate_hz);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (trace.length() < max_rows) {
+    trace.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
+                 {kUnknown, kUnknown, tick.hash});
+    row_step_s.push_back(tick.step_s);
+  }
   ++ticks;
   step_s.push_back(tick.step_s);
   if (last_number_ >= 0) {

@@ -40,7 +40,6 @@ struct LiveLog {
   std::int64_t end_tick() const { return last_number_ + 1; }  // the number of the last tick plus 1
 
  private:
-  void add_row(const LiveTick& tick, double time_s);
   std::int64_t last_number_ = -1, taken_at_ = 0;
   int last_taken_ = -1;
 };

@@ -236,17 +236,13 @@ std::string LiveParts::force_trouble() const {
   return servo_->trouble() + std::string(servo_->has_failed() ? "" : "; SIGUSR2 re-arms");
 }
 
-LiveTrouble LiveParts::trouble() const {
-  return {camera_trouble(), force_trouble()};
-}
-
 void LiveParts::report_changes() {
   report_pending_lines();
   if (!heartbeat().is_released())
     hangs_since_ns_ = -1;
   else if (hangs_since_ns_ < 0)
     hangs_since_ns_ = clock_.now_ns();
-  if (const LiveTrouble now = trouble(); now != reported_) {
+  if (const LiveTrouble now{camera_trouble(), force_trouble()}; now != reported_) {
     if (now.camera != reported_.camera) report_line(now.camera.empty() ? "frames arrive" : now.camera);
     if (now.force != reported_.force)
       report_line(now.force.empty() ? "re-armed: the force starts again when the hand is in free space"

@@ -63,7 +63,6 @@ class LiveParts {
   void report_line(const std::string& line) const;
   void report_pending_lines();
   void report_force_scale() const;
-  LiveTrouble trouble() const;
   std::string camera_trouble() const;
   std::string force_trouble() const;
 

@@ -4,18 +4,14 @@
 
 namespace remote_touch {
 
-namespace {
-
-constexpr const char* kNoFreenect = "not compiled in: install libfreenect-dev and build again";
-
-}  // namespace
-
 std::unique_ptr<DepthSource> open_freenect(const std::string&, Clock&) {
-  throw InputError("freenect", kNoFreenect);
+  throw InputError("freenect", freenect_availability().detail);
 }
 
 Availability freenect_availability() {
-  return {.compiled_in = false, .found = false, .detail = kNoFreenect};
+  return {.compiled_in = false,
+          .found = false,
+          .detail = "not compiled in: install libfreenect-dev and build again"};
 }
 
 }  // namespace remote_touch

@@ -288,13 +288,12 @@ std::unique_ptr<DepthSource> open_freenect(const std::string& address, Clock& cl
 }
 
 Availability freenect_availability() {
-  try {
+  return availability_of([] {
     const int count = freenect_num_devices(start_library().get());
-    if (count <= 0) return {.detail = "no Kinect is plugged in"};
-    return {.found = true, .detail = std::to_string(count) + (count == 1 ? " Kinect" : " Kinects")};
-  } catch (const InputError& error) {
-    return {.detail = error.what()};
-  }
+    return Availability{.found = count > 0,
+                        .detail = count <= 0 ? "no Kinect is plugged in"
+                                             : std::to_string(count) + (count == 1 ? " Kinect" : " Kinects")};
+  });
 }
 
 }  // namespace remote_touch

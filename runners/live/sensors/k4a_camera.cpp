@@ -66,8 +66,6 @@ class K4aCamera final : public DepthSource {
  public:
   K4aCamera(const std::string& address, const Clock& host);
   ~K4aCamera() override { k4a_.device_stop_cameras(device_.get()); }
-  K4aCamera(const K4aCamera&) = delete;
-  K4aCamera& operator=(const K4aCamera&) = delete;
 
   const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
@@ -271,17 +269,16 @@ std::unique_ptr<DepthSource> open_k4a(const std::string& address, Clock& clock) 
 }
 
 Availability k4a_availability() {
-  try {
+  return availability_of([] {
     const k4a::K4aLibrary k4a;
     const std::uint32_t count = k4a.device_get_installed_count();
     const bool found = count > 0 && count <= kMaxCameras;
-    return {.found = found,
-            .detail = k4a.library.file() + ": " +
-                      (found ? std::to_string(count) + (count == 1 ? " camera" : " cameras")
-                             : "no camera is plugged in, or this user may not open its USB port")};
-  } catch (const InputError& error) {
-    return {.detail = error.what()};
-  }
+    return Availability{
+        .found = found,
+        .detail = k4a.library.file() + ": " +
+                  (found ? std::to_string(count) + (count == 1 ? " camera" : " cameras")
+                         : "no camera is plugged in, or this user may not open its USB port")};
+  });
 }
 
 }  // namespace remote_touch

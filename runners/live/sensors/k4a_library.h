@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "runners/libraries/shared_library.h"
+#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch::k4a {
 
@@ -63,32 +63,38 @@ struct K4aLibrary {
   // none. The message may come from any thread and device, because the library has one log.
   std::string pop_first_error() const;
 
-  SharedLibrary library;
-  std::uint32_t (*device_get_installed_count)() = nullptr;
-  Result (*device_open)(std::uint32_t index, Device* device) = nullptr;
-  void (*device_close)(Device) = nullptr;
-  int (*device_get_serialnum)(Device, char* serial, std::size_t* size) = nullptr;  // 0: succeeded
-  Result (*device_get_calibration)(Device, DepthMode, ColourResolution, Calibration*) = nullptr;
-  Result (*device_start_cameras)(Device, const Configuration*) = nullptr;
-  void (*device_stop_cameras)(Device) = nullptr;
-  WaitResult (*device_get_capture)(Device, Capture*, std::int32_t timeout_ms) = nullptr;
+  VendorLibrary library;
+  std::uint32_t (*device_get_installed_count)() = library["k4a_device_get_installed_count"];
+  Result (*device_open)(std::uint32_t index, Device* device) = library["k4a_device_open"];
+  void (*device_close)(Device) = library["k4a_device_close"];
+  int (*device_get_serialnum)(Device, char* serial,
+                              std::size_t* size) = library["k4a_device_get_serialnum"];  // 0: succeeded
+  Result (*device_get_calibration)(Device, DepthMode, ColourResolution,
+                                   Calibration*) = library["k4a_device_get_calibration"];
+  Result (*device_start_cameras)(Device, const Configuration*) = library["k4a_device_start_cameras"];
+  void (*device_stop_cameras)(Device) = library["k4a_device_stop_cameras"];
+  WaitResult (*device_get_capture)(Device, Capture*,
+                                   std::int32_t timeout_ms) = library["k4a_device_get_capture"];
   Result (*calibration_2d_to_3d)(const Calibration*, const Float2* pixel, float depth_mm, Camera source,
-                                 Camera target, Float3* point_mm, int* is_valid) = nullptr;
+                                 Camera target, Float3* point_mm,
+                                 int* is_valid) = library["k4a_calibration_2d_to_3d"];
   Result (*calibration_3d_to_2d)(const Calibration*, const Float3* point_mm, Camera source, Camera target,
-                                 Float2* pixel, int* is_valid) = nullptr;
-  Image (*capture_get_depth_image)(Capture) = nullptr;  // null: none; the caller releases it
-  void (*capture_release)(Capture) = nullptr;
-  std::uint8_t* (*image_get_buffer)(Image) = nullptr;
-  std::size_t (*image_get_size)(Image) = nullptr;
-  ImageFormat (*image_get_format)(Image) = nullptr;
-  int (*image_get_width_pixels)(Image) = nullptr;
-  int (*image_get_height_pixels)(Image) = nullptr;
-  int (*image_get_stride_bytes)(Image) = nullptr;
-  std::uint64_t (*image_get_device_timestamp_us)(Image) = nullptr;
-  void (*image_release)(Image) = nullptr;
+                                 Float2* pixel, int* is_valid) = library["k4a_calibration_3d_to_2d"];
+  Image (*capture_get_depth_image)(Capture) =
+      library["k4a_capture_get_depth_image"];  // null: none; the caller releases it
+  void (*capture_release)(Capture) = library["k4a_capture_release"];
+  std::uint8_t* (*image_get_buffer)(Image) = library["k4a_image_get_buffer"];
+  std::size_t (*image_get_size)(Image) = library["k4a_image_get_size"];
+  ImageFormat (*image_get_format)(Image) = library["k4a_image_get_format"];
+  int (*image_get_width_pixels)(Image) = library["k4a_image_get_width_pixels"];
+  int (*image_get_height_pixels)(Image) = library["k4a_image_get_height_pixels"];
+  int (*image_get_stride_bytes)(Image) = library["k4a_image_get_stride_bytes"];
+  std::uint64_t (*image_get_device_timestamp_us)(Image) = library["k4a_image_get_device_timestamp_usec"];
+  void (*image_release)(Image) = library["k4a_image_release"];
   // A function that some versions lack. It is null if it is missing.
   using LogCallback = void(void* context, LogLevel, const char* file, int line, const char* message);
-  Result (*set_debug_message_handler)(LogCallback*, void* context, LogLevel min_level) = nullptr;
+  Result (*set_debug_message_handler)(LogCallback*, void* context,
+                                      LogLevel min_level) = library.optional("k4a_set_debug_message_handler");
 };
 
 // Handles that are released once. The library has to outlive them.

@@ -4,18 +4,14 @@
 
 namespace remote_touch {
 
-namespace {
-
-constexpr const char* kNoOpenni2 = "not compiled in: install libopenni2-dev and build again";
-
-}  // namespace
-
 std::unique_ptr<DepthSource> open_openni2(const std::string&, Clock&) {
-  throw InputError("openni2", kNoOpenni2);
+  throw InputError("openni2", openni2_availability().detail);
 }
 
 Availability openni2_availability() {
-  return {.compiled_in = false, .found = false, .detail = kNoOpenni2};
+  return {.compiled_in = false,
+          .found = false,
+          .detail = "not compiled in: install libopenni2-dev and build again"};
 }
 
 }  // namespace remote_touch

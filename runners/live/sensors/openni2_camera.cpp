@@ -305,17 +305,13 @@ class LastingOpenni2Camera final : public DepthSource {
 };
 
 Availability found_cameras() {
-  try {
-    const openni2::Library library;
-    const std::vector<openni::DeviceInfo> cameras = library.cameras();
-    if (cameras.empty()) return {.detail = "no camera that a driver in " + driver_folder() + " knows"};
-    std::string names;
-    for (const openni::DeviceInfo& camera : cameras)
-      names += (names.empty() ? "" : ", ") + std::string(camera.getName()) + " (" + camera.getUri() + ")";
-    return {.found = true, .detail = names};
-  } catch (const InputError& error) {
-    return {.detail = error.what()};
-  }
+  const openni2::Library library;
+  const std::vector<openni::DeviceInfo> cameras = library.cameras();
+  if (cameras.empty()) return {.detail = "no camera that a driver in " + driver_folder() + " knows"};
+  std::string names;
+  for (const openni::DeviceInfo& camera : cameras)
+    names += (names.empty() ? "" : ", ") + std::string(camera.getName()) + " (" + camera.getUri() + ")";
+  return {.found = true, .detail = names};
 }
 
 }  // namespace
@@ -326,7 +322,7 @@ std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clo
 
 Availability openni2_availability() {
   Availability found;
-  lasting_thread()->run([&] { found = found_cameras(); });
+  lasting_thread()->run([&] { found = availability_of(found_cameras); });
   return found;
 }
 

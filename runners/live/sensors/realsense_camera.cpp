@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/frame_numbers.h"
 #include "runners/live/sensors/pixel_rows.h"
 #include "runners/live/sensors/realsense_lens.h"
@@ -50,12 +51,6 @@ std::string RealSense::info(const rs2::Device* device, rs2::CameraInfo what) con
   if (call("does not report its properties", rs2.supports_device_info, device, what) == 0) return "unknown";
   const char* text = call("does not report its properties", rs2.get_device_info, device, what);
   return text != nullptr ? text : "unknown";
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 // Stops a pipeline that has been started.
@@ -129,7 +124,7 @@ void RealSenseCamera::choose(const std::string& serial) {
     call_.refuse("no camera is plugged in: expected one at USB that this user may open (lsusb, udev rules)");
   if (serial.empty()) return;
   if (std::find(known.begin(), known.end(), serial) == known.end())
-    call_.refuse("no camera has this serial number: expected " + joined(known));
+    call_.refuse("no camera has this serial number: expected " + list_of(known));
   call_("cannot be chosen", rs2_.config_enable_device, config_.get(), serial.c_str());
 }
 
@@ -298,16 +293,15 @@ std::unique_ptr<DepthSource> open_realsense(const std::string& address, Clock& c
 }
 
 Availability realsense_availability() {
-  try {
+  return availability_of([] {
     const RealSense real_sense("realsense");
     const std::vector<std::string> serials = real_sense.serials();
-    return {.found = !serials.empty(),
-            .detail = real_sense.rs2.library.file() + " (" + real_sense.rs2.version_text() + "): " +
-                      (serials.empty() ? "no camera is plugged in, or this user may not open its USB port"
-                                       : joined(serials))};
-  } catch (const InputError& error) {
-    return {.detail = error.what()};
-  }
+    return Availability{
+        .found = !serials.empty(),
+        .detail = real_sense.rs2.library.file() + " (" + real_sense.rs2.version_text() + "): " +
+                  (serials.empty() ? "no camera is plugged in, or this user may not open its USB port"
+                                   : list_of(serials))};
+  });
 }
 
 }  // namespace remote_touch

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "runners/libraries/shared_library.h"
+#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch::rs2 {
 
@@ -44,75 +44,89 @@ struct RealSenseLibrary {
   // Throws InputError if it is not found or has another major version.
   RealSenseLibrary();
 
-  // The version that the library reports: 25605 is 2.56.5. A context is created with this same version,
-  // because the library refuses an application that was compiled for a newer one.
-  int version = 0;
   std::string version_text() const;
   // Returns the text of an error, and frees the error.
   std::string text_of(Error* error) const;
 
-  SharedLibrary library;
-  int (*get_api_version)(Error**) = nullptr;
-  const char* (*get_error_message)(const Error*) = nullptr;
-  const char* (*get_failed_function)(const Error*) = nullptr;
-  void (*free_error)(Error*) = nullptr;
+  VendorLibrary library;
+  int (*get_api_version)(Error**) = library["rs2_get_api_version"];
+  const char* (*get_error_message)(const Error*) = library["rs2_get_error_message"];
+  const char* (*get_failed_function)(const Error*) = library["rs2_get_failed_function"];
+  void (*free_error)(Error*) = library["rs2_free_error"];
+  // The version that the library reports: 25605 is 2.56.5. A context is created with this same version,
+  // because the library refuses an application that was compiled for a newer one. It is known before the
+  // functions below are looked up, because another major version may lack them.
+  int version = checked_version();
 
-  Context* (*create_context)(int api_version, Error**) = nullptr;
-  void (*delete_context)(Context*) = nullptr;
-  DeviceList* (*query_devices)(const Context*, Error**) = nullptr;
-  int (*get_device_count)(const DeviceList*, Error**) = nullptr;
-  void (*delete_device_list)(DeviceList*) = nullptr;
-  Device* (*create_device)(const DeviceList*, int index, Error**) = nullptr;
-  void (*delete_device)(Device*) = nullptr;
-  const char* (*get_device_info)(const Device*, CameraInfo, Error**) = nullptr;  // belongs to the device
-  int (*supports_device_info)(const Device*, CameraInfo, Error**) = nullptr;
-  DeviceHub* (*create_device_hub)(const Context*, Error**) = nullptr;
-  void (*delete_device_hub)(const DeviceHub*) = nullptr;
-  int (*device_hub_is_device_connected)(const DeviceHub*, const Device*, Error**) = nullptr;
-  SensorList* (*query_sensors)(const Device*, Error**) = nullptr;
-  int (*get_sensors_count)(const SensorList*, Error**) = nullptr;
-  void (*delete_sensor_list)(SensorList*) = nullptr;
-  Sensor* (*create_sensor)(const SensorList*, int index, Error**) = nullptr;
-  void (*delete_sensor)(Sensor*) = nullptr;
-  int (*is_sensor_extendable_to)(const Sensor*, Extension, Error**) = nullptr;
-  float (*get_depth_scale)(Sensor*, Error**) = nullptr;  // metres per unit
+  Context* (*create_context)(int api_version, Error**) = library["rs2_create_context"];
+  void (*delete_context)(Context*) = library["rs2_delete_context"];
+  DeviceList* (*query_devices)(const Context*, Error**) = library["rs2_query_devices"];
+  int (*get_device_count)(const DeviceList*, Error**) = library["rs2_get_device_count"];
+  void (*delete_device_list)(DeviceList*) = library["rs2_delete_device_list"];
+  Device* (*create_device)(const DeviceList*, int index, Error**) = library["rs2_create_device"];
+  void (*delete_device)(Device*) = library["rs2_delete_device"];
+  const char* (*get_device_info)(const Device*, CameraInfo,
+                                 Error**) = library["rs2_get_device_info"];  // belongs to the device
+  int (*supports_device_info)(const Device*, CameraInfo, Error**) = library["rs2_supports_device_info"];
+  DeviceHub* (*create_device_hub)(const Context*, Error**) = library["rs2_create_device_hub"];
+  void (*delete_device_hub)(const DeviceHub*) = library["rs2_delete_device_hub"];
+  int (*device_hub_is_device_connected)(const DeviceHub*, const Device*,
+                                        Error**) = library["rs2_device_hub_is_device_connected"];
+  SensorList* (*query_sensors)(const Device*, Error**) = library["rs2_query_sensors"];
+  int (*get_sensors_count)(const SensorList*, Error**) = library["rs2_get_sensors_count"];
+  void (*delete_sensor_list)(SensorList*) = library["rs2_delete_sensor_list"];
+  Sensor* (*create_sensor)(const SensorList*, int index, Error**) = library["rs2_create_sensor"];
+  void (*delete_sensor)(Sensor*) = library["rs2_delete_sensor"];
+  int (*is_sensor_extendable_to)(const Sensor*, Extension, Error**) = library["rs2_is_sensor_extendable_to"];
+  float (*get_depth_scale)(Sensor*, Error**) = library["rs2_get_depth_scale"];  // metres per unit
 
-  Pipeline* (*create_pipeline)(Context*, Error**) = nullptr;
-  void (*delete_pipeline)(Pipeline*) = nullptr;
-  Config* (*create_config)(Error**) = nullptr;
-  void (*delete_config)(Config*) = nullptr;
-  void (*config_enable_device)(Config*, const char* serial, Error**) = nullptr;
+  Pipeline* (*create_pipeline)(Context*, Error**) = library["rs2_create_pipeline"];
+  void (*delete_pipeline)(Pipeline*) = library["rs2_delete_pipeline"];
+  Config* (*create_config)(Error**) = library["rs2_create_config"];
+  void (*delete_config)(Config*) = library["rs2_delete_config"];
+  void (*config_enable_device)(Config*, const char* serial, Error**) = library["rs2_config_enable_device"];
   void (*config_enable_stream)(Config*, StreamKind, int index, int width, int height, Format, int rate_hz,
-                               Error**) = nullptr;
-  Profile* (*pipeline_start_with_config)(Pipeline*, Config*, Error**) = nullptr;
-  void (*pipeline_stop)(Pipeline*, Error**) = nullptr;
-  Device* (*pipeline_profile_get_device)(Profile*, Error**) = nullptr;  // the caller deletes it
-  StreamList* (*pipeline_profile_get_streams)(Profile*, Error**) = nullptr;
-  void (*delete_pipeline_profile)(Profile*) = nullptr;
-  int (*get_stream_profiles_count)(const StreamList*, Error**) = nullptr;
-  const Stream* (*get_stream_profile)(const StreamList*, int index, Error**) = nullptr;
-  void (*delete_stream_profiles_list)(StreamList*) = nullptr;
+                               Error**) = library["rs2_config_enable_stream"];
+  Profile* (*pipeline_start_with_config)(Pipeline*, Config*,
+                                         Error**) = library["rs2_pipeline_start_with_config"];
+  void (*pipeline_stop)(Pipeline*, Error**) = library["rs2_pipeline_stop"];
+  Device* (*pipeline_profile_get_device)(Profile*, Error**) =
+      library["rs2_pipeline_profile_get_device"];  // the caller deletes it
+  StreamList* (*pipeline_profile_get_streams)(Profile*,
+                                              Error**) = library["rs2_pipeline_profile_get_streams"];
+  void (*delete_pipeline_profile)(Profile*) = library["rs2_delete_pipeline_profile"];
+  int (*get_stream_profiles_count)(const StreamList*, Error**) = library["rs2_get_stream_profiles_count"];
+  const Stream* (*get_stream_profile)(const StreamList*, int index,
+                                      Error**) = library["rs2_get_stream_profile"];
+  void (*delete_stream_profiles_list)(StreamList*) = library["rs2_delete_stream_profiles_list"];
   void (*get_stream_profile_data)(const Stream*, StreamKind*, Format*, int* index, int* id, int* rate_hz,
-                                  Error**) = nullptr;
-  void (*get_video_stream_intrinsics)(const Stream*, Intrinsics*, Error**) = nullptr;
+                                  Error**) = library["rs2_get_stream_profile_data"];
+  void (*get_video_stream_intrinsics)(const Stream*, Intrinsics*,
+                                      Error**) = library["rs2_get_video_stream_intrinsics"];
 
-  int (*pipeline_poll_for_frames)(Pipeline*, Frame**, Error**) = nullptr;  // 0: none is available
-  int (*is_frame_extendable_to)(const Frame*, Extension, Error**) = nullptr;
-  int (*embedded_frames_count)(Frame*, Error**) = nullptr;
-  Frame* (*extract_frame)(Frame*, int index, Error**) = nullptr;  // the caller releases it
-  void (*release_frame)(Frame*) = nullptr;
-  const Stream* (*get_frame_stream_profile)(const Frame*, Error**) = nullptr;
-  const void* (*get_frame_data)(const Frame*, Error**) = nullptr;
-  int (*get_frame_width)(const Frame*, Error**) = nullptr;
-  int (*get_frame_height)(const Frame*, Error**) = nullptr;
-  int (*get_frame_stride_in_bytes)(const Frame*, Error**) = nullptr;
-  double (*get_frame_timestamp)(const Frame*, Error**) = nullptr;  // ms
-  unsigned long long (*get_frame_number)(const Frame*, Error**) = nullptr;
+  int (*pipeline_poll_for_frames)(Pipeline*, Frame**,
+                                  Error**) = library["rs2_pipeline_poll_for_frames"];  // 0: none is available
+  int (*is_frame_extendable_to)(const Frame*, Extension, Error**) = library["rs2_is_frame_extendable_to"];
+  int (*embedded_frames_count)(Frame*, Error**) = library["rs2_embedded_frames_count"];
+  Frame* (*extract_frame)(Frame*, int index,
+                          Error**) = library["rs2_extract_frame"];  // the caller releases it
+  void (*release_frame)(Frame*) = library["rs2_release_frame"];
+  const Stream* (*get_frame_stream_profile)(const Frame*, Error**) = library["rs2_get_frame_stream_profile"];
+  const void* (*get_frame_data)(const Frame*, Error**) = library["rs2_get_frame_data"];
+  int (*get_frame_width)(const Frame*, Error**) = library["rs2_get_frame_width"];
+  int (*get_frame_height)(const Frame*, Error**) = library["rs2_get_frame_height"];
+  int (*get_frame_stride_in_bytes)(const Frame*, Error**) = library["rs2_get_frame_stride_in_bytes"];
+  double (*get_frame_timestamp)(const Frame*, Error**) = library["rs2_get_frame_timestamp"];  // ms
+  unsigned long long (*get_frame_number)(const Frame*, Error**) = library["rs2_get_frame_number"];
   // Functions that older versions lack. A function that is missing is null.
-  int (*get_frame_data_size)(const Frame*, Error**) = nullptr;
-  void (*project_point_to_pixel)(float pixel[2], const Intrinsics*, const float point[3]) = nullptr;
+  int (*get_frame_data_size)(const Frame*, Error**) = library.optional("rs2_get_frame_data_size");
+  void (*project_point_to_pixel)(float pixel[2], const Intrinsics*,
+                                 const float point[3]) = library.optional("rs2_project_point_to_pixel");
   void (*deproject_pixel_to_point)(float point[3], const Intrinsics*, const float pixel[2],
-                                   float depth) = nullptr;
+                                   float depth) = library.optional("rs2_deproject_pixel_to_point");
+
+ private:
+  int checked_version() const;
 };
 
 // Handles that are released once. The library has to outlive them.

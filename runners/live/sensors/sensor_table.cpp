@@ -19,10 +19,6 @@ namespace remote_touch {
 
 namespace {
 
-Availability always(const char* what) {
-  return {true, true, what};
-}
-
 // Returns the depth unit of a recorded session, so that its depths are encoded in the same unit.
 double session_unit_m(const std::string& path) {
   return SessionReader(find_recording(path)).view().metres_per_unit;

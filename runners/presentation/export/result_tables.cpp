@@ -35,12 +35,6 @@ Column over_runs(const Column& column, std::size_t runs, PlaceOf place_of) {
   return all;
 }
 
-std::vector<std::int32_t> states_of(const SweepResult& result) {
-  std::vector<std::int32_t> states;
-  for (const RunState state : result.state) states.push_back(static_cast<std::int32_t>(state));
-  return states;
-}
-
 // Returns the kinds of notes on each run, separated by "; ".
 std::vector<std::string> notes_of(const SweepResult& result) {
   std::vector<std::string> texts;
@@ -65,12 +59,7 @@ Table table_of_sweep(const Hdf5Reader& file) {
     for (std::size_t run = 0; run < runs; ++run) numbers.push_back(result.replicate_of(run));
     table.columns.push_back({"replicate", "1", "repetition with other noise", std::move(numbers), 1, {}});
   }
-  table.columns.push_back({"state",
-                           "1",
-                           "state of the run",
-                           states_of(result),
-                           1,
-                           {"not_sampled", "pending", "done", "failed", "elsewhere"}});
+  table.columns.push_back(state_column(result));
   table.columns.insert(table.columns.end(), result.measures.begin(), result.measures.end());
   if (!result.round.empty())
     table.columns.push_back({"round", "1", "round of refinement, -1: none", result.round, 1, {}});

@@ -4,35 +4,23 @@
 
 #include <algorithm>
 
-#include "core/parameters/input_error.h"
-
 namespace remote_touch {
 namespace {
 
 constexpr std::size_t kPiece = 1u << 20;
 
-std::uint32_t add_to_crc(std::uint32_t crc, const char* bytes, std::size_t size) {
-  return static_cast<std::uint32_t>(
-      crc32_z(crc, reinterpret_cast<const unsigned char*>(bytes), static_cast<z_size_t>(size)));
-}
-
 }  // namespace
 
 BagChunk::BagChunk(const ByteFile& file, const ChunkPlace& place) : file_(file), place_(place) {
   if (!file.has(place.stored_at, place.stored_size))
-    refuse("claims " + std::to_string(place.stored_size) + " bytes: more than the file has");
+    refuse_chunk("claims ", place.stored_size, " bytes: more than the file has");
   decompressor_ = make_decompressor(place.compression, file.name());
   if (!decompressor_ && !place.compression.empty() && place.compression != "none")
-    refuse("compression = \"" + place.compression.substr(0, 32) + "\": expected lz4, zstd, bz2 or none");
+    refuse_chunk("compression = \"", place.compression.substr(0, 32), "\": expected lz4, zstd, bz2 or none");
   if (!decompressor_ && place.size != place.stored_size)
-    refuse("is not compressed, but its stored size and its decoded size differ");
+    refuse_chunk("is not compressed, but its stored size and its decoded size differ");
   if (decompressor_ && place.size > kMaxBytes)
-    refuse("claims " + std::to_string(place.size) + " bytes when decompressed: expected up to " +
-           std::to_string(kMaxBytes));
-}
-
-void BagChunk::refuse(const std::string& problem) const {
-  throw InputError(file_.name(), "the chunk at byte " + std::to_string(place_.record_at) + " " + problem);
+    refuse_chunk("claims ", place.size, " bytes when decompressed: expected up to ", kMaxBytes);
 }
 
 // Decodes up to byte `end`. Memory grows with the bytes that are decoded, not with the size that the chunk
@@ -51,17 +39,16 @@ void BagChunk::decode_until(std::uint64_t end) {
     decoded_.resize(before + more);
     const std::size_t got = decompressor_->decode(input_left_, decoded_.data() + before, more);
     decoded_.resize(before + got);
-    crc_so_far_ = add_to_crc(crc_so_far_, decoded_.data() + before, got);
+    const auto* new_bytes = reinterpret_cast<const unsigned char*>(decoded_.data() + before);
+    crc_so_far_ = static_cast<std::uint32_t>(crc32_z(crc_so_far_, new_bytes, got));
     if (got == 0 && input_left_.size() == left_before)
-      refuse("ends after " + std::to_string(before) + " decompressed bytes: expected " +
-             std::to_string(place_.size));
+      refuse_chunk("ends after ", before, " decompressed bytes: expected ", place_.size);
   }
 }
 
 std::string_view BagChunk::view(std::uint64_t at, std::uint64_t size) {
   if (at > place_.size || size > place_.size - at)
-    refuse("has " + std::to_string(place_.size) + " bytes: expected " + std::to_string(size) + " at " +
-           std::to_string(at));
+    refuse_chunk("has ", place_.size, " bytes: expected ", size, " at ", at);
   if (decompressor_) {
     decode_until(at + size);
     return std::string_view(decoded_).substr(at, size);
@@ -75,13 +62,10 @@ void BagChunk::check() {
   if (decompressor_) {
     decode_until(place_.size);
   } else if (place_.crc != 0) {
-    std::string piece;
-    for (std::uint64_t at = 0; at < place_.size; at += piece.size()) {
-      piece = file_.bytes(place_.stored_at + at, std::min<std::uint64_t>(kPiece, place_.size - at));
-      crc_so_far_ = add_to_crc(crc_so_far_, piece.data(), piece.size());
-    }
+    crc_so_far_ = file_.crc(place_.stored_at, place_.stored_at + place_.size);
   }
-  if (place_.crc != 0 && place_.crc != crc_so_far_) refuse("is damaged: its CRC differs from the stated one");
+  if (place_.crc != 0 && place_.crc != crc_so_far_)
+    refuse_chunk("is damaged: its CRC differs from the stated one");
   checked_ = true;
 }
 

@@ -8,6 +8,7 @@
 
 #include "scenarios/recordings/bags/byte_file.h"
 #include "scenarios/recordings/bags/decompressor.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -38,7 +39,10 @@ class BagChunk {
 
  private:
   void decode_until(std::uint64_t end);
-  [[noreturn]] void refuse(const std::string& problem) const;
+  template <class... Parts>
+  [[noreturn]] void refuse_chunk(Parts... problem) const {
+    refuse(file_.name(), "the chunk at byte ", place_.record_at, " ", problem...);
+  }
 
   const ByteFile& file_;
   const ChunkPlace place_;

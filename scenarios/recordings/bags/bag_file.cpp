@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/db3_file.h"
 #include "scenarios/recordings/bags/joined_bags.h"
 #include "scenarios/recordings/bags/mcap_file.h"
 #include "scenarios/recordings/bags/ros1_bag.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -19,21 +19,32 @@ std::string ros1_type(const std::string& type) {
   return at == std::string::npos ? type : type.substr(0, at) + type.substr(at + 4);
 }
 
-std::size_t BagFile::add_topic(const std::string& file, BagTopic topic) {
+std::size_t BagFile::add_topic(const BagTopic& topic) {
   constexpr std::size_t kMaxName = 1024;
-  if (topics_.size() == kMaxTopics)
-    throw InputError(file, "has more than " + std::to_string(kMaxTopics) + " topics");
+  const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
+    return other.name == topic.name && other.type == topic.type && other.encoding == topic.encoding;
+  });
+  if (same != topics_.end()) return static_cast<std::size_t>(same - topics_.begin());
+  if (topics_.size() == kMaxTopics) refuse(name_, "has more than ", kMaxTopics, " topics");
   if (std::max({topic.name.size(), topic.type.size(), topic.encoding.size()}) > kMaxName)
-    throw InputError(file, "names a topic or a type with more than " + std::to_string(kMaxName) + " bytes");
-  topics_.push_back(std::move(topic)), places_.emplace_back();
+    refuse(name_, "names a topic or a type with more than ", kMaxName, " bytes");
+  topics_.push_back(topic), places_.emplace_back(), is_wanted_.push_back(wanted_(topic));
   return topics_.size() - 1;
 }
 
-void BagFile::add_place(const std::string& file, std::size_t topic, const MessagePlace& place) {
+void BagFile::add_message(std::size_t topic, const MessagePlace& place) {
+  if (!is_wanted_[topic]) {
+    ++topics_[topic].messages;
+    return;
+  }
   if (places_[topic].size() == kMaxPlaces)
-    throw InputError(file,
-                     "has more than " + std::to_string(kMaxPlaces) + " messages of " + topics_[topic].name);
+    refuse(name_, "has more than ", kMaxPlaces, " messages of ", topics_[topic].name);
   places_[topic].push_back(place);
+}
+
+void BagFile::require_length(std::uint64_t bytes) const {
+  if (bytes > kMaxMessageBytes)
+    refuse(name_, "a message has ", bytes, " bytes: expected up to ", kMaxMessageBytes);
 }
 
 void BagFile::sort_places() {

@@ -26,6 +26,9 @@ struct BagTopic {
 // Removes the folder that ROS 2 adds to the names of its types: sensor_msgs/msg/Image.
 std::string ros1_type(const std::string& type);
 
+// True for topics that will be read: only the messages of these topics are listed.
+using WantedTopic = std::function<bool(const BagTopic&)>;
+
 struct MessagePlace {
   std::int64_t logged_ns = 0;      // time at which the recorder received the message
   std::uint64_t part = 0, at = 0;  // position of the message, as the kind of file defines it
@@ -52,18 +55,27 @@ class BagFile {
   static constexpr std::size_t kMaxPlaces = 1u << 21;  // limit for each topic: 19 hours at 30 Hz, 50 MB
   static constexpr std::size_t kMaxTopics = 65536;
 
-  // Throws InputError beyond kMaxTopics or for a name that is longer than 1024 bytes.
-  std::size_t add_topic(const std::string& file, BagTopic topic);
-  void add_place(const std::string& file, std::size_t topic, const MessagePlace& place);
-  void sort_places();  // also sets BagTopic::messages of wanted topics
+  // name: path of the bag, for an InputError.
+  BagFile(const std::string& name, const WantedTopic& wanted) : name_(name), wanted_(wanted) {}
 
+  // Returns the index of the topic. A topic with the same name, type and encoding is the same topic: several
+  // publishers may have a connection each. Throws InputError beyond kMaxTopics or for a name that is longer
+  // than 1024 bytes.
+  std::size_t add_topic(const BagTopic& topic);
+  // Lists a message of a wanted topic, and counts a message of another one.
+  void add_message(std::size_t topic, const MessagePlace& place);
+  void require_length(std::uint64_t bytes) const;  // throws InputError above kMaxMessageBytes
+  void sort_places();                              // also sets BagTopic::messages of wanted topics
+
+  const std::string name_;
   std::vector<BagTopic> topics_;
+  std::vector<bool> is_wanted_;
   std::vector<std::vector<MessagePlace>> places_;
   std::string remark_;
-};
 
-// True for topics that will be read: only the messages of these topics are listed.
-using WantedTopic = std::function<bool(const BagTopic&)>;
+ private:
+  const WantedTopic wanted_;
+};
 
 // Opens a .mcap, .db3 or .bag file, by its ending, or a folder of ROS 2: metadata.yaml and one or more files,
 // which are read as one bag. Throws InputError if the path is none of them or is damaged. A .mcap or .bag

@@ -21,6 +21,7 @@ class ByteFile {
   // then.
   std::string bytes(std::uint64_t at, std::uint64_t size) const;
   void read(std::uint64_t at, char* to, std::size_t size) const;
+  std::uint32_t crc(std::uint64_t at, std::uint64_t end) const;  // CRC-32 of the bytes from `at` to `end`
   bool has(std::uint64_t at, std::uint64_t size) const { return at <= size_ && size <= size_ - at; }
 
  private:

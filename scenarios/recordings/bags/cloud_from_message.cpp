@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 
 #include "core/geometry/colour.h"
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -28,24 +26,23 @@ const PointField* field_named(const PointCloudMessage& message, const std::strin
 void check_place(const PointField& field, std::uint64_t size, const PointCloudMessage& message,
                  const std::string& subject) {
   if (field.offset + size <= message.point_step) return;
-  throw InputError(subject, "field " + field.name + " ends at byte " + std::to_string(field.offset + size) +
-                                ": expected at most point_step = " + std::to_string(message.point_step));
+  refuse(subject, "field ", field.name, " ends at byte ", field.offset + size,
+         ": expected at most point_step = ", message.point_step);
 }
 
 // Throws InputError if a field has several values a point. Some programs write 0 for a single value.
 void check_count(const PointField& field, const std::string& subject) {
   if (field.count <= 1) return;
-  throw InputError(
-      subject, "field " + field.name + " has " + std::to_string(field.count) + " values a point: expected 1");
+  refuse(subject, "field ", field.name, " has ", field.count, " values a point: expected 1");
 }
 
 const PointField& coordinate(const PointCloudMessage& message, const std::string& name,
                              const std::string& subject) {
   const PointField* field = field_named(message, name);
-  if (!field) throw InputError(subject, "has no field " + name + ": expected x, y and z");
+  if (!field) refuse(subject, "has no field ", name, ": expected x, y and z");
   if (field->datatype != kFloat32 && field->datatype != kFloat64)
-    throw InputError(subject, "field " + name + " has datatype " + std::to_string(field->datatype) +
-                                  ": expected 7 (float32) or 8 (float64)");
+    refuse(subject, "field ", name, " has datatype ", field->datatype,
+           ": expected 7 (float32) or 8 (float64)");
   check_place(*field, field->datatype == kFloat64 ? 8 : 4, message, subject);
   check_count(*field, subject);
   return *field;
@@ -56,17 +53,15 @@ const PointField& coordinate(const PointCloudMessage& message, const std::string
 void check_size(const PointCloudMessage& message, const std::string& subject) {
   const std::uint64_t width = message.width, height = message.height;
   if (width * height > kMaxPoints)
-    throw InputError(subject, "claims " + std::to_string(width) + " x " + std::to_string(height) +
-                                  " points: expected up to " + std::to_string(kMaxPoints));
+    refuse(subject, "claims ", width, " x ", height, " points: expected up to ", kMaxPoints);
   if (width * height == 0) return;
   const std::uint64_t row = width * message.point_step;
   if (height > 1 && message.row_step < row)
-    throw InputError(subject, "row_step = " + std::to_string(message.row_step) + ": expected " +
-                                  std::to_string(row) + " or more, a row of points");
+    refuse(subject, "row_step = ", message.row_step, ": expected ", row, " or more, a row of points");
   const std::uint64_t needed = (height - 1) * message.row_step + row;
   if (message.data.size() < needed)
-    throw InputError(subject, "has " + std::to_string(message.data.size()) + " bytes of data: expected " +
-                                  std::to_string(needed) + " or more, as its width, height and steps say");
+    refuse(subject, "has ", message.data.size(), " bytes of data: expected ", needed,
+           " or more, as its width, height and steps say");
 }
 
 template <class Value>
@@ -109,21 +104,12 @@ void read_colour(const PointCloudMessage& message, const std::string& subject,
   if (!field) field = field_named(message, "rgba");
   if (!field) return;
   if (field->datatype < kInt32 || field->datatype > kFloat32)
-    throw InputError(subject, "field " + field->name + " has datatype " + std::to_string(field->datatype) +
-                                  ": expected 5 (int32), 6 (uint32) or 7 (float32)");
+    refuse(subject, "field ", field->name, " has datatype ", field->datatype,
+           ": expected 5 (int32), 6 (uint32) or 7 (float32)");
   check_place(*field, 4, message, subject);
   check_count(*field, subject);
   read_column<std::uint32_t>(message, *field, colour);
   for (std::uint32_t& c : colour) c = field->datatype == kFloat32 ? colour_of_float(c) : c & 0xFFFFFF;
-}
-
-void mark_missing(PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
-    const bool finite = std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
-    if (finite && (x != 0 || y != 0 || z != 0)) continue;
-    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-  }
 }
 
 }  // namespace
@@ -136,7 +122,7 @@ PointCloud cloud_from_message(const PointCloudMessage& message, const std::strin
   read_coordinate(message, "y", subject, cloud.y);
   read_coordinate(message, "z", subject, cloud.z);
   read_colour(message, subject, cloud.colour);
-  mark_missing(cloud);
+  mark_missing_points(cloud);
   if (message.height > 1) {
     cloud.grid_columns = static_cast<int>(message.width);
     cloud.image = fit_pinhole(cloud, cloud.grid_columns, static_cast<int>(message.height));

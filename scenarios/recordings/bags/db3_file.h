@@ -26,15 +26,16 @@ class Db3File final : public BagFile {
  private:
   void open(const std::filesystem::path& file);
   void require_plain_tables();
-  void list_topics(const WantedTopic& wanted);
+  // Calls visit(row) for each row of the query.
+  template <class Visit>
+  void for_rows(const char* query, const Visit& visit);
+  void list_topics();
   void list_messages();
-  [[noreturn]] void refuse() const;
+  [[noreturn]] void throw_error() const;
 
-  std::string name_;
   sqlite3* database_ = nullptr;
   std::map<std::int64_t, std::size_t> topic_of_id_;  // topic of each id in the database
-  std::vector<bool> is_wanted_;
-  mutable std::mutex mutex_;  // guards the database
+  mutable std::mutex mutex_;                         // guards the database
 };
 
 }  // namespace remote_touch

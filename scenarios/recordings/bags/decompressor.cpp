@@ -6,14 +6,14 @@
 
 #include <new>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
 
 class Lz4Decompressor final : public Decompressor {
  public:
-  explicit Lz4Decompressor(const std::string& subject) : subject_(subject) {
+  explicit Lz4Decompressor(const std::string& subject) : Decompressor(subject) {
     if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION))) throw std::bad_alloc();
   }
   ~Lz4Decompressor() override { LZ4F_freeDecompressionContext(context_); }
@@ -21,20 +21,18 @@ class Lz4Decompressor final : public Decompressor {
   std::size_t decode(std::string_view& from, char* to, std::size_t size) override {
     std::size_t written = size, taken = from.size();
     const std::size_t result = LZ4F_decompress(context_, to, &written, from.data(), &taken, nullptr);
-    if (LZ4F_isError(result))
-      throw InputError(subject_, std::string("its LZ4 data are damaged: ") + LZ4F_getErrorName(result));
+    if (LZ4F_isError(result)) refuse(subject_, "its LZ4 data are damaged: ", LZ4F_getErrorName(result));
     from.remove_prefix(taken);
     return written;
   }
 
  private:
   LZ4F_dctx* context_ = nullptr;
-  std::string subject_;
 };
 
 class ZstdDecompressor final : public Decompressor {
  public:
-  explicit ZstdDecompressor(const std::string& subject) : context_(ZSTD_createDCtx()), subject_(subject) {
+  explicit ZstdDecompressor(const std::string& subject) : Decompressor(subject) {
     if (!context_) throw std::bad_alloc();
   }
   ~ZstdDecompressor() override { ZSTD_freeDCtx(context_); }
@@ -43,20 +41,18 @@ class ZstdDecompressor final : public Decompressor {
     ZSTD_inBuffer in{from.data(), from.size(), 0};
     ZSTD_outBuffer out{to, size, 0};
     const std::size_t result = ZSTD_decompressStream(context_, &out, &in);
-    if (ZSTD_isError(result))
-      throw InputError(subject_, std::string("its Zstandard data are damaged: ") + ZSTD_getErrorName(result));
+    if (ZSTD_isError(result)) refuse(subject_, "its Zstandard data are damaged: ", ZSTD_getErrorName(result));
     from.remove_prefix(in.pos);
     return out.pos;
   }
 
  private:
-  ZSTD_DCtx* context_;
-  std::string subject_;
+  ZSTD_DCtx* const context_ = ZSTD_createDCtx();
 };
 
 class Bz2Decompressor final : public Decompressor {
  public:
-  explicit Bz2Decompressor(const std::string& subject) : subject_(subject) {
+  explicit Bz2Decompressor(const std::string& subject) : Decompressor(subject) {
     if (BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
   }
   ~Bz2Decompressor() override { BZ2_bzDecompressEnd(&stream_); }
@@ -68,7 +64,7 @@ class Bz2Decompressor final : public Decompressor {
     const int result = BZ2_bzDecompress(&stream_);
     if (result == BZ_MEM_ERROR) throw std::bad_alloc();
     if (result != BZ_OK && result != BZ_STREAM_END)
-      throw InputError(subject_, "its bzip2 data are damaged: error " + std::to_string(result));
+      refuse(subject_, "its bzip2 data are damaged: error ", result);
     ended_ = result == BZ_STREAM_END;
     from.remove_prefix(from.size() - stream_.avail_in);
     return size - stream_.avail_out;
@@ -77,7 +73,6 @@ class Bz2Decompressor final : public Decompressor {
  private:
   bz_stream stream_{};
   bool ended_ = false;
-  std::string subject_;
 };
 
 }  // namespace

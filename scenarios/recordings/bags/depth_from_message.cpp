@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -24,15 +24,13 @@ DepthImage depth_of_rows(const ImageMessage& message, double scale, double max_d
                          const std::string& subject) {
   const std::uint64_t width = message.width, height = message.height, row = width * sizeof(Value);
   if (width * height == 0 || width * height > kMaxImagePixels)
-    throw InputError(subject, "has " + std::to_string(width) + " x " + std::to_string(height) +
-                                  " pixels: expected 1 to " + std::to_string(kMaxImagePixels));
+    refuse(subject, "has ", width, " x ", height, " pixels: expected 1 to ", kMaxImagePixels);
   if (message.step < row)
-    throw InputError(subject, "step = " + std::to_string(message.step) + ": expected " + std::to_string(row) +
-                                  " or more, a row of pixels");
+    refuse(subject, "step = ", message.step, ": expected ", row, " or more, a row of pixels");
   const std::uint64_t needed = (height - 1) * message.step + row;
   if (message.data.size() < needed)
-    throw InputError(subject, "has " + std::to_string(message.data.size()) + " bytes of data: expected " +
-                                  std::to_string(needed) + " or more, as its height and step say");
+    refuse(subject, "has ", message.data.size(), " bytes of data: expected ", needed,
+           " or more, as its height and step say");
   DepthImage depth{static_cast<int>(width), static_cast<int>(height), std::vector<double>(width * height)};
   for (std::uint64_t i = 0; i < width * height; ++i) {
     std::array<char, sizeof(Value)> bytes;
@@ -60,8 +58,7 @@ DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& uni
                               const std::string& subject) {
   const std::string& encoding = message.encoding;
   if (!is_depth_encoding(encoding))
-    throw InputError(subject,
-                     "encoding = \"" + encoding.substr(0, 32) + "\": expected depths as " + kDepthEncodings);
+    refuse(subject, "encoding = \"", encoding.substr(0, 32), "\": expected depths as ", kDepthEncodings);
   if (encoding == "32FC1") return depth_of_rows<float>(message, units.of_floats_m, max_depth_m, subject);
   return depth_of_rows<std::uint16_t>(message, units.of_integers_m, max_depth_m, subject);
 }
@@ -72,12 +69,12 @@ DepthImage depth_from_message(const CompressedImageMessage& message, const Depth
   const bool integers = message.format.starts_with("16UC1"), floats = message.format.starts_with("32FC1");
   const bool transport = message.format.find("compressedDepth") != std::string::npos;
   if (!transport || !(integers || floats) || message.format.find("rvl") != std::string::npos)
-    throw InputError(subject, "format = \"" + message.format.substr(0, 64) +
-                                  "\": expected \"16UC1; compressedDepth\" or \"32FC1; compressedDepth\", "
-                                  "with PNG inside");
+    refuse(subject, "format = \"", message.format.substr(0, 64),
+           "\": expected \"16UC1; compressedDepth\" or \"32FC1; compressedDepth\", "
+           "with PNG inside");
   if (message.data.size() < kHeader)
-    throw InputError(subject, "has " + std::to_string(message.data.size()) +
-                                  " bytes of data: expected a header of 12 bytes and a PNG image");
+    refuse(subject, "has ", message.data.size(),
+           " bytes of data: expected a header of 12 bytes and a PNG image");
   const float a = float_at(message.data, 4), b = float_at(message.data, 8);
   const GreyImage image = decode_grey_png(message.data.substr(kHeader), subject);
   DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};

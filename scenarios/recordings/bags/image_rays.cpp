@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -87,9 +87,8 @@ Extent extent(std::uint32_t sensor, Extent region, const std::string& axis, cons
   if (region.offset == 0 && region.size == 0) return {0, sensor};
   const std::uint64_t end = std::uint64_t{region.offset} + region.size;
   if (region.size == 0 || end > sensor)
-    throw InputError(subject, "roi has pixels " + std::to_string(region.offset) + " to " +
-                                  std::to_string(end) + " along " + axis + ": expected some of the " +
-                                  std::to_string(sensor) + " that the camera has, or roi all 0");
+    refuse(subject, "roi has pixels ", region.offset, " to ", end, " along ", axis, ": expected some of the ",
+           sensor, " that the camera has, or roi all 0");
   return region;
 }
 Extent extent_x(const CameraInfoMessage& info, const std::string& subject) {
@@ -117,12 +116,10 @@ void require_pinhole(const double* matrix, std::size_t columns, const char* name
     if (column == row ? row < 2 : column == 2) continue;  // fx, fy, cx, cy
     const double expected = row == 2 && column == 2 ? 1 : 0;
     if (matrix[i] == expected || (expected == 1 && matrix[i] == 0)) continue;
-    throw InputError(subject,
-                     std::string(name) + "[" + std::to_string(i) + "] = " + std::to_string(matrix[i]) +
-                         ": expected " + (expected == 1 ? "1" : "0") +
-                         (column == 3 ? ", the camera of the image itself and not the second of a pair"
-                          : row < 2   ? ", a camera without skew"
-                                      : ""));
+    refuse(subject, name, "[", i, "] = ", matrix[i], ": expected ", (expected == 1 ? "1" : "0"),
+           (column == 3 ? ", the camera of the image itself and not the second of a pair"
+            : row < 2   ? ", a camera without skew"
+                        : ""));
   }
 }
 
@@ -132,8 +129,7 @@ ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) 
   const std::uint32_t bx = binning(info.binning_x), by = binning(info.binning_y);
   const ImageSize size = {extent_x(info, subject).size / bx, extent_y(info, subject).size / by};
   if (info.width > 0 && info.height > 0 && (size.width == 0 || size.height == 0))
-    throw InputError(subject, "binning = " + std::to_string(bx) + " x " + std::to_string(by) +
-                                  ": expected no more than the pixels that the camera has");
+    refuse(subject, "binning = ", bx, " x ", by, ": expected no more than the pixels that the camera has");
   return size;
 }
 
@@ -141,8 +137,7 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
   const ImageSize size = image_size(info, subject);
   const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
   if (pixels == 0 || pixels > kMaxImagePixels)
-    throw InputError(subject, "has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                                  " pixels: expected 1 to " + std::to_string(kMaxImagePixels));
+    refuse(subject, "has ", size.width, " x ", size.height, " pixels: expected 1 to ", kMaxImagePixels);
   const auto& K = info.K;
   const auto& P = info.P;
   const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
@@ -151,17 +146,16 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
   const Axis x = binned({fx, cx}, info.region.x_offset, binning(info.binning_x));
   const Axis y = binned({fy, cy}, info.region.y_offset, binning(info.binning_y));
   if (!sound(x.f) || !sound(y.f) || !(std::abs(x.c) < 1e6) || !(std::abs(y.c) < 1e6))
-    throw InputError(subject, std::string(rectified ? "P" : "K") + " has fx = " + std::to_string(fx) +
-                                  ", fy = " + std::to_string(fy) + ", cx = " + std::to_string(cx) +
-                                  ", cy = " + std::to_string(cy) + ": expected a calibrated camera");
+    refuse(subject, rectified ? "P" : "K", " has fx = ", fx, ", fy = ", fy, ", cx = ", cx, ", cy = ", cy,
+           ": expected a calibrated camera");
   if (rectified)
     require_pinhole(P.data(), 4, "P", subject);
   else
     require_pinhole(K.data(), 3, "K", subject);
   if (rectified && info.region.do_rectify)
-    throw InputError(subject,
-                     "roi.do_rectify = true: expected false, because the region of the rectified image "
-                     "is not stated");
+    refuse(subject,
+           "roi.do_rectify = true: expected false, because the region of the rectified image "
+           "is not stated");
   camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
   const auto& d = info.distortion;
   if (rectified) return;
@@ -169,9 +163,8 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
   if (straight && bends_by_coefficients_only(info.distortion_model)) return;
   const bool finite = std::all_of(d.begin(), d.end(), [](double k) { return std::isfinite(k); });
   if (info.distortion_model != "plumb_bob" || (d.size() != 4 && d.size() != 5) || !finite)
-    throw InputError(subject, "distortion_model = \"" + info.distortion_model.substr(0, 32) + "\" with " +
-                                  std::to_string(d.size()) +
-                                  " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
+    refuse(subject, "distortion_model = \"", info.distortion_model.substr(0, 32), "\" with ", d.size(),
+           " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
   make_table(info);
 }
 

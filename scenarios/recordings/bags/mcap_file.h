@@ -39,16 +39,14 @@ class McapFile final : public BagFile {
 
   void add_schema(std::string_view body);
   void add_channel(std::string_view body);
-  void add_message(std::string_view start, std::uint64_t part, std::uint64_t at);
-  std::string body_start(const McapRecord& record, std::uint64_t max_bytes) const;
+  void list_message(std::string_view start, std::uint64_t part, std::uint64_t at);
   std::string message_in_chunk(const MessagePlace& place, std::uint64_t max_bytes) const;
+  std::string body_start(const McapRecord& record, std::uint64_t max_bytes) const;
   std::string whole_body(const McapRecord& record) const;
 
   const ByteFile file_;
-  const WantedTopic wanted_;
   std::map<std::uint16_t, std::string> schemas_;   // their names
   std::map<std::uint16_t, std::size_t> channels_;  // their topics
-  std::map<std::size_t, bool> is_wanted_;          // key: topic
   mutable std::mutex mutex_;                       // guards the members below
   mutable std::unique_ptr<BagChunk> chunk_;        // chunk that was read last
   mutable std::set<std::uint64_t> checked_;        // positions of the chunks whose CRC was checked

@@ -1,10 +1,9 @@
 // Finds the messages of an MCAP file: by the summary at its end, or by reading all of its records.
-#include <zlib.h>
-
 #include <algorithm>
 
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/mcap_file.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -15,21 +14,11 @@ constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // limit
 
 constexpr const char* kDamagedIndex = "has a damaged index: it was read from end to end";
 
-std::uint32_t crc_of(const ByteFile& file, std::uint64_t at, std::uint64_t end) {
-  uLong crc = 0;
-  for (std::string piece; at < end; at += piece.size()) {
-    piece = file.bytes(at, std::min<std::uint64_t>(1u << 20, end - at));
-    crc = crc32_z(crc, reinterpret_cast<const unsigned char*>(piece.data()), piece.size());
-  }
-  return static_cast<std::uint32_t>(crc);
-}
-
 }  // namespace
 
 std::string McapFile::whole_body(const McapRecord& record) const {
   if (record.body_size > kMaxIndexBytes)
-    throw InputError(file_.name(), "a record of its index has " + std::to_string(record.body_size) +
-                                       " bytes: expected up to " + std::to_string(kMaxIndexBytes));
+    refuse(name_, "a record of its index has ", record.body_size, " bytes: expected up to ", kMaxIndexBytes);
   return file_.bytes(record.body_at, record.body_size);
 }
 
@@ -43,12 +32,12 @@ std::optional<McapFile::Summary> McapFile::find_summary() {
   const McapRecord footer = mcap_record(file_.bytes(footer_at, McapRecord::kStart), footer_at);
   if (footer.opcode != McapRecord::footer || footer.end() != footer_at + kFooterBytes) return std::nullopt;
   const std::string body = file_.bytes(footer.body_at, footer.body_size);
-  MessageCursor cursor(body, WireFormat::ros1, file_.name());
+  MessageCursor cursor(body, WireFormat::ros1, name_);
   const std::uint64_t summary_at = cursor.u64();
   cursor.u64();
   const std::uint32_t crc = cursor.u32();
   if (summary_at < kMcapMagic.size() || summary_at > footer_at) return std::nullopt;
-  if (crc != 0 && crc != crc_of(file_, summary_at, footer.end() - 4)) {
+  if (crc != 0 && crc != file_.crc(summary_at, footer.end() - 4)) {
     remark_ = kDamagedIndex;
     return std::nullopt;
   }
@@ -91,13 +80,13 @@ bool McapFile::index_by_summary() {
 // channel that is not listed.
 bool McapFile::index_chunk(const McapRecord& chunk_index) {
   const std::string body = whole_body(chunk_index);
-  MessageCursor cursor(body, WireFormat::ros1, file_.name());
+  MessageCursor cursor(body, WireFormat::ros1, name_);
   cursor.u64(), cursor.u64();  // the times of its messages
   const std::uint64_t chunk_at = cursor.u64();
   cursor.u64();
   const std::string_view offsets = cursor.bytes();
   const std::uint64_t index_length = cursor.u64();
-  MessageCursor entry(offsets, WireFormat::ros1, file_.name());
+  MessageCursor entry(offsets, WireFormat::ros1, name_);
   if (offsets.empty() && index_length == 0) return false;
   while (entry.left() > 0) {
     const std::uint16_t id = entry.u16();
@@ -108,12 +97,12 @@ bool McapFile::index_chunk(const McapRecord& chunk_index) {
     const McapRecord record = mcap_record_at(file_, index_at);
     if (record.opcode != McapRecord::message_index) return false;
     const std::string list = whole_body(record);
-    MessageCursor messages(list, WireFormat::ros1, file_.name());
+    MessageCursor messages(list, WireFormat::ros1, name_);
     if (messages.u16() != id) return false;
-    MessageCursor places(messages.bytes(), WireFormat::ros1, file_.name());
+    MessageCursor places(messages.bytes(), WireFormat::ros1, name_);
     while (places.left() > 0) {
       const auto logged_ns = static_cast<std::int64_t>(places.u64());
-      add_place(file_.name(), channel->second, {logged_ns, chunk_at, places.u64()});
+      add_message(channel->second, {logged_ns, chunk_at, places.u64()});
     }
   }
   return true;
@@ -122,9 +111,9 @@ bool McapFile::index_chunk(const McapRecord& chunk_index) {
 // Sets the number of messages of each topic, which for unwanted topics is known only from here. Returns false
 // if the chunks' indexes do not contain all messages: some may be outside of chunks.
 bool McapFile::matches_statistics(const std::string& statistics) {
-  MessageCursor cursor(statistics, WireFormat::ros1, file_.name());
+  MessageCursor cursor(statistics, WireFormat::ros1, name_);
   cursor.view(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // other numbers, and the times of the messages
-  MessageCursor entry(cursor.bytes(), WireFormat::ros1, file_.name());
+  MessageCursor entry(cursor.bytes(), WireFormat::ros1, name_);
   std::map<std::size_t, std::uint64_t> counts;
   while (entry.left() > 0) {
     const auto channel = channels_.find(entry.u16());
@@ -132,9 +121,9 @@ bool McapFile::matches_statistics(const std::string& statistics) {
     if (channel == channels_.end()) return false;
     counts[channel->second] += count;
   }
-  for (const auto& [topic, wanted] : is_wanted_) {
-    if (wanted && places_[topic].size() != counts[topic]) return false;
-    topics_[topic].messages = counts[topic];
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    if (is_wanted_[t] && places_[t].size() != counts[t]) return false;
+    topics_[t].messages = counts[t];
   }
   return true;
 }
@@ -148,7 +137,7 @@ void McapFile::scan() {
     if (record.opcode == McapRecord::schema) add_schema(body_start(record, kMaxNameBytes));
     if (record.opcode == McapRecord::channel) add_channel(body_start(record, kMaxNameBytes));
     if (record.opcode == McapRecord::message)
-      add_message(body_start(record, McapRecord::kMessageHeader), 0, at);
+      list_message(body_start(record, McapRecord::kMessageHeader), 0, at);
     if (record.opcode == McapRecord::chunk) scan_chunk(record), ++chunks;
     ended = record.opcode == McapRecord::data_end || record.opcode == McapRecord::footer;
     at = record.end();
@@ -171,11 +160,10 @@ void McapFile::scan_chunk(const McapRecord& chunk) {
     const std::string body(records.view(record.body_at, std::min(record.body_size, wanted)));
     if (record.opcode == McapRecord::schema) add_schema(body);
     if (record.opcode == McapRecord::channel) add_channel(body);
-    if (record.opcode == McapRecord::message) add_message(body, part, at);
+    if (record.opcode == McapRecord::message) list_message(body, part, at);
     if (record.body_size > records.size() - record.body_at)
-      throw InputError(file_.name(), "the chunk at byte " + std::to_string(part) +
-                                         " ends within a record: it claims " +
-                                         std::to_string(record.body_size) + " bytes");
+      refuse(name_, "the chunk at byte ", part, " ends within a record: it claims ", record.body_size,
+             " bytes");
     at = record.end();
   }
   const std::lock_guard lock(mutex_);

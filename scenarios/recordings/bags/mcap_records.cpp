@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/message_cursor.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -19,9 +19,8 @@ McapRecord mcap_record(std::string_view start, std::uint64_t at) {
 McapRecord mcap_record_at(const ByteFile& file, std::uint64_t at) {
   const McapRecord record = mcap_record(file.bytes(at, McapRecord::kStart), at);
   if (!file.has(record.body_at, record.body_size))
-    throw InputError(file.name(), "the record at byte " + std::to_string(at) + " claims " +
-                                      std::to_string(record.body_size) + " bytes: the file has " +
-                                      std::to_string(file.size() - record.body_at) + " left");
+    refuse(file.name(), "the record at byte ", at, " claims ", record.body_size, " bytes: the file has ",
+           file.size() - record.body_at, " left");
   return record;
 }
 
@@ -29,7 +28,7 @@ ChunkPlace mcap_chunk_at(const ByteFile& file, std::uint64_t at) {
   constexpr std::uint64_t kMaxHeader = 8 + 8 + 8 + 4 + 4 + 32 + 8;  // the name of a compression is short
   const McapRecord record = mcap_record_at(file, at);
   const std::string name = file.name() + ", the record at byte " + std::to_string(at);
-  if (record.opcode != McapRecord::chunk) throw InputError(name, "is not a chunk");
+  if (record.opcode != McapRecord::chunk) refuse(name, "is not a chunk");
   const std::string start = file.bytes(record.body_at, std::min(record.body_size, kMaxHeader));
   MessageCursor cursor(start, WireFormat::ros1, name);
   ChunkPlace chunk;
@@ -41,8 +40,7 @@ ChunkPlace mcap_chunk_at(const ByteFile& file, std::uint64_t at) {
   const std::uint64_t header = start.size() - cursor.left();
   chunk.stored_at = record.body_at + header;
   if (chunk.stored_size > record.body_size - header)
-    throw InputError(name, "claims a chunk of " + std::to_string(chunk.stored_size) + " bytes: it has " +
-                               std::to_string(record.body_size - header));
+    refuse(name, "claims a chunk of ", chunk.stored_size, " bytes: it has ", record.body_size - header);
   return chunk;
 }
 

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 
@@ -11,16 +11,14 @@ MessageCursor::MessageCursor(std::string_view bytes, WireFormat format, const st
   if (format_ == WireFormat::ros1) return;
   const std::string_view header = view(4);
   const unsigned kind = static_cast<unsigned char>(header[0]) << 8 | static_cast<unsigned char>(header[1]);
-  if (kind > 1)
-    throw InputError(subject_, "encapsulation = " + std::to_string(kind) + ": expected 0 or 1, plain CDR");
+  if (kind > 1) refuse(subject_, "encapsulation = ", kind, ": expected 0 or 1, plain CDR");
   big_endian_ = kind == 0;
   origin_ = at_;
 }
 
 std::string_view MessageCursor::view(std::size_t size) {
   if (size > bytes_.size() - at_)
-    throw InputError(subject_, "ends after " + std::to_string(bytes_.size()) + " bytes: expected " +
-                                   std::to_string(size) + " more at byte " + std::to_string(at_));
+    refuse(subject_, "ends after ", bytes_.size(), " bytes: expected ", size, " more at byte ", at_);
   at_ += size;
   return bytes_.substr(at_ - size, size);
 }
@@ -52,9 +50,8 @@ std::uint32_t MessageCursor::count(std::size_t min_bytes) {
   const std::uint32_t claimed = u32();
   const std::size_t left = bytes_.size() - at_;
   if (claimed > left / min_bytes)
-    throw InputError(subject_, "claims " + std::to_string(claimed) + " elements: the " +
-                                   std::to_string(left) + " bytes left hold at most " +
-                                   std::to_string(left / min_bytes));
+    refuse(subject_, "claims ", claimed, " elements: the ", left, " bytes left hold at most ",
+           left / min_bytes);
   return claimed;
 }
 

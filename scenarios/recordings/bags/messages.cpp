@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -93,8 +93,8 @@ std::vector<StampedTransform> read_transforms(MessageCursor from) {
     Eigen::Quaterniond q;
     for (double* value : {&q.x(), &q.y(), &q.z(), &q.w()}) *value = from.f64();
     if (!p.allFinite() || !(std::abs(q.norm() - 1) < 1e-3))
-      throw InputError(from.subject(), "transform from '" + transform.child + "' to '" + transform.parent +
-                                           "': expected finite numbers and a quaternion of length 1");
+      refuse(from.subject(), "transform from '", transform.child, "' to '", transform.parent,
+             "': expected finite numbers and a quaternion of length 1");
     transform.X = Eigen::Translation3d(p) * q.normalized();
   }
   return transforms;

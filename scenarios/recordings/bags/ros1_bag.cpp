@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -26,7 +26,7 @@ std::map<std::string, std::string> named_values(std::string_view bytes, const st
   while (cursor.left() > 0) {
     const std::string value = cursor.text();
     const std::size_t at = value.find('=');
-    if (at == std::string::npos) throw InputError(subject, "has a record with a value that has no name");
+    if (at == std::string::npos) refuse(subject, "has a record with a value that has no name");
     values[value.substr(0, at)] = value.substr(at + 1);
   }
   return values;
@@ -34,8 +34,7 @@ std::map<std::string, std::string> named_values(std::string_view bytes, const st
 
 void check_values(std::uint64_t size, const std::string& subject) {
   if (size > kMaxValues)
-    throw InputError(subject, "has a record with " + std::to_string(size) +
-                                  " bytes of values: expected up to " + std::to_string(kMaxValues));
+    refuse(subject, "has a record with ", size, " bytes of values: expected up to ", kMaxValues);
 }
 
 // bytes(from, size) returns bytes of a file or of a decoded chunk.
@@ -61,26 +60,25 @@ std::int64_t time_ns(MessageCursor& cursor) {
 std::uint32_t Ros1Record::number(const std::string& name, const std::string& subject) const {
   const auto found = values.find(name);
   if (found == values.end() || found->second.size() != sizeof(std::uint32_t))
-    throw InputError(subject, "has a record without the number '" + name + "'");
+    refuse(subject, "has a record without the number '", name, "'");
   return number_in(found->second);
 }
 
 int Ros1Record::opcode(const std::string& subject) const {
   const auto found = values.find("op");
   if (found == values.end() || found->second.size() != 1)
-    throw InputError(subject, "has a record without a valid opcode");
+    refuse(subject, "has a record without a valid opcode");
   return static_cast<unsigned char>(found->second[0]);
 }
 
 Ros1Bag::Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted)
-    : file_(file), wanted_(wanted) {
+    : BagFile(file.string(), wanted), file_(file) {
   const std::string_view any_version = kMagic.substr(0, 9);
   const bool long_enough = file_.has(0, kMagic.size());
   const std::string start = long_enough ? file_.bytes(0, kMagic.size()) : "";
   if (start != kMagic)
-    throw InputError(file_.name(), start.starts_with(any_version)
-                                       ? "is a bag of an older version: expected 2.0"
-                                       : "does not begin as a bag of ROS 1");
+    refuse(name_, start.starts_with(any_version) ? "is a bag of an older version: expected 2.0"
+                                                 : "does not begin as a bag of ROS 1");
   const bool is_whole = walk();
   if (is_whole && is_closed_) {
     for (const Listed& entry : listed_)
@@ -96,12 +94,12 @@ Ros1Bag::Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted)
 
 Ros1Record Ros1Bag::record_at(std::uint64_t at) const {
   return record_of([this](std::uint64_t from, std::uint64_t size) { return file_.bytes(from, size); }, at,
-                   file_.name());
+                   name_);
 }
 
 Ros1Record Ros1Bag::record_in(BagChunk& chunk, std::uint64_t at) const {
   return record_of([&chunk](std::uint64_t from, std::uint64_t size) { return chunk.view(from, size); }, at,
-                   file_.name());
+                   name_);
 }
 
 // Reads the records of the file itself, not those inside chunks.
@@ -111,74 +109,63 @@ bool Ros1Bag::walk() {
   for (std::uint64_t at = kMagic.size(); at < file_.size();) {
     if (!file_.has(at, kLength)) return false;
     const std::uint64_t values = number_in(file_.bytes(at, kLength));
-    check_values(values, file_.name());
+    check_values(values, name_);
     if (!file_.has(at, values + 2 * kLength)) return false;
     const Ros1Record record = record_at(at);
     if (!file_.has(record.data_at, record.data_size)) return false;
-    const int opcode = record.opcode(file_.name());
+    const int opcode = record.opcode(name_);
     if (opcode == Ros1Record::bag_header) {
       const auto index_pos = record.values.find("index_pos");
       is_closed_ = index_pos != record.values.end() && index_pos->second != std::string(8, '\0');
       const auto encryptor = record.values.find("encryptor");
       if (encryptor != record.values.end() && !encryptor->second.empty())
-        throw InputError(file_.name(), "is encrypted: expected a plain bag");
+        refuse(name_, "is encrypted: expected a plain bag");
     }
     if (opcode == Ros1Record::chunk) chunk_at = at, listed_.push_back({at, 0});
     if (opcode == Ros1Record::index && chunk_at > 0) listed_.push_back({chunk_at, at});
     if (opcode == Ros1Record::connection)
       add_connection(record, file_.bytes(record.data_at, std::min(record.data_size, kMaxConnection)));
-    if (listed_.size() > kMaxListed)
-      throw InputError(file_.name(), "has more than " + std::to_string(kMaxListed) + " chunks and lists");
+    if (listed_.size() > kMaxListed) refuse(name_, "has more than ", kMaxListed, " chunks and lists");
     at = record.end();
   }
   return true;
 }
 
 void Ros1Bag::add_connection(const Ros1Record& record, std::string_view data) {
-  const std::uint32_t id = record.number("conn", file_.name());
+  const std::uint32_t id = record.number("conn", name_);
   if (topic_of_.count(id) > 0) return;  // listed again behind the chunks
-  const auto values = named_values(data, file_.name());
+  const auto values = named_values(data, name_);
   const auto name = record.values.find("topic");
   const auto type = values.find("type");
   BagTopic topic;
   topic.encoding = "ros1";
   if (name != record.values.end()) topic.name = name->second;
   if (type != values.end()) topic.type = type->second;
-  const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
-    return other.name == topic.name && other.type == topic.type;
-  });
-  if (same == topics_.end()) is_wanted_.push_back(wanted_(topic));
-  topic_of_[id] = same == topics_.end() ? add_topic(file_.name(), topic)
-                                        : static_cast<std::size_t>(same - topics_.begin());
+  topic_of_[id] = add_topic(topic);
 }
 
-void Ros1Bag::add_message(std::uint32_t connection, const MessagePlace& place) {
+void Ros1Bag::add_message_of(std::uint32_t connection, const MessagePlace& place) {
   const auto topic = topic_of_.find(connection);
   if (topic == topic_of_.end())
-    throw InputError(file_.name(), "has a message of connection " + std::to_string(connection) +
-                                       ": expected one that the bag lists");
-  if (is_wanted_[topic->second]) {
-    add_place(file_.name(), topic->second, place);
-  } else {
-    ++topics_[topic->second].messages;
-  }
+    refuse(name_, "has a message of connection ", connection, ": expected one that the bag lists");
+  add_message(topic->second, place);
 }
 
 void Ros1Bag::add_index(std::uint64_t chunk_at, const Ros1Record& record) {
   constexpr std::uint64_t kEntry = 12;
-  const std::uint32_t connection = record.number("conn", file_.name());
-  if (record.number("ver", file_.name()) != 1 || record.data_size > kMaxPlaces * kEntry)
-    throw InputError(file_.name(), "has a list of messages of another version, or with too many messages");
+  const std::uint32_t connection = record.number("conn", name_);
+  if (record.number("ver", name_) != 1 || record.data_size > kMaxPlaces * kEntry)
+    refuse(name_, "has a list of messages of another version, or with too many messages");
   const auto topic = topic_of_.find(connection);
   if (topic != topic_of_.end() && !is_wanted_[topic->second]) {
     topics_[topic->second].messages += record.data_size / kEntry;
     return;
   }
   const std::string list = file_.bytes(record.data_at, record.data_size);
-  MessageCursor cursor(list, WireFormat::ros1, file_.name());
+  MessageCursor cursor(list, WireFormat::ros1, name_);
   while (cursor.left() > 0) {
     const std::int64_t logged_ns = time_ns(cursor);
-    add_message(connection, {logged_ns, chunk_at, cursor.u32()});
+    add_message_of(connection, {logged_ns, chunk_at, cursor.u32()});
   }
 }
 
@@ -186,7 +173,7 @@ std::unique_ptr<BagChunk> Ros1Bag::open_chunk(std::uint64_t at) const {
   const Ros1Record record = record_at(at);
   ChunkPlace place;
   place.record_at = at, place.stored_at = record.data_at, place.stored_size = record.data_size;
-  place.size = record.number("size", file_.name());
+  place.size = record.number("size", name_);
   const auto compression = record.values.find("compression");
   if (compression != record.values.end()) place.compression = compression->second;
   return std::make_unique<BagChunk>(file_, place);
@@ -196,17 +183,16 @@ void Ros1Bag::scan_chunk(std::uint64_t chunk_at) {
   const auto chunk = open_chunk(chunk_at);
   for (std::uint64_t at = 0; at < chunk->size();) {
     const Ros1Record record = record_in(*chunk, at);
-    const int opcode = record.opcode(file_.name());
+    const int opcode = record.opcode(name_);
     if (record.data_size > chunk->size() - std::min(record.data_at, chunk->size()))
-      throw InputError(file_.name(),
-                       "the chunk at byte " + std::to_string(chunk_at) + " ends within a record");
+      refuse(name_, "the chunk at byte ", chunk_at, " ends within a record");
     if (opcode == Ros1Record::connection)
       add_connection(record, chunk->view(record.data_at, record.data_size));
     if (opcode == Ros1Record::message) {
       const auto time = record.values.find("time");
-      if (time == record.values.end()) throw InputError(file_.name(), "has a message without a time");
-      MessageCursor cursor(time->second, WireFormat::ros1, file_.name());
-      add_message(record.number("conn", file_.name()), {time_ns(cursor), chunk_at, at});
+      if (time == record.values.end()) refuse(name_, "has a message without a time");
+      MessageCursor cursor(time->second, WireFormat::ros1, name_);
+      add_message_of(record.number("conn", name_), {time_ns(cursor), chunk_at, at});
     }
     at = record.end();
   }
@@ -219,12 +205,9 @@ std::string Ros1Bag::start(const MessagePlace& place, std::uint64_t max_bytes) c
     chunk_ = open_chunk(place.part);
   }
   const Ros1Record record = record_in(*chunk_, place.at);
-  if (record.opcode(file_.name()) != Ros1Record::message)
-    throw InputError(file_.name(), "the chunk at byte " + std::to_string(place.part) +
-                                       " has no message at its byte " + std::to_string(place.at));
-  if (record.data_size > kMaxMessageBytes)
-    throw InputError(file_.name(), "a message has " + std::to_string(record.data_size) +
-                                       " bytes: expected up to " + std::to_string(kMaxMessageBytes));
+  if (record.opcode(name_) != Ros1Record::message)
+    refuse(name_, "the chunk at byte ", place.part, " has no message at its byte ", place.at);
+  require_length(record.data_size);
   return std::string(chunk_->view(record.data_at, std::min(record.data_size, max_bytes)));
 }
 

@@ -40,12 +40,10 @@ class Ros1Bag final : public BagFile {
   void add_connection(const Ros1Record& record, std::string_view data);
   void add_index(std::uint64_t chunk_at, const Ros1Record& record);
   void scan_chunk(std::uint64_t at);
-  void add_message(std::uint32_t connection, const MessagePlace& place);
+  void add_message_of(std::uint32_t connection, const MessagePlace& place);
 
   const ByteFile file_;
-  const WantedTopic wanted_;
   std::map<std::uint32_t, std::size_t> topic_of_;  // key: connection
-  std::vector<bool> is_wanted_;
   struct Listed {
     std::uint64_t chunk_at, index_at;  // index_at 0: the chunk itself
   };

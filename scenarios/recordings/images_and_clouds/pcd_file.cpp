@@ -10,16 +10,15 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/geometry/colour.h"
-#include "core/parameters/input_error.h"
 #include "scenarios/recordings/images_and_clouds/pcd_header.h"
 #include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
+#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -35,14 +34,11 @@ constexpr std::size_t kLzfMaxExpansion = 88;
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);  // fails also for a folder
-  if (no_size) {
-    throw InputError(file.string(), "cannot be read (" + no_size.message() + "): expected a PCD file");
-  }
+  if (no_size) refuse(file.string(), "cannot be read (", no_size.message(), "): expected a PCD file");
   std::string bytes(size, '\0');  // the size on disk, not one that the header claims
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw InputError(file.string(), "cannot be read to its end");
-  }
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+    refuse(file.string(), "cannot be read to its end");
   return bytes;
 }
 
@@ -56,9 +52,8 @@ void check_claimed_size(const std::string& file, const PcdHeader& header, std::s
     max = data_bytes * kLzfMaxExpansion / header.point_bytes;
   }
   if (header.points <= max) return;
-  throw InputError(file, "POINTS = " + std::to_string(header.points) + ": the " + std::to_string(data_bytes) +
-                             " bytes of " + std::string(header.encoding) + " data hold at most " +
-                             std::to_string(max));
+  refuse(file, "POINTS = ", header.points, ": the ", data_bytes, " bytes of ", header.encoding,
+         " data hold at most ", max);
 }
 
 // Reads a number; also nan and inf, which from_chars reads in every spelling of printf. Throws InputError
@@ -69,7 +64,7 @@ double real_number(const std::string& where, std::string_view word) {
   const bool has_two_signs = word.starts_with("+-");
   const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
   if (has_two_signs || error != std::errc() || stop != end)
-    throw InputError(where, shown(word) + ": expected a number or nan");
+    refuse(where, shown(word), ": expected a number or nan");
   return value;
 }
 
@@ -84,7 +79,7 @@ std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std:
     const std::uint32_t colour = colour_of_float(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     if (colour != kNoColour || !is_integer || word.find_first_of(".eE") != word.npos) return colour;
   }
-  if (!is_integer) throw InputError(where, shown(word) + ": expected a 32-bit colour");
+  if (!is_integer) refuse(where, shown(word), ": expected a 32-bit colour");
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) & kRgb;
 }
 
@@ -92,10 +87,8 @@ std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std:
 // that a cloud has the same bits in every encoding.
 void read_ascii_point(const std::string& where, const PcdHeader& header,
                       const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
-  if (words.size() != header.point_values) {
-    throw InputError(where, std::to_string(words.size()) + " values: expected " +
-                                std::to_string(header.point_values) + ", as FIELDS and COUNT say");
-  }
+  if (words.size() != header.point_values)
+    refuse(where, words.size(), " values: expected ", header.point_values, ", as FIELDS and COUNT say");
   const auto read = [&](const PcdField& field) {
     const double value = real_number(where, words[field.first_value]);
     return field.size == 4 ? static_cast<float>(value) : value;
@@ -109,16 +102,13 @@ void read_ascii_point(const std::string& where, const PcdHeader& header,
 void read_ascii(const std::string& file, const PcdHeader& header, PcdText rest, PointCloud& cloud) {
   const auto where = [&] { return file + ":" + std::to_string(rest.line); };
   for (std::size_t i = 0; i < header.points;) {
-    if (rest.text.empty()) {
-      throw InputError(file, "the data end after " + std::to_string(i) +
-                                 " points: POINTS = " + std::to_string(header.points));
-    }
+    if (rest.text.empty()) refuse(file, "the data end after ", i, " points: POINTS = ", header.points);
     const std::vector<std::string_view> words = rest.take_line();
     if (!words.empty()) read_ascii_point(where(), header, words, i++, cloud);
   }
   while (!rest.text.empty()) {
     if (rest.take_line().empty()) continue;
-    throw InputError(where(), "a line behind the last point: POINTS = " + std::to_string(header.points));
+    refuse(where(), "a line behind the last point: POINTS = ", header.points);
   }
 }
 
@@ -154,8 +144,7 @@ std::vector<char> expand(const std::string& file, std::string_view block, std::u
       block.empty() ? 0
                     : lzf_decompress(block.data(), static_cast<unsigned>(block.size()), raw.data(), raw_size);
   if (expanded != raw_size)
-    throw InputError(file, "damaged LZF block of " + std::to_string(block.size()) + " bytes: expected " +
-                               std::to_string(raw_size) + " bytes from it");
+    refuse(file, "damaged LZF block of ", block.size(), " bytes: expected ", raw_size, " bytes from it");
   return raw;
 }
 
@@ -163,30 +152,15 @@ std::vector<char> expand(const std::string& file, std::string_view block, std::u
 std::vector<char> read_compressed_block(const std::string& file, const PcdHeader& header,
                                         std::string_view data) {
   std::array<std::uint32_t, 2> sizes{};
-  if (data.size() < sizeof sizes) {
-    throw InputError(file, "the data end before the sizes of the compressed block");
-  }
+  if (data.size() < sizeof sizes) refuse(file, "the data end before the sizes of the compressed block");
   std::memcpy(sizes.data(), data.data(), sizeof sizes);
   data.remove_prefix(sizeof sizes);
-  if (sizes[0] > data.size()) {
-    throw InputError(file, "compressed size = " + std::to_string(sizes[0]) + ": the file has " +
-                               std::to_string(data.size()) + " bytes left");
-  }
+  if (sizes[0] > data.size())
+    refuse(file, "compressed size = ", sizes[0], ": the file has ", data.size(), " bytes left");
   const std::size_t needed = header.points * header.point_bytes;
-  if (sizes[1] != needed) {
-    throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": expected " + std::to_string(needed) +
-                               ", as the header says");
-  }
+  if (sizes[1] != needed)
+    refuse(file, "raw size = ", sizes[1], ": expected ", needed, ", as the header says");
   return expand(file, data.substr(0, sizes[0]), sizes[1]);
-}
-
-// NaN in all three coordinates fails every distance test. Sensors mark a hole by nan or by the origin.
-void mark_missing_points(PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 p = cloud.point(i);
-    if (p.allFinite() && !p.isZero(0)) continue;
-    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-  }
 }
 
 // Reverses each row.

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
 namespace {
@@ -29,9 +29,8 @@ std::size_t integer_value(const std::string& file, const std::string& keyword, s
                           std::size_t max) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > max) {
-    throw InputError(file, keyword + " = " + shown(word) + ": expected 1 to " + std::to_string(max));
-  }
+  if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > max)
+    refuse(file, keyword, " = ", shown(word), ": expected 1 to ", max);
   return value;
 }
 
@@ -45,8 +44,8 @@ Entries read_entries(const std::string& file, PcdText& rest) {
     if (std::find(kKeywords.begin(), kKeywords.end(), words[0]) == kKeywords.end()) {
       std::string allowed;
       for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
-      throw InputError(file + ":" + std::to_string(rest.line),
-                       shown(words[0]) + " is not a PCD header entry: expected" + allowed);
+      refuse(file + ":" + std::to_string(rest.line), shown(words[0]), " is not a PCD header entry: expected",
+             allowed);
     }
     entries[words[0] == "COLUMNS" ? "FIELDS" : words[0]].assign(words.begin() + 1, words.end());
   }
@@ -55,7 +54,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
 
 const Words& entry(const std::string& file, const Entries& entries, const std::string& keyword) {
   const auto found = entries.find(keyword);
-  if (found == entries.end()) throw InputError(file, "the PCD header has no " + keyword + " entry");
+  if (found == entries.end()) refuse(file, "the PCD header has no ", keyword, " entry");
   return found->second;
 }
 
@@ -63,8 +62,7 @@ const Words& entry(const std::string& file, const Entries& entries, const std::s
                    std::size_t count) {
   const Words& words = entry(file, entries, keyword);
   if (words.size() == count) return words;
-  throw InputError(
-      file, keyword + " has " + std::to_string(words.size()) + " values: expected " + std::to_string(count));
+  refuse(file, keyword, " has ", words.size(), " values: expected ", count);
 }
 
 // Reads FIELDS, SIZE, TYPE and COUNT, one value each per field. A missing COUNT means 1 everywhere.
@@ -77,12 +75,9 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
   for (std::size_t f = 0; f < n; ++f) {
     PcdField field{names[f], types[f].front(), integer_value(file, "SIZE", sizes[f], 8)};
     field.count = integer_value(file, "COUNT", counts[f], std::numeric_limits<int>::max());
-    if (!std::has_single_bit(field.size)) {
-      throw InputError(file, "SIZE = " + shown(sizes[f]) + ": expected 1, 2, 4, 8");
-    }
-    if (types[f] != "F" && types[f] != "I" && types[f] != "U") {
-      throw InputError(file, "TYPE = " + shown(types[f]) + ": expected F, I, U");
-    }
+    if (!std::has_single_bit(field.size)) refuse(file, "SIZE = ", shown(sizes[f]), ": expected 1, 2, 4, 8");
+    if (types[f] != "F" && types[f] != "I" && types[f] != "U")
+      refuse(file, "TYPE = ", shown(types[f]), ": expected F, I, U");
     field.first_byte = header.point_bytes, header.point_bytes += field.size * field.count;
     field.first_value = header.point_values, header.point_values += field.count;
     header.fields.push_back(field);
@@ -93,12 +88,9 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
 PcdField coordinate(const std::string& file, const PcdHeader& header, const std::string& name) {
   const auto named = [&](const PcdField& field) { return field.name == name; };
   const auto found = std::find_if(header.fields.begin(), header.fields.end(), named);
-  if (found == header.fields.end()) {
-    throw InputError(file, "FIELDS has no " + name + ": expected x, y and z");
-  }
-  if (found->type != 'F' || found->size < 4 || found->count != 1) {
-    throw InputError(file, "field " + name + " = " + found->text() + ": expected TYPE F SIZE 4 or 8 COUNT 1");
-  }
+  if (found == header.fields.end()) refuse(file, "FIELDS has no ", name, ": expected x, y and z");
+  if (found->type != 'F' || found->size < 4 || found->count != 1)
+    refuse(file, "field ", name, " = ", found->text(), ": expected TYPE F SIZE 4 or 8 COUNT 1");
   return *found;
 }
 
@@ -108,8 +100,7 @@ std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& h
   for (const PcdField& field : header.fields) {
     if (field.name != "rgb" && field.name != "rgba") continue;
     if (field.size == 4 && field.count == 1) return field;
-    throw InputError(file,
-                     "field " + std::string(field.name) + " = " + field.text() + ": expected SIZE 4 COUNT 1");
+    refuse(file, "field ", field.name, " = ", field.text(), ": expected SIZE 4 COUNT 1");
   }
   return std::nullopt;
 }
@@ -125,8 +116,7 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
   const std::size_t product = header.width * header.height;
   header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;
-  throw InputError(file,
-                   "POINTS = " + shown(points) + ": expected WIDTH * HEIGHT = " + std::to_string(product));
+  refuse(file, "POINTS = ", shown(points), ": expected WIDTH * HEIGHT = ", product);
 }
 
 // Reads tx ty tz qw qx qy qz. Some programs write zeros for "unknown", which means no rotation if the
@@ -139,14 +129,13 @@ std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entr
     const std::string_view word = words[i];
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i]))
-      throw InputError(file, "VIEWPOINT has " + shown(word) + ": expected numbers");
+      refuse(file, "VIEWPOINT has ", shown(word), ": expected numbers");
   }
   const Vec3 position(value[0], value[1], value[2]);
   const Eigen::Quaterniond turn(value[3], value[4], value[5], value[6]);
   if (position.isZero(0) && turn.vec().isZero(0)) return std::nullopt;
   if (!(std::abs(turn.norm() - 1) < 1e-3))
-    throw InputError(
-        file, "VIEWPOINT ends with a quaternion of length " + std::to_string(turn.norm()) + ": expected 1");
+    refuse(file, "VIEWPOINT ends with a quaternion of length ", turn.norm(), ": expected 1");
   return Eigen::Translation3d(position) * turn.normalized();
 }
 
@@ -173,9 +162,8 @@ std::string PcdField::text() const {
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   const Entries entries = read_entries(file, rest);
   const std::string_view version = entry(file, entries, "VERSION", 1)[0];
-  if (std::find(kVersions.begin(), kVersions.end(), version) == kVersions.end()) {
-    throw InputError(file, "VERSION = " + shown(version) + ": expected 0.5, 0.6 or 0.7");
-  }
+  if (std::find(kVersions.begin(), kVersions.end(), version) == kVersions.end())
+    refuse(file, "VERSION = ", shown(version), ": expected 0.5, 0.6 or 0.7");
   PcdHeader header;
   read_fields(file, entries, header);
   header.x = coordinate(file, header, "x");
@@ -185,10 +173,8 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   read_lengths(file, entries, header);
   header.X_FV = read_viewpoint(file, entries);
   header.encoding = entry(file, entries, "DATA", 1)[0];
-  if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed") {
-    throw InputError(file,
-                     "DATA = " + shown(header.encoding) + ": expected ascii, binary, binary_compressed");
-  }
+  if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed")
+    refuse(file, "DATA = ", shown(header.encoding), ": expected ascii, binary, binary_compressed");
   return header;
 }
 

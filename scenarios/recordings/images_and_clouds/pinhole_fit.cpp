@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace remote_touch {
@@ -51,6 +52,14 @@ std::vector<double> ratios(const std::vector<double>& across, const std::vector<
 }
 
 }  // namespace
+
+void mark_missing_points(PointCloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    if (p.allFinite() && !p.isZero(0)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
 
 std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height) {
   // A pinhole camera sees no point behind it. The fit cannot detect such a point, because x/z is the same at

@@ -125,7 +125,7 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({1, 2})), "3 rows of 1 against 2 rows of 1");
   EXPECT_EQ(problem(numbers({1, 2, 3}, 3)), "3 rows of 1 against 1 rows of 3");
   EXPECT_EQ(problem(numbers({1, 2, 3}, 1, "mm")), "units m against mm");
-  EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "different type of values");
+  EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}}), "different type of values");
   EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
   // The rows that both have are compared nevertheless.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
@@ -147,13 +147,13 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   EXPECT_EQ(c.max, 0);
   EXPECT_EQ(compare_columns(state({0}), state({0}, {"free", "touching"}), {}).problem,
             "different names of the values");
-  const Column hash = {"h", "1", "", std::vector<std::uint64_t>{1, 2}, 1, {}};
+  const Column hash = {"h", "1", "", std::vector<std::uint64_t>{1, 2}};
   Column other = hash;
   other.values = std::vector<std::uint64_t>{1, 3};
   EXPECT_EQ(compare_columns(hash, other, {5, 0}).first_outside, 1u);
-  const Column text = {"t", "1", "", std::vector<std::string>{"a", "b"}, 1, {}};
+  const Column text = {"t", "1", "", std::vector<std::string>{"a", "b"}};
   EXPECT_TRUE(compare_columns(text, text, {}).is_same());
-  const Column counts = {"n", "1", "", std::vector<std::int32_t>{10, 20}, 1, {}};
+  const Column counts = {"n", "1", "", std::vector<std::int32_t>{10, 20}};
   Column more = counts;
   more.values = std::vector<std::int32_t>{10, 22};
   EXPECT_EQ(compare_columns(counts, more, {}).max, 2);

@@ -16,8 +16,8 @@ using Numbers = std::vector<double>;
 std::vector<Column> zeros(std::size_t rows, const std::vector<std::string>& names) {
   Numbers time(rows);
   std::iota(time.begin(), time.end(), 0.0);
-  std::vector<Column> columns = {{"time", "s", "", time, 1, {}}};
-  for (const std::string& name : names) columns.push_back({name, "m", "", Numbers(rows), 1, {}});
+  std::vector<Column> columns = {{"time", "s", "", time}};
+  for (const std::string& name : names) columns.push_back({name, "m", "", Numbers(rows)});
   return columns;
 }
 double& value(std::vector<Column>& columns, std::size_t column, std::size_t row) {

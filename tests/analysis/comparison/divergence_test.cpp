@@ -183,15 +183,6 @@ TEST(Causes, DriftIsTheCauseIfFramesAndStatesAreMissing) {
   EXPECT_EQ(found.frame, "unknown: the traces have no frame_index here");
 }
 
-TEST(Divergence, HasNoTimeWithoutAColumnTime) {
-  const Columns bare{find(lift(), "proxy_position")};
-  Columns other = bare;
-  proxy_x(other, 300) += 1;
-  const auto found = compare_traces(ColumnsInMemory(bare), ColumnsInMemory(other), {}, {}).divergence;
-  ASSERT_TRUE(found);
-  EXPECT_TRUE(std::isnan(found->time_s));
-}
-
 TEST(Causes, HaveNames) {
   std::set<std::string> names;
   for (const Cause cause :

@@ -16,7 +16,7 @@ using Texts = std::vector<std::string>;
 inline Column numbers(const std::string& name, std::size_t count, double step) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<double>(i) * step);
-  return {name, "1", "scenario." + name, values, 1, {}};
+  return {name, "1", "scenario." + name, values};
 }
 inline Column names(const std::string& name, const Texts& texts) {
   std::vector<std::int32_t> places;
@@ -29,7 +29,7 @@ inline SweepResult sweep(std::vector<Column> axes, int replicates) {
   SweepResult result;
   result.axes = std::move(axes);
   result.replicates = replicates;
-  result.measures = {{"event", "1", "", {}, 1, {}}, {"depth", "m", "", {}, 1, {}}};
+  result.measures = {{"event", "1", "", {}}, {"depth", "m", "", {}}};
   result.start(false);
   result.state.assign(result.run_count(), RunState::done);
   for (Column& measure : result.measures) measure.values = std::vector<double>(result.run_count(), 0.0);

@@ -209,7 +209,7 @@ TEST(CompareSweeps, RefusesAnUnknownToleranceAndASweepWithoutMeasures) {
 TEST(CompareSweeps, FurtherMeasuresOfTheCandidateAreANote) {
   const SweepResult a = row(6);
   SweepResult b = a;
-  b.measures.insert(b.measures.begin() + 1, {"force", "N", "", std::vector<double>(6, 1.0), 1, {}});
+  b.measures.insert(b.measures.begin() + 1, {"force", "N", "", std::vector<double>(6, 1.0)});
   const SweepComparison c = compare(a, b);
   EXPECT_EQ(c.exact, ExactVerdict::equal);
   EXPECT_EQ(c.notes, Texts{"measure force: only the candidate has it"});

@@ -18,6 +18,10 @@
 namespace remote_touch::tick_hashes_test {
 namespace {
 
+struct TickHashFile : testing::Test {
+  const TestFolder folder{"tick_hashes_test"};
+};
+
 namespace fs = std::filesystem;
 
 constexpr int kTicks = 5000;  // stored in two chunks
@@ -25,7 +29,7 @@ constexpr int kTicks = 5000;  // stored in two chunks
 // Returns the columns with their running hash computed anew.
 std::vector<Column> rehashed(std::vector<Column> columns) {
   columns.pop_back();
-  columns.push_back({"tick_hash", "1", "", running_hash(columns), 1, {}});
+  columns.push_back({"tick_hash", "1", "", running_hash(columns)});
   return columns;
 }
 
@@ -72,8 +76,7 @@ TickHashes every_nth(const TickHashes& all, int every) {
   return some;
 }
 
-TEST(TickHashes, EveryNthTickAndTheLast) {
-  const TestFolder folder("tick_hashes_test");
+TEST_F(TickHashFile, EveryNthTickAndTheLast) {
   for (const int ticks : {1, 2, 10, 101, kTicks}) {
     const std::vector<Column> columns = walk(ticks);
     const auto& hash = std::get<std::vector<std::uint64_t>>(columns.back().values);
@@ -92,8 +95,7 @@ TEST(TickHashes, EveryNthTickAndTheLast) {
   }
 }
 
-TEST(TickHashes, ReadsBackWhatWasWritten) {
-  const TestFolder folder("tick_hashes_test");
+TEST_F(TickHashFile, ReadsBackWhatWasWritten) {
   for (const int ticks : {0, 1, kTicks}) {
     const fs::path trace = stored(folder, "x.h5", walk(ticks));
     const TickHashes all = hashes_of_trace(StoredTrace(trace), 1);
@@ -113,20 +115,12 @@ TEST(TickHashes, ReadsBackWhatWasWritten) {
   EXPECT_LT(fs::file_size(folder / "h.h5"), static_cast<std::size_t>(kTicks) * 8 + 20000);
 }
 
-TEST(TickHashes, OtherFilesAndDamageAreRefused) {
-  const TestFolder folder("tick_hashes_test");
+TEST_F(TickHashFile, OtherFilesAreRefused) {
   const fs::path trace = stored(folder, "trace.h5", walk(100));
   EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/2");
   write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(trace), 1), {});
   EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(folder / "h.h5"), 1); }),
              "is of schema remote-touch-hashes/2");
-  const std::string whole = bytes_of(folder / "h.h5");
-  for (std::size_t i = 0; i < whole.size(); i += 397) {
-    std::string flipped = whole;
-    flipped[i] = static_cast<char>(flipped[i] ^ 4);
-    const fs::path file = folder.write("flipped.h5", flipped);
-    EXPECT_HAS(refusal([&] { read_hashes(file); }), "flipped.h5: damaged") << i;
-  }
 }
 
 fs::path with_columns(const TestFolder& folder, const std::vector<Column>& columns) {
@@ -139,13 +133,11 @@ fs::path with_columns(const TestFolder& folder, const std::vector<Column>& colum
 }
 
 // The file has a valid seal, but its columns are not a list of ticks and hashes.
-TEST(TickHashes, ColumnsThatAreNotHashesAreRefused) {
-  const TestFolder folder("tick_hashes_test");
+TEST_F(TickHashFile, ColumnsThatAreNotHashesAreRefused) {
   using Ticks = std::vector<std::int32_t>;
   using Hashes = std::vector<std::uint64_t>;
   const auto refused = [&](const Values& tick, const Values& hash) {
-    const fs::path file =
-        with_columns(folder, {{"tick", "1", "", tick, 1, {}}, {"tick_hash", "1", "", hash, 1, {}}});
+    const fs::path file = with_columns(folder, {{"tick", "1", "", tick}, {"tick_hash", "1", "", hash}});
     return refusal([&] { read_hashes(file); });
   };
   EXPECT_EQ(refused(Ticks{0, 3, 4}, Hashes{1, 2, 3}), "no InputError");
@@ -157,12 +149,11 @@ TEST(TickHashes, ColumnsThatAreNotHashesAreRefused) {
              "h.h5: damaged (/hashes/tick_hash has values of another type or width)");
   EXPECT_HAS(refused(std::vector<double>{0}, Hashes{1}),
              "h.h5: damaged (/hashes/tick has values of another type or width)");
-  const fs::path one = with_columns(folder, {{"tick", "1", "", Ticks{0}, 1, {}}});
+  const fs::path one = with_columns(folder, {{"tick", "1", "", Ticks{0}}});
   EXPECT_HAS(refusal([&] { read_hashes(one); }), "h.h5: damaged (/hashes/tick_hash is missing)");
 }
 
-TEST(TickHashes, ATraceWithoutARunningHashIsRefused) {
-  const TestFolder folder("tick_hashes_test");
+TEST_F(TickHashFile, ATraceWithoutARunningHashIsRefused) {
   std::vector<Column> columns = walk(10);
   columns.back().values = std::vector<double>(10);
   const fs::path numbers = stored(folder, "numbers.h5", columns);

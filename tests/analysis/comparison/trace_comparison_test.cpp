@@ -70,14 +70,6 @@ TEST(CompareTraces, AmongColumnsTheTraceOrderDecidesAndTimeBeforeIt) {
   EXPECT_DOUBLE_EQ(earlier.deviation, 5);
 }
 
-TEST(CompareTraces, AVectorsDeviationIsALength) {
-  const Divergence found = divergence(after([](Columns& c) {
-    auto& force = numbers(c, "force");
-    force[3 * 500] += 3, force[3 * 500 + 2] -= 4;
-  }));
-  EXPECT_NEAR(found.deviation, 5, 1e-12);
-}
-
 TEST(CompareTraces, FindsTheFirstTickAndTheLast) {
   const Divergence first = divergence(after([](Columns& c) { proxy_x(c, 0) += 1; }));
   EXPECT_EQ(first.tick, 0u);

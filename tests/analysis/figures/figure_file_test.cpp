@@ -15,6 +15,10 @@
 namespace remote_touch::figure_file_test {
 namespace {
 
+struct FigureFile : testing::Test {
+  const TestFolder folder{"figure_file_test"};
+};
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Figure small_figure() {
@@ -39,8 +43,7 @@ Figure small_figure() {
   return figure;
 }
 
-TEST(FigureFile, TablesSurvive) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, TablesSurvive) {
   const Figure figure = small_figure();
   const std::string sum = write_figure(folder / "fig9.9.h5", figure, kProvenance);
   const Hdf5Content content = read_hdf5(folder / "fig9.9.h5");
@@ -65,8 +68,7 @@ TEST(FigureFile, TablesSurvive) {
 
 // read_hdf5 does not read panels (h5dump does), so the test only checks that every word of a panel is in the
 // file.
-TEST(FigureFile, PanelsAreStored) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, PanelsAreStored) {
   write_figure(folder / "fig.h5", small_figure(), {});
   const std::string bytes = bytes_of(folder / "fig.h5");
   for (const char* word :
@@ -78,8 +80,7 @@ TEST(FigureFile, PanelsAreStored) {
   EXPECT_HAS(bytes, raw(0.005));            // radius of the ball
 }
 
-TEST(FigureFile, ScenesAreStored) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, ScenesAreStored) {
   Figure figure = small_figure();
   ScenePart solid{ScenePart::Kind::solid, "corners", 0xE07B39};
   solid.triangles = "faces", solid.poses = "places", solid.pose_row = 5, solid.opacity = 0.375;
@@ -96,8 +97,7 @@ TEST(FigureFile, ScenesAreStored) {
   for (const double value : {0.25, 0.625, 0.375, 0.0625}) EXPECT_HAS(bytes, raw(value));
 }
 
-TEST(FigureFile, checks) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, checks) {
   Figure figure = small_figure();
   for (const auto& [style, name] :
        {std::pair(CurveStyle::line, "line"), std::pair(CurveStyle::dots, "dots"),
@@ -109,8 +109,7 @@ TEST(FigureFile, checks) {
   }
 }
 
-TEST(FigureFile, StoresAFigureThatHasNoTablesOrPanels) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, StoresAFigureThatHasNoTablesOrPanels) {
   write_figure(folder / "fig.h5", Figure{"9.9", "", "Not run: no recording", {}, {}, {}}, {});
   const Hdf5Content content = read_hdf5(folder / "fig.h5");
   EXPECT_TRUE(content.datasets.empty());
@@ -118,8 +117,7 @@ TEST(FigureFile, StoresAFigureThatHasNoTablesOrPanels) {
   EXPECT_EQ(attribute(content, "caption"), "Not run: no recording");
 }
 
-TEST(FigureFile, EqualContentIsEqualBytes) {
-  const TestFolder folder("figure_file_test");
+TEST_F(FigureFile, EqualContentIsEqualBytes) {
   write_figure(folder / "a.h5", small_figure(), kProvenance);
   write_figure(folder / "b.h5", small_figure(), kProvenance);
   EXPECT_EQ(bytes_of(folder / "a.h5"), bytes_of(folder / "b.h5"));

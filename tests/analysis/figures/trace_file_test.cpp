@@ -109,7 +109,7 @@ TEST(TraceFile, StoresALongConfiguration) {
 
 TEST(Digest, KnownValue) {
   // SHA-256 of the ten bytes "x", 0, int 1, int 7, as any other program computes it.
-  const std::vector<Column> columns = {{"x", "1", "", std::vector<std::int32_t>{7}, 1, {}}};
+  const std::vector<Column> columns = {{"x", "1", "", std::vector<std::int32_t>{7}}};
   EXPECT_EQ(digest(columns), "3c9321a871dab2c96afe862488edb30946335a7c28e9f1b63b10c2628145004d");
   EXPECT_EQ(digest(std::vector<Column>{}),
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

@@ -3,31 +3,24 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::better_test {
 namespace {
 
-Better better_of(const std::string& name) {
-  for (const Measure& measure : built_in_measures())
-    if (measure.name == name) return measure.better;
-  ADD_FAILURE() << "no measure " << name;
-  return Better::neither;
-}
-
 TEST(BetterOfMeasures, IsInTheirTable) {
   for (const char* name : {"popped_through", "rms_contact_error", "rms_force_jump", "force_noise",
                            "tool_popped_through", "max_tool_penetration", "guidance_error"})
-    EXPECT_EQ(better_of(name), Better::smaller) << name;
+    EXPECT_EQ(measure_named(name).better, Better::smaller) << name;
   for (const char* name : {"min_slave_distance", "min_clearance"})
-    EXPECT_EQ(better_of(name), Better::not_negative) << name;
-  EXPECT_EQ(better_of("contact_force_fraction"), Better::larger);
-  EXPECT_EQ(better_of("mean_height"), Better::near_zero);
+    EXPECT_EQ(measure_named(name).better, Better::not_negative) << name;
+  EXPECT_EQ(measure_named("contact_force_fraction").better, Better::larger);
+  EXPECT_EQ(measure_named("mean_height").better, Better::near_zero);
   // More force is no better and no worse: a proxy that popped through exerts none.
   for (const char* name :
        {"max_force", "max_torque", "energy_injected", "force_fraction", "last_force_time", "end_distance"})
-    EXPECT_EQ(better_of(name), Better::neither) << name;
+    EXPECT_EQ(measure_named(name).better, Better::neither) << name;
 }
 
 double nothing(const Trace&) {

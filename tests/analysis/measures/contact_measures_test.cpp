@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::contact_measures_test {
 namespace {
@@ -102,10 +101,7 @@ TEST(ContactMeasures, AreInTheTable) {
            {"end_distance", end_distance_m},
            {"force_fraction", force_fraction},
            {"last_force_time", last_force_time_s}}) {
-    const auto found = std::find_if(built_in_measures().begin(), built_in_measures().end(),
-                                    [&name = name](const Measure& m) { return m.name == name; });
-    ASSERT_NE(found, built_in_measures().end()) << name;
-    EXPECT_EQ(found->compute(trace), of(trace)) << name;
+    EXPECT_EQ(measure_named(name).compute(trace), of(trace)) << name;
   }
 }
 

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/trace/trace.h"
 
@@ -42,10 +42,9 @@ TEST(Measures, PopThroughIsJudgedAtTheEnd) {
   EXPECT_EQ(popped_through(trace_of({{0.005}, {-1e-9}})), 1);
   EXPECT_TRUE(std::isnan(popped_through(Trace())));
   EXPECT_EQ(max_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(popped_through(trace_of({{-0.01}, {unknown}}))));
-  EXPECT_EQ(max_penetration_m(trace_of({{unknown}, {0.005}, {unknown}})), 0);
-  EXPECT_TRUE(std::isnan(max_penetration_m(trace_of({{unknown}, {unknown}}))));
+  EXPECT_TRUE(std::isnan(popped_through(trace_of({{-0.01}, {kNoValue}}))));
+  EXPECT_EQ(max_penetration_m(trace_of({{kNoValue}, {0.005}, {kNoValue}})), 0);
+  EXPECT_TRUE(std::isnan(max_penetration_m(trace_of({{kNoValue}, {kNoValue}}))));
 }
 
 TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
@@ -59,15 +58,13 @@ TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
 }
 
 TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
-  EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{unknown}}))));
+  EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {kNoValue}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
+  EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{kNoValue}}))));
 }
 
 // Results are compared bit by bit, and the NaN of 0 / 0 has another sign on some machines.
 TEST(Measures, NoValueHasTheSameBitsEverywhere) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  for (const Trace& trace : {Trace(), trace_of({{unknown}, {unknown}})})
+  for (const Trace& trace : {Trace(), trace_of({{kNoValue}, {kNoValue}})})
     for (const auto measure :
          {max_penetration_m, min_slave_distance_m, wrong_side_fraction, rms_surface_error_m})
       EXPECT_EQ(std::bit_cast<std::uint64_t>(measure(trace)), std::bit_cast<std::uint64_t>(kNoValue));
@@ -82,8 +79,7 @@ TEST(Measures, AreZeroForAnEmptyTrace) {
 }
 
 TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  Tick good{0.0053}, bad{0.0046}, free{0.02}, dark{unknown};
+  Tick good{0.0053}, bad{0.0046}, free{0.02}, dark{kNoValue};
   free.state = ContactState::free;
   EXPECT_NEAR(rms_surface_error_m(trace_of({good, bad, free, dark})), std::sqrt((9e-8 + 16e-8) / 2), 1e-12);
   EXPECT_TRUE(std::isnan(rms_surface_error_m(trace_of({free, dark}))));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::perceived_force_measures_test {
 namespace {
@@ -83,11 +83,7 @@ TEST(PerceivedForce, AForceThatEndsIsSentOnceAndNoMore) {
 
 TEST(PerceivedForce, MeasuresAreInTheTableAtThreeFractions) {
   const Trace trace = trace_along(200, [](int i) { return 1 + 0.01 * (i / 10) * (i % 20 < 10 ? 1 : -1); });
-  const auto value = [&](const std::string& name) {
-    for (const Measure& measure : built_in_measures())
-      if (measure.name == name) return measure.compute(trace);
-    return std::nan("");
-  };
+  const auto value = [&](const std::string& name) { return measure_named(name).compute(trace); };
   for (const int percent : {5, 10, 20}) {
     const std::string end = "_" + std::to_string(percent);
     EXPECT_EQ(value("jump_fraction" + end), felt_jump_fraction(trace, percent / 100.)) << percent;

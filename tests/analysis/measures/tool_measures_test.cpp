@@ -4,21 +4,14 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
+#include <utility>
 
-#include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::tool_measures_test {
 namespace {
-
-const Measure& measure(const std::string& name) {
-  for (const Measure& each : built_in_measures())
-    if (each.name == name) return each;
-  ADD_FAILURE() << "no measure " << name;
-  return built_in_measures().front();
-}
 
 struct Tick {
   Vec3 torque_Nm = Vec3::Zero();
@@ -60,21 +53,22 @@ TEST(ToolMeasures, AreMeansAndMaximaOfTheTicks) {
                 {{0.3, 0, 0.4}, 10, 2, 1, 3, 0.001, 0.002, false, {0.003, 0, 0.004}, {0, 0.2, 0}},
                 {{0, -0.2, 0}, 30, 6, 4, 60, 0.004, -0.001, true, {0, -0.03, 0}, {0.3, 0, 0}},
                 {{0, 0, 0}, 4, 0, 2, 4, 0, 0.005, true, {0, 0, 0.001}, {0, 0, -0.1}}});
-  EXPECT_NEAR(max_torque_Nm(trace), 0.5, 1e-15);
-  EXPECT_EQ(mean_contact_count(trace), 11);
-  EXPECT_EQ(max_contact_count(trace), 30);
-  EXPECT_EQ(mean_active_constraints(trace), 2);
-  EXPECT_EQ(max_active_constraints(trace), 6);
-  EXPECT_EQ(max_contact_clusters(trace), 4);
-  EXPECT_EQ(max_tool_penetration_m(trace), 0.004);
-  EXPECT_EQ(min_clearance_m(trace), -0.001);
-  EXPECT_EQ(mean_detections(trace), 17);
-  EXPECT_EQ(max_detections(trace), 60);
-  EXPECT_EQ(exhausted_fraction(trace), 0.5);
-  EXPECT_NEAR(mean_tool_lag_m(trace), (0.005 + 0.03 + 0.001) / 4, 1e-15);
-  EXPECT_NEAR(max_tool_lag_m(trace), 0.03, 1e-15);
-  EXPECT_NEAR(mean_tool_lag_rad(trace), (0.2 + 0.3 + 0.1) / 4, 1e-15);
-  EXPECT_NEAR(max_tool_lag_rad(trace), 0.3, 1e-15);
+  for (const auto& [name, expected] : {std::pair("max_torque", 0.5),
+                                       {"mean_contact_count", 11},
+                                       {"max_contact_count", 30},
+                                       {"mean_active_constraints", 2},
+                                       {"max_active_constraints", 6},
+                                       {"max_contact_clusters", 4},
+                                       {"max_tool_penetration", 0.004},
+                                       {"min_clearance", -0.001},
+                                       {"mean_detections", 17},
+                                       {"max_detections", 60},
+                                       {"exhausted_fraction", 0.5},
+                                       {"mean_tool_lag", (0.005 + 0.03 + 0.001) / 4},
+                                       {"max_tool_lag", 0.03},
+                                       {"mean_tool_lag_angle", (0.2 + 0.3 + 0.1) / 4},
+                                       {"max_tool_lag_angle", 0.3}})
+    EXPECT_NEAR(value_of(measure_named(name), trace), expected, 1e-15) << name;
 }
 
 TEST(ToolMeasures, ClearanceIsNanWithoutANearestPoint) {
@@ -118,8 +112,8 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
       EXPECT_TRUE(std::isnan(value_of(each, tool))) << each.name;
     }
   }
-  EXPECT_EQ(value_of(measure("mean_detections"), tool), 1);
-  EXPECT_EQ(value_of(measure("max_force"), tool), 0);
+  EXPECT_EQ(value_of(measure_named("mean_detections"), tool), 1);
+  EXPECT_EQ(value_of(measure_named("max_force"), tool), 0);
 }
 
 }  // namespace

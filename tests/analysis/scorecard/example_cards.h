@@ -14,9 +14,9 @@ namespace remote_touch::made_cards {
 // i is the same for all methods.
 inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
   SweepResult result;
-  result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}, 1, {}}};
+  result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}}};
   result.replicates = 20;
-  result.measures = {{"held", "1", "", {}, 1, {}}, {"steps", "1", "", {}, 1, {}}};
+  result.measures = {{"held", "1", "", {}}, {"steps", "1", "", {}}};
   result.start(false);
   std::vector<double> held(40, without_noise ? 1.0 : 0.0), count(40, 1);
   for (int i = 0; i < 20; ++i) {

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <linux/capability.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -76,15 +74,11 @@ TEST(WriteTrace, RefusesAFolderWithoutPermission) {
 TEST(WriteTrace, FailureInTheMiddleLeavesTheOldFile) {
   const TestFolder folder("atomic_file_test");
   folder.write("x.h5", "as it was");
-  rlimit old{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
-  const rlimit tight{8192, old.rlim_max};
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
-  expect_unwritable(folder / "x.h5");
-  expect_unwritable(folder / "y.h5");
-  setrlimit(RLIMIT_FSIZE, &old);
-  std::signal(SIGXFSZ, handler);
+  {
+    const NoRoom limit(8192);
+    expect_unwritable(folder / "x.h5");
+    expect_unwritable(folder / "y.h5");
+  }
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"x.h5"});
   EXPECT_EQ(bytes_of(folder / "x.h5"), "as it was");
 }
@@ -121,63 +115,6 @@ TEST(WriteWholeFile, ALinkInARingIsRefused) {
   fs::create_symlink("b", folder / "a");
   EXPECT_HAS(refusal([&] { write_file_atomically(folder / "a", "x", 1); }), "a: cannot be written (");
   EXPECT_TRUE(fs::is_symlink(folder / "a"));
-}
-
-TEST(WriteFilesTogether, ReplacesAllOrNone) {
-  const TestFolder folder("atomic_file_test");
-  fs::create_directory(folder / "there");
-  fs::create_symlink("there/b", folder / "b");
-  folder.write("a", "old a"), folder.write("there/b", "old b");
-  const std::vector<NewFile> files = {{folder / "a", "new a"}, {folder / "new", ""}, {folder / "b", "new b"}};
-  const auto all = [&] { return bytes_of(folder / "a") + ", " + bytes_of(folder / "b"); };
-  const std::vector<std::string> before = {"a", "b", "there"};
-
-  for (const int done : {0, 1, 2}) {
-    const FailedRename failed(done, EDQUOT);
-    EXPECT_HAS(
-        refusal([&] { write_files_together(files); }),
-        files[static_cast<std::size_t>(done)].target.string() + ": cannot be written (Disk quota exceeded)");
-    EXPECT_EQ(all(), "old a, old b");
-    EXPECT_EQ(files_in(folder.path()), before);
-    EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
-  }
-  auto impossible = files;
-  for (const char* name : {"nowhere/c", "there"}) {
-    impossible[2].target = folder / name;
-    EXPECT_HAS(refusal([&] { write_files_together(impossible); }),
-               std::string(name) + ": cannot be written (");
-    EXPECT_EQ(all(), "old a, old b");
-    EXPECT_EQ(files_in(folder.path()), before);
-  }
-  {
-    const AnswersOfWrite full{{5, 0}, {-1, ENOSPC}};
-    EXPECT_HAS(refusal([&] { write_files_together(files); }),
-               "b: cannot be written (No space left on device)");
-    EXPECT_EQ(files_in(folder.path()), before);
-  }
-  write_files_together(files);
-  EXPECT_EQ(all(), "new a, new b");
-  EXPECT_TRUE(fs::is_symlink(folder / "b"));
-  EXPECT_EQ(bytes_of(folder / "new"), "");
-  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"a", "b", "new", "there"}));
-  EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
-}
-
-// The second rename fails, and then the one that puts the first file back.
-TEST(WriteFilesTogether, KeepsAnOldFileThatCannotBePutBack) {
-  const TestFolder folder("atomic_file_test");
-  folder.write("a", "old a"), folder.write("b", "old b");
-  const std::string kept = (folder / "a").string() + ".old-" + std::to_string(::getpid());
-  const FailedRename failed(1, EDQUOT, 2);
-  const std::string why = refusal([&] {
-    write_files_together({{folder / "a", "new a"}, {folder / "b", "new b"}});
-  });
-  EXPECT_HAS(why, "b: cannot be written (Disk quota exceeded)");
-  EXPECT_HAS(why, "; the old " + (folder / "a").string() + " is now " + kept);
-  remove_leftovers(folder / "a");
-  EXPECT_EQ(bytes_of(kept), "old a");
-  EXPECT_EQ(bytes_of(folder / "b"), "old b");
-  EXPECT_EQ(files_in(folder.path()).size(), 3u);
 }
 
 fs::perms permissions_of(const fs::path& file) {

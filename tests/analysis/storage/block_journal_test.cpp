@@ -3,9 +3,7 @@
 #include "analysis/storage/block_journal.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <vector>
 
 #include "tests/analysis/storage/system_answers.h"
@@ -13,6 +11,10 @@
 
 namespace remote_touch::block_journal_test {
 namespace {
+
+struct BlockJournal : testing::Test {
+  const TestFolder folder{"block_journal"};
+};
 
 namespace fs = std::filesystem;
 
@@ -46,8 +48,7 @@ std::size_t whole_blocks(const fs::path& file) {
   return count;
 }
 
-TEST(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
   const auto sizes = write(folder);
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"x.unfinished"});
   EXPECT_TRUE(is_journal(folder / "x.unfinished"));
@@ -62,8 +63,7 @@ TEST(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
 }
 
 // A kill or a power cut may end the file at any byte. The blocks before the cut are read.
-TEST(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
   const auto sizes = write(folder);
   const std::string whole = bytes_of(folder / "x.unfinished");
   for (std::size_t size = kJournalOpening.size(); size <= whole.size(); ++size) {
@@ -83,8 +83,7 @@ TEST(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
   }
 }
 
-TEST(BlockJournal, AChangedByteEndsTheBlocksBeforeIt) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, AChangedByteEndsTheBlocksBeforeIt) {
   const auto sizes = write(folder);
   const std::string whole = bytes_of(folder / "x.unfinished");
   for (std::size_t at = kJournalOpening.size(); at < whole.size(); ++at) {
@@ -96,8 +95,7 @@ TEST(BlockJournal, AChangedByteEndsTheBlocksBeforeIt) {
   }
 }
 
-TEST(BlockJournal, BlocksThatAreMissingOrComeTwiceEndIt) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, BlocksThatAreMissingOrComeTwiceEndIt) {
   const auto sizes = write(folder);
   const std::string whole = bytes_of(folder / "x.unfinished");
   const auto part = [&](std::size_t block) {
@@ -110,8 +108,7 @@ TEST(BlockJournal, BlocksThatAreMissingOrComeTwiceEndIt) {
   EXPECT_EQ(whole_blocks(folder.write("d", start + part(1) + "garbage" + part(2))), 2u);
 }
 
-TEST(BlockJournal, GrowsWhileItsWriterLives) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, GrowsWhileItsWriterLives) {
   JournalWriter writer(folder / "x", {0, "first"});
   writer.append({1, "second"});
   writer.sync();
@@ -124,8 +121,7 @@ TEST(BlockJournal, GrowsWhileItsWriterLives) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
-TEST(BlockJournal, RefusesToOverwriteAnExistingFile) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, RefusesToOverwriteAnExistingFile) {
   write(folder);
   const std::string bytes = bytes_of(folder / "x.unfinished");
   const std::string why = refusal([&] { JournalWriter(folder / "x", {0, "first"}); });
@@ -144,43 +140,20 @@ TEST(BlockJournal, RefusesToOverwriteAnExistingFile) {
   EXPECT_EQ(bytes_of(folder / "y.unfinished"), "mine");
 }
 
-TEST(BlockJournal, IsBesideTheFileThatALinkLeadsTo) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, IsBesideTheFileThatALinkLeadsTo) {
   fs::create_directory(folder / "deep");
   fs::create_symlink("deep/x", folder / "link");
   const JournalWriter writer(folder / "link", {0, "first"});
   EXPECT_TRUE(fs::equivalent(writer.file(), folder / "deep/x.unfinished"));
 }
 
-TEST(BlockJournal, RefusesWhatCannotBeWritten) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, RefusesWhatCannotBeWritten) {
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "nowhere/x", {0, "first"}); }), "cannot be written");
   EXPECT_HAS(refusal([&] { JournalWriter(folder.path(), {0, "first"}); }), "cannot be written");
   EXPECT_HAS(refusal([&] { JournalWriter("/dev/null", {0, "first"}); }), "/dev/null: is a device");
 }
 
-// No file of this process can grow beyond this size as long as this object exists, as on a full disk.
-class NoRoom {
- public:
-  explicit NoRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit less{bytes, old_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &less);
-  }
-  ~NoRoom() {
-    setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  NoRoom(const NoRoom&) = delete;
-  NoRoom& operator=(const NoRoom&) = delete;
-
- private:
-  rlimit old_{};
-  void (*handler_)(int);
-};
-
-TEST(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
   JournalWriter writer(folder / "x", {0, "first"});
   const std::uintmax_t size = fs::file_size(writer.file());
   {
@@ -198,8 +171,7 @@ TEST(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
 }
 
 // A later block would be behind the written part of this one, where no reader finds it.
-TEST(BlockJournal, RefusesBlocksBehindAPartThatCannotBeRemoved) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, RefusesBlocksBehindAPartThatCannotBeRemoved) {
   JournalWriter writer(folder / "x", {0, "first"});
   const auto append = [&] { return refusal([&] { writer.append({1, std::string(100, 'x')}); }); };
   {
@@ -213,15 +185,13 @@ TEST(BlockJournal, RefusesBlocksBehindAPartThatCannotBeRemoved) {
   EXPECT_FALSE(reader.next());
 }
 
-TEST(BlockJournal, LeavesNoFileIfTheFirstBlockHasNoRoom) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, LeavesNoFileIfTheFirstBlockHasNoRoom) {
   const NoRoom limit(50);
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, std::string(100, 'x')}); }), "File too large");
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
-TEST(BlockJournal, RefusesToReadOtherFiles) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, RefusesToReadOtherFiles) {
   const auto why = [](const fs::path& file) { return refusal([&] { JournalReader{file}; }); };
   EXPECT_HAS(why(folder / "none"), "none: no such file");
   EXPECT_HAS(why(folder.write("empty", "")), "empty: is not an unfinished recording");
@@ -231,8 +201,7 @@ TEST(BlockJournal, RefusesToReadOtherFiles) {
   EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
 }
 
-TEST(BlockJournal, IsNamedInTheErrorIfItsFileIsMissing) {
-  const TestFolder folder("block_journal");
+TEST_F(BlockJournal, IsNamedInTheErrorIfItsFileIsMissing) {
   write(folder);
   EXPECT_HAS(refusal([&] { require_no_journal(folder / "x"); }),
              "x: no such file, but its unfinished recording");

@@ -19,8 +19,11 @@
 namespace remote_touch::file_digest_test {
 namespace {
 
-TEST(FileDigest, IsTheSha256OfWhatFollows) {
-  const TestFolder folder("file_digest_test");
+struct FileDigest : testing::Test {
+  const TestFolder folder{"file_digest_test"};
+};
+
+TEST_F(FileDigest, IsTheSha256OfWhatFollows) {
   write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
   const std::string bytes = bytes_of(folder / "trace.h5");
   EXPECT_NE(bytes.substr(0, kSealBlockSize).find(sha256_of_file(folder / "trace.h5", kSealBlockSize)),
@@ -31,8 +34,7 @@ TEST(FileDigest, IsTheSha256OfWhatFollows) {
 
 // Every byte of the seal and of the file's beginning is changed, and a sample of the others. Each change must
 // be found, and none may lead to a crash.
-TEST(FileDigest, NoChangedByteIsReadAsATrace) {
-  const TestFolder folder("file_digest_test");
+TEST_F(FileDigest, NoChangedByteIsReadAsATrace) {
   write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
   const std::string bytes = bytes_of(folder / "trace.h5");
   std::size_t tried = 0;
@@ -57,8 +59,7 @@ std::string with_addresses_from_the_start(std::string bytes) {
   return bytes;
 }
 
-TEST(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
-  const TestFolder folder("file_digest_test");
+TEST_F(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
   write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
   EXPECT_FALSE(was_opened_for_writing(folder / "trace.h5"));
   const std::string opened = with_addresses_from_the_start(bytes_of(folder / "trace.h5"));
@@ -76,8 +77,7 @@ TEST(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
   EXPECT_EQ(seal_state_of(folder / "changed.h5"), SealState::broken);
 }
 
-TEST(FileDigest, OtherHdf5FilesHaveNone) {
-  const TestFolder folder("file_digest_test");
+TEST_F(FileDigest, OtherHdf5FilesHaveNone) {
   const auto write = [&](const char* schema, const char* name) {
     Hdf5Writer hdf5(Hdf5Writer::Finished::no);
     hdf5.attribute("/", "schema", schema);

@@ -1,16 +1,18 @@
 #include "analysis/storage/hdf5_appender.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "tests/analysis/storage/system_answers.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::hdf5_appender_test {
 namespace {
+
+struct AppendedFile : testing::Test {
+  const TestFolder folder{"hdf5_appender"};
+};
 
 using Number = Hdf5Appender::Number;
 
@@ -19,13 +21,7 @@ std::vector<T> numbers_of(const Hdf5Reader& file, const std::string& dataset) {
   return std::get<std::vector<T>>(file.column(dataset).values);
 }
 
-std::size_t files_in(const TestFolder& folder) {
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder.path()),
-                                                std::filesystem::directory_iterator()));
-}
-
-TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
-  const TestFolder folder("hdf5_appender");
+TEST_F(AppendedFile, GrownDatasetsAreReadAgainAndSealed) {
   const auto file = folder / "grown.h5";
   {
     Hdf5Appender out(file);
@@ -50,7 +46,7 @@ TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
     out.finish();
   }
   EXPECT_EQ(seal_state_of(file), SealState::valid);
-  EXPECT_EQ(files_in(folder), 1u);
+  EXPECT_EQ(files_in(folder.path()).size(), 1u);
   const Hdf5Reader in(file);
   EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/2");
   const Column x = in.column("/a/x");
@@ -65,8 +61,7 @@ TEST(Hdf5Appender, GrownDatasetsAreReadAgainAndSealed) {
 }
 
 // Rows that are already compressed are appended between rows that the library compresses.
-TEST(Hdf5Appender, TakesDeflatedRows) {
-  const TestFolder folder("hdf5_appender");
+TEST_F(AppendedFile, TakesDeflatedRows) {
   std::vector<std::uint16_t> depth;
   std::vector<std::uint32_t> colour;
   {
@@ -97,18 +92,16 @@ TEST(Hdf5Appender, TakesDeflatedRows) {
   EXPECT_EQ(numbers_of<double>(in, "/colour"), std::vector<double>(colour.begin(), colour.end()));
 }
 
-TEST(Hdf5Appender, RefusesADeviceThatItWouldReplace) {
+TEST_F(AppendedFile, RefusesADeviceThatItWouldReplace) {
   EXPECT_HAS(refusal([] { Hdf5Appender("/dev/null"); }), "/dev/null: is a device: expected a file");
 }
 
-TEST(Hdf5Appender, LeavesNoFileIfItIsNotFinished) {
-  const TestFolder folder("hdf5_appender");
+TEST_F(AppendedFile, LeavesNoFileIfItIsNotFinished) {
   { Hdf5Appender out(folder / "left.h5"); }
-  EXPECT_EQ(files_in(folder), 0u);
+  EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
-TEST(Hdf5Appender, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
-  const TestFolder folder("hdf5_appender");
+TEST_F(AppendedFile, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
   const auto file = folder.write("old.h5", "old");
   { Hdf5Appender out(file); }
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
@@ -117,21 +110,16 @@ TEST(Hdf5Appender, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
   EXPECT_EQ(seal_state_of(file), SealState::valid);
 }
 
-TEST(Hdf5Appender, NamesTheFileThatCannotBeWritten) {
-  const TestFolder folder("hdf5_appender");
+TEST_F(AppendedFile, NamesTheFileThatCannotBeWritten) {
   EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
   EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");
   // The limit of 0 bytes acts like a full disk: the file is created, and its first bytes find no room.
-  rlimit old{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
-  const rlimit none{0, old.rlim_max};
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
-  const std::string message = refusal([&] { Hdf5Appender out(folder / "x.h5"); });
-  setrlimit(RLIMIT_FSIZE, &old);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_HAS(message, "x.h5: cannot be written (File too large)");
-  EXPECT_EQ(files_in(folder), 0u);
+  {
+    const NoRoom limit(0);
+    EXPECT_HAS(refusal([&] { Hdf5Appender out(folder / "x.h5"); }),
+               "x.h5: cannot be written (File too large)");
+  }
+  EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
 }  // namespace

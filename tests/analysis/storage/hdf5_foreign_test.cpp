@@ -16,6 +16,11 @@
 namespace remote_touch::hdf5_foreign_test {
 namespace {
 
+struct ForeignAttributes : testing::Test {
+  const TestFolder folder{"hdf5_foreign_test"};
+};
+using ForeignDatasets = ForeignAttributes;
+
 namespace fs = std::filesystem;
 
 Handle new_file(const fs::path& file) {
@@ -65,8 +70,7 @@ std::string refusal_of(const fs::path& file) {
   return refusal([&] { read_hdf5(file); });
 }
 
-TEST(ForeignAttributes, ListsOfTextsAreReadWhole) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignAttributes, ListsOfTextsAreReadWhole) {
   {
     const Handle file = new_file(folder / "x.h5");
     write_texts(file, "axes", std::string("x\0\0\0y\0\0\0time", 12), 4, H5T_STR_NULLPAD);
@@ -81,8 +85,7 @@ TEST(ForeignAttributes, ListsOfTextsAreReadWhole) {
   EXPECT_EQ(content.datasets[0].second.long_name.size(), 4000u * 8 + 3999 * 2);
 }
 
-TEST(ForeignAttributes, EndWhereTheirTypeSays) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignAttributes, EndWhereTheirTypeSays) {
   {
     const Handle file = new_file(folder / "x.h5");
     write_texts(file, "by a zero", std::string("ab\0cd", 5), 5, H5T_STR_NULLTERM);
@@ -97,8 +100,7 @@ TEST(ForeignAttributes, EndWhereTheirTypeSays) {
   EXPECT_EQ(attribute(found, "full"), "abcde");
 }
 
-TEST(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
   {
     const Handle file = new_file(folder / "x.h5");
     const hsize_t three = 3;
@@ -118,8 +120,7 @@ TEST(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
   for (const auto& [name, text] : found) EXPECT_EQ(text, "") << name;
 }
 
-TEST(ForeignAttributes, KeepLongNames) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignAttributes, KeepLongNames) {
   const std::string name(1000, 'n');
   write_texts(new_file(folder / "x.h5"), name.c_str(), "text", 4, H5T_STR_NULLPAD);
   EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), name), "text");
@@ -136,8 +137,7 @@ void add_enumeration(const fs::path& path, const std::vector<std::pair<const cha
   add_dataset(new_file(path), "data", type, {{3}});
 }
 
-TEST(ForeignDatasets, NamesBelongToTheirValues) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, NamesBelongToTheirValues) {
   add_enumeration(folder / "x.h5", {{"two", 2}, {"zero", 0}, {"one", 1}});
   EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.value_names,
             (std::vector<std::string>{"zero", "one", "two"}));
@@ -147,8 +147,7 @@ TEST(ForeignDatasets, NamesBelongToTheirValues) {
   }
 }
 
-TEST(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {
   for (const hsize_t width : {hsize_t{1} << 31, hsize_t{1} << 32, (hsize_t{1} << 32) + 3}) {
     add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {{0, width}});
     EXPECT_HAS(refusal_of(folder / "x.h5"), "data has rows of " + std::to_string(width) + " values");
@@ -157,8 +156,7 @@ TEST(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {
   EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.length(), 0u);
 }
 
-TEST(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
   const hsize_t many = hsize_t{1} << 29;
   const Shape shapes[] = {{{many}},
                           {{many}, {4096}},
@@ -175,8 +173,7 @@ TEST(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
 }
 
 // Data that compress well are read: deflate's best ratio is 1032 to 1.
-TEST(ForeignDatasets, ZerosThatAreCompressedAreRead) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, ZerosThatAreCompressedAreRead) {
   const std::vector<double> zeros(1'000'000);
   {
     const Handle file = new_file(folder / "x.h5");
@@ -188,8 +185,7 @@ TEST(ForeignDatasets, ZerosThatAreCompressedAreRead) {
 }
 
 // A file may state that its values are in another file, which may belong to anybody.
-TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
   folder.write("secret", std::string(800, 's'));
   {
     const Handle file = new_file(folder / "x.h5");
@@ -203,8 +199,7 @@ TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data has its values in another file");
 }
 
-TEST(ForeignDatasets, AreRefusedByNameIfTheyAreOfOtherKinds) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, AreRefusedByNameIfTheyAreOfOtherKinds) {
   add_dataset(new_file(folder / "x.h5"), "data", H5T_STD_REF_OBJ, {{3}});
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data is neither numbers nor texts of one length");
   add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {});
@@ -212,8 +207,7 @@ TEST(ForeignDatasets, AreRefusedByNameIfTheyAreOfOtherKinds) {
 }
 
 // 32 bits would clip them, so they are read as doubles, which are exact up to 2^53.
-TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
-  const TestFolder folder("hdf5_foreign_test");
+TEST_F(ForeignDatasets, LongIntegersKeepTheirValues) {
   const std::vector<std::int64_t> values{0, -1, 1'000'000'000'000, -9'007'199'254'740'991};
   {
     const Handle file = new_file(folder / "x.h5");

@@ -79,7 +79,7 @@ TEST(OpenHdf5, PrintsNothingWhenTheFirstCallFails) {
 TEST(OpenHdf5, PrintsNothingInAnotherThread) {
   const TestFolder folder("hdf5_handle_test");
   Hdf5Writer hdf5;
-  hdf5.columns("/", {{"x", "m", "", std::vector<double>{1, 2}, 1, {}}}, "");
+  hdf5.columns("/", {{"x", "m", "", std::vector<double>{1, 2}}}, "");
   hdf5.save(folder / "x.h5");
   const auto source = open_hdf5(folder / "x.h5");
   testing::internal::CaptureStderr();
@@ -92,7 +92,7 @@ TEST(OpenHdf5, PrintsNothingInAnotherThread) {
 TEST(OpenHdf5, NamesADatasetThatIsMissing) {
   const TestFolder folder("hdf5_handle_test");
   Hdf5Writer hdf5;
-  hdf5.columns("/", {{"x", "m", "", std::vector<double>{1, 2}, 1, {}}}, "");
+  hdf5.columns("/", {{"x", "m", "", std::vector<double>{1, 2}}}, "");
   hdf5.save(folder / "x.h5");
   for (const bool in_child : {false, true}) {
     const auto source = in_child ? open_hdf5_in_child(folder / "x.h5") : open_hdf5(folder / "x.h5");

@@ -1,6 +1,9 @@
-// Results of write(), rename() and ftruncate() in this program, which a test can set.
+// Results of write(), rename() and ftruncate() in this program, which a test can set, and a full disk.
 #pragma once
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <initializer_list>
 #include <vector>
 
@@ -39,6 +42,26 @@ class FailedTruncation {
   ~FailedTruncation();
   FailedTruncation(const FailedTruncation&) = delete;
   FailedTruncation& operator=(const FailedTruncation&) = delete;
+};
+
+// No file of this process can grow beyond this size as long as this object exists, as on a full disk.
+class NoRoom {
+ public:
+  explicit NoRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit less{bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &less);
+  }
+  ~NoRoom() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  NoRoom(const NoRoom&) = delete;
+  NoRoom& operator=(const NoRoom&) = delete;
+
+ private:
+  rlimit old_{};
+  void (*handler_)(int);
 };
 
 }  // namespace remote_touch

@@ -18,10 +18,10 @@ SweepResult empty_grid(const std::vector<int>& lengths, int replicates) {
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     std::vector<double> values(static_cast<std::size_t>(lengths[i]));
     std::iota(values.begin(), values.end(), 0.0);
-    result.axes.push_back({"axis" + std::to_string(i), "1", "", values, 1, {}});
+    result.axes.push_back({"axis" + std::to_string(i), "1", "", values});
   }
   result.replicates = replicates;
-  result.measures = {{"other", "1", "", {}, 1, {}}, {"popped_through", "1", "", {}, 1, {}}};
+  result.measures = {{"other", "1", "", {}}, {"popped_through", "1", "", {}}};
   result.start(true);
   return result;
 }

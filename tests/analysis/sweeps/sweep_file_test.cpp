@@ -22,6 +22,11 @@
 namespace remote_touch::sweep_file_test {
 namespace {
 
+struct SweepFile : testing::Test {
+  const TestFolder folder{"sweep_file_test"};
+};
+using SweepFileInProgress = SweepFile;
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // 2 x 3 cells of 2 replicates, with runs that are done, failed and pending, and numbers that a careless
@@ -29,9 +34,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 SweepResult awkward(int replicates = 2, bool refined = true) {
   SweepResult result;
   result.axes = {{"rule", "1", "renderer.rule", std::vector<std::int32_t>{0, 1}, 1, {"fixed", "variable"}},
-                 {"sigma_m", "m", "scenario.sigma_m", std::vector<double>{0, 0.1, 1.0 / 3}, 1, {}}};
+                 {"sigma_m", "m", "scenario.sigma_m", std::vector<double>{0, 0.1, 1.0 / 3}}};
   result.replicates = replicates;
-  result.measures = {{"first", "1", "a measure", {}, 1, {}}, {"second", "N", "another", {}, 1, {}}};
+  result.measures = {{"first", "1", "a measure", {}}, {"second", "N", "another", {}}};
   result.note_kinds = {"other", "no contact", "frames unused"};
   result.start(refined);
   const double values[] = {0.1, -0.0, 5e-324, 1.0 / 3, -1e308, kNan};
@@ -75,8 +80,7 @@ void expect_same(const SweepResult& a, const SweepResult& b) {
 
 const TextAttributes kAttributes = {{"command", "remote-touch sweep x"}, {"config", "{}"}, {"shard", "1/2"}};
 
-TEST(SweepFile, ReadsBackWhatWasWritten) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, ReadsBackWhatWasWritten) {
   for (const int replicates : {1, 2, 1000})  // 1000: the arrays are chunked and compressed
     for (const bool refined : {false, true}) {
       const SweepResult result = awkward(replicates, refined);
@@ -92,8 +96,7 @@ TEST(SweepFile, ReadsBackWhatWasWritten) {
     }
 }
 
-TEST(SweepFile, NotesAreNotPartOfTheDigest) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, NotesAreNotPartOfTheDigest) {
   SweepResult other = awkward();
   other.notes[0] ^= 7;
   const std::string sum = write_sweep(folder / "x.h5", awkward(), kAttributes);
@@ -101,8 +104,7 @@ TEST(SweepFile, NotesAreNotPartOfTheDigest) {
   EXPECT_EQ(write_sweep(folder / "z.h5", without_notes(awkward()), kAttributes), sum);
 }
 
-TEST(SweepFile, AResultWithoutNotesIsRead) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, AResultWithoutNotesIsRead) {
   SweepResult result = without_notes(awkward());
   write_sweep(folder / "x.h5", result, kAttributes);
   EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), "note_kinds"), "");
@@ -112,8 +114,7 @@ TEST(SweepFile, AResultWithoutNotesIsRead) {
   expect_same(read_sweep(folder / "y.h5").result, result);
 }
 
-TEST(SweepFile, NotesWithoutANameAreRefused) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, NotesWithoutANameAreRefused) {
   for (const std::int32_t unnamed : {8, -1}) {
     SweepResult result = awkward();
     result.notes[2] = unnamed;
@@ -141,8 +142,7 @@ TEST(SweepResult, CountsTheFinishedRunsWithEachKindOfNote) {
   EXPECT_TRUE(note_counts(without_notes(awkward())).empty());
 }
 
-TEST(SweepFile, TheDigestIsOfEveryValue) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, TheDigestIsOfEveryValue) {
   const std::string sum = write_sweep(folder / "x.h5", awkward(), kAttributes);
   const auto expect_another = [&](auto&& change) {
     SweepResult other = awkward();
@@ -158,8 +158,7 @@ TEST(SweepFile, TheDigestIsOfEveryValue) {
   EXPECT_EQ(write_sweep(folder / "y.h5", awkward(), {{"command", "another"}}), sum);
 }
 
-TEST(SweepInProgress, ItsFinishedRunsAreRead) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, ItsFinishedRunsAreRead) {
   SweepResult result = awkward();
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   EXPECT_EQ(std::filesystem::file_size(folder / "x.h5"), size_in_progress(result, kAttributes));
@@ -180,8 +179,7 @@ TEST(SweepInProgress, ItsFinishedRunsAreRead) {
 }
 
 // Each byte of one run's values is changed in turn. The run is then pending, and no other run changes.
-TEST(SweepInProgress, ARunWrittenInPartIsPending) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, ARunWrittenInPartIsPending) {
   SweepResult result = awkward();
   result.error.assign(result.run_count(), "");
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
@@ -208,8 +206,7 @@ TEST(SweepInProgress, ARunWrittenInPartIsPending) {
   EXPECT_HAS(refusal([&] { read_sweep(folder.write("mad.h5", mad)); }), "damaged (a state is unknown)");
 }
 
-TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, ValuesOfAnotherRunDoNotPass) {
   const SweepResult result = awkward();
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   std::string swapped = bytes_of(folder / "x.h5");
@@ -222,8 +219,7 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
 }
 
 // A run that no round requested stays not sampled, whatever its bytes are.
-TEST(SweepInProgress, DamageRequestsNoRuns) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, DamageRequestsNoRuns) {
   SweepResult result = awkward();
   result.state[4] = RunState::not_sampled, result.round[4] = -1;
   for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[4] = kNan;
@@ -233,8 +229,7 @@ TEST(SweepInProgress, DamageRequestsNoRuns) {
   EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
 }
 
-TEST(SweepInProgress, NoticesThatItsFileWasMoved) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, NoticesThatItsFileWasMoved) {
   const auto file = folder / "x.h5";
   const SweepResult result = awkward();
   write_sweep_in_progress(file, result, kAttributes);
@@ -255,8 +250,7 @@ RunInChild replacing(const std::filesystem::path& file, int at, int& asked) {
   };
 }
 
-TEST(SweepInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
   const auto file = folder / "x.h5";
   for (int at = 0; at < kQuestions; ++at) {
     write_sweep_in_progress(file, awkward(), kAttributes);
@@ -269,8 +263,7 @@ TEST(SweepInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
   }
 }
 
-TEST(SweepInProgress, IsReadAgainWhenItIsReplacedDuringReading) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, IsReadAgainWhenItIsReplacedDuringReading) {
   const auto file = folder / "x.h5";
   for (int at = 0; at < kQuestions; ++at) {
     write_sweep_in_progress(file, awkward(), kAttributes);
@@ -282,8 +275,7 @@ TEST(SweepInProgress, IsReadAgainWhenItIsReplacedDuringReading) {
 }
 
 // The file is replaced as if by a program that never stops.
-TEST(SweepInProgress, IsRefusedIfItIsReplacedAllTheTime) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFileInProgress, IsRefusedIfItIsReplacedAllTheTime) {
   const auto file = folder / "x.h5";
   write_sweep_in_progress(file, awkward(), kAttributes);
   const RunInChild run = [&](const ChildLimits& limits, ChildReader reader, const std::string& question) {
@@ -293,8 +285,7 @@ TEST(SweepInProgress, IsRefusedIfItIsReplacedAllTheTime) {
   EXPECT_HAS(refusal([&] { read_sweep(file, run); }), "was replaced by another program while it was read");
 }
 
-TEST(SweepFile, DamageIsRefused) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, DamageIsRefused) {
   const auto why = [&](const std::string& bytes) {
     const auto file = folder.write("damaged.h5", bytes);
     const std::string message = refusal([&] { read_sweep(file); });
@@ -325,8 +316,7 @@ TEST(SweepFile, DamageIsRefused) {
 }
 
 // A program changes a value and seals the file again.
-TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
-  const TestFolder folder("sweep_file_test");
+TEST_F(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   const auto file = folder / "x.h5";
   write_sweep(file, awkward(), kAttributes);
   const std::string seal = sha256_of_file(file, kSealBlockSize), value = raw(1.0 / 3);
@@ -339,48 +329,38 @@ TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
   EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest does not match)");
 }
 
-// 2^64 runs are 0 in 64-bit arithmetic.
-TEST(SweepFile, AxesThatAreNamedRepeatedlyAreRefused) {
-  const TestFolder folder("sweep_file_test");
-  const auto why = [&](int times, const std::vector<double>& values) {
-    std::string axes = "a";
-    for (int i = 1; i < times; ++i) axes += ",a";
-    Hdf5Writer hdf5;
-    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", axes}, {"measures", "m"}});
-    hdf5.group("/sweep");
-    hdf5.columns("/sweep", {{"a", "1", "", values, 1, {}}, {"m", "1", "", std::vector<double>{}, 1, {}}}, "");
-    hdf5.save(folder / "x.h5");
-    return refusal([&] { read_sweep(folder / "x.h5"); });
-  };
-  EXPECT_HAS(why(64, {0, 1}), "damaged (its axes have too many values)");
-  EXPECT_HAS(why(1, {}), "damaged (it has no runs)");
+// Returns the reason why a sweep with these axes and columns is refused.
+std::string refusal_of(const TestFolder& folder, const std::string& axes, const std::vector<Column>& columns,
+                       Hdf5Writer::Finished finished = Hdf5Writer::Finished::yes) {
+  Hdf5Writer hdf5(finished);
+  hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", axes}, {"measures", "m"}});
+  hdf5.group("/sweep");
+  hdf5.columns("/sweep", columns, "");
+  hdf5.save(folder / "x.h5");
+  return refusal([&] { read_sweep(folder / "x.h5"); });
 }
 
-TEST(SweepFile, AnAxisWithAValueThatHasNoNameIsRefused) {
-  const TestFolder folder("sweep_file_test");
+// 2^64 runs are 0 in 64-bit arithmetic.
+TEST_F(SweepFile, AxesThatAreNamedRepeatedlyAreRefused) {
+  const Column none{"m", "1", "", std::vector<double>{}}, two{"a", "1", "", std::vector<double>{0, 1}};
+  const std::string axes = joined(std::vector<std::string>(64, "a"), ",");
+  EXPECT_HAS(refusal_of(folder, axes, {two, none}), "damaged (its axes have too many values)");
+  EXPECT_HAS(refusal_of(folder, "a", {{"a", "1", "", std::vector<double>{}}, none}),
+             "damaged (it has no runs)");
+}
+
+TEST_F(SweepFile, AnAxisWithAValueThatHasNoNameIsRefused) {
   for (const std::int32_t unnamed : {-1, 2}) {
     const Column axis{"a", "1", "", std::vector<std::int32_t>{0, unnamed}, 1, {"fixed", "variable"}};
-    Hdf5Writer hdf5;
-    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", "a"}, {"measures", "m"}});
-    hdf5.group("/sweep");
-    hdf5.columns("/sweep", {axis}, "");
-    hdf5.save(folder / "x.h5");
-    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }),
-               "damaged (/sweep/a has a value without a name)");
+    EXPECT_HAS(refusal_of(folder, "a", {axis}), "damaged (/sweep/a has a value without a name)");
   }
 }
 
-TEST(SweepFile, AnAxisThatIsNotThereIsNamed) {
-  const TestFolder folder("sweep_file_test");
-  for (const auto finished : {Hdf5Writer::Finished::yes, Hdf5Writer::Finished::no}) {
-    Hdf5Writer hdf5(finished);
-    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", "a,b"}, {"measures", "m"}});
-    hdf5.group("/sweep");
-    const std::vector<double> two{1, 2};
-    hdf5.columns("/sweep", {{"a", "1", "", two, 1, {}}, {"checksum", "1", "", two, 1, {}}}, "");
-    hdf5.save(folder / "x.h5");
-    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }), "x.h5: damaged (/sweep/b is missing)");
-  }
+TEST_F(SweepFile, AnAxisThatIsNotThereIsNamed) {
+  const std::vector<double> two{1, 2};
+  for (const auto finished : {Hdf5Writer::Finished::yes, Hdf5Writer::Finished::no})
+    EXPECT_HAS(refusal_of(folder, "a,b", {{"a", "1", "", two}, {"checksum", "1", "", two}}, finished),
+               "x.h5: damaged (/sweep/b is missing)");
 }
 
 }  // namespace

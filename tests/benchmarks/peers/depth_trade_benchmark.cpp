@@ -166,9 +166,5 @@ int main(int argc, char** argv) {
     const std::vector<Peer> all = everyone(noisy);
     for (std::size_t i = 0; i < all.size(); ++i) add_trade(truth, noise_mm, all[i], on_a_plane[i], plane);
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

@@ -93,9 +93,5 @@ int main(int argc, char** argv) {
   add_peers(truth, "raw", peers::normals_of_others(raw_points), true);
   add_peers(truth, "filtered", peers::normals_of_others(filtered_points), true);
   add_peers(truth, "filter", peers::filters_of_others(raw_points), false);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return run_benchmarks(argc, argv);
 }

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/naive_proxy.h"
 #include "tests/support/scenes.h"
 
@@ -25,8 +26,6 @@ namespace {
 // PCL keeps points in float, so a point this near to the sphere may be on either side. nanoflann excludes the
 // sphere itself. All other points must be the same.
 constexpr double kUndecided_m = 1e-6;
-
-bool mismatch = false;
 
 class Ours {
  public:
@@ -129,14 +128,14 @@ template <class Make>
 void add(const std::string& peer, const naive::Queries& queries, Make make) {
   const auto search = make();
   const std::string of = "/" + queries.name + "/" + peer;
-  benchmark::RegisterBenchmark(("query" + of).c_str(), [&queries, search](benchmark::State& state) {
+  const auto is_right = [&queries, search] {
     for (std::size_t i = 0; i < queries.balls.size(); ++i) {
       search->find(queries.balls[i]);
-      if (same(search->found(), queries.expected[i], queries.cloud, queries.balls[i])) continue;
-      mismatch = true;
-      state.SkipWithError("the index sets differ");
-      return;
+      if (!same(search->found(), queries.expected[i], queries.cloud, queries.balls[i])) return false;
     }
+    return true;
+  };
+  benchmarks::add("query" + of, is_right, [&queries, search](benchmark::State& state) {
     std::size_t i = 0, found = 0;
     for (auto _ : state) {
       found += search->find(queries.balls[i]);
@@ -146,7 +145,7 @@ void add(const std::string& peer, const naive::Queries& queries, Make make) {
     state.counters["found"] =
         benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
   });
-  benchmark::RegisterBenchmark(("prepare" + of).c_str(), [make](benchmark::State& state) {
+  benchmarks::add("prepare" + of, [make](benchmark::State& state) {
     for (auto _ : state) {
       const auto made = make();
       benchmark::DoNotOptimize(made.get());
@@ -181,9 +180,5 @@ int main(int argc, char** argv) {
     queries.push_back(naive::on_image("image_1.03m", naive::wave_image(1.03), centres));
   }
   for (const naive::Queries& each : queries) add_all(each);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch ? 1 : 0;
+  return benchmarks::run_benchmarks(argc, argv);
 }

@@ -216,9 +216,5 @@ int main(int argc, char** argv) {
     add_voxmap(surface, where, pose, "voxmap_0.5mm", 5e-4);
     add_voxmap(surface, where, pose, "voxmap_2mm", kSpacing_m);
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return mismatch_seen() ? 1 : 0;
+  return run_benchmarks(argc, argv);
 }

@@ -27,6 +27,7 @@ TEST(Colour, TheCornersOfTheCubeAreKnown) {
   expect_colour(0xFF00FF, 300, 1, 0.5);
   expect_colour(0x000000, 0, 0, 0);
   expect_colour(0xFFFFFF, 0, 0, 1);
+  expect_colour(0xAB00FF00, 120, 1, 0.5);  // bits above the three bytes are not part of the colour
 }
 
 // PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. The values from 0xFF800001 on are NaN as floats.
@@ -48,11 +49,6 @@ TEST(Colour, MixedColoursAreKnown) {
   expect_colour(0x330000, 0, 1, 51 / 510.0);       // dark, the same
   expect_colour(0x996666, 0, 51 / 255.0, 0.5);     // a mix of red and grey
   expect_colour(0x663399, 270, 0.5, 204 / 510.0);  // rebeccapurple of CSS: hsl(270, 50 %, 40 %)
-}
-
-// Bits above the three bytes are not part of the colour.
-TEST(Colour, OnlyTheLowerThreeBytesCount) {
-  expect_colour(0xAB00FF00, 120, 1, 0.5);
 }
 
 // The inverse conversion of CSS Color 4, which has no cases by the largest channel.

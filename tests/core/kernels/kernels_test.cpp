@@ -35,19 +35,13 @@ PointCloud random_points(int count, double half_width, unsigned seed, bool with_
 }
 
 PointCloud one_point(const Vec3& p, double r_f = 0) {
-  PointCloud cloud;
-  cloud.append(p);
+  PointCloud cloud = scenes::cloud_of({p});
   if (r_f > 0) cloud.fixture_radius_m.push_back(r_f);
   return cloud;
 }
 
-// The whole cloud in columns, padded.
 GatheredPoints columns(const PointCloud& cloud) {
-  GatheredPoints out;
-  out.reserve(cloud.size(), !cloud.fixture_radius_m.empty(), !cloud.stiffness_N_per_m.empty());
-  BruteForceSearch(cloud).gather({kOrigin, 1e6}, scenes::kernels(), out);
-  out.finish();
-  return out;
+  return scenes::gathered(BruteForceSearch(cloud));
 }
 
 Real radius_of(const PointCloud& cloud, std::size_t i) {

@@ -180,14 +180,6 @@ TEST(QuadraticProgram, AddingAllRowsAtOnceEqualsAddingEachRow) {
   }
 }
 
-TEST(QuadraticProgram, ClearRemovesAllRows) {
-  QuadraticProgram<6> program(20);
-  for (int k = 0; k < 20; ++k) program.add(axis(k % 6), 1 + k);
-  program.clear();
-  program.add(axis(5), 1);
-  EXPECT_EQ(program.nearest(Vector<6>::Zero()).y, axis(5));
-}
-
 TEST(QuadraticProgram, ATargetThatIsNotFiniteOrTooLargeStalls) {
   QuadraticProgram<6> program(1);
   program.add(axis(4), 1);

@@ -27,9 +27,7 @@ std::vector<double> shown(const FrameAverageSettings& s, const std::vector<doubl
     const auto points = average.next(*make_search(cloud));
     EXPECT_EQ(points->size(), cloud.size());
     EXPECT_EQ(points->organised_columns(), 20);
-    GatheredPoints all;
-    all.reserve(points->size(), false, false);
-    points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
+    const GatheredPoints all = scenes::gathered(*points);
     double height = kNaN;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all.index()[i] == 57) height = all.view().y[i];
@@ -75,9 +73,7 @@ TEST(FrameAverage, APointOfAnImageMovesAlongItsRay) {
     const DepthImage image{32, 32, std::vector<double>(32 * 32, depth)};
     points = average.next(*make_search(cloud_from_depth(image, camera, RigidTransform::Identity())));
   }
-  GatheredPoints all;
-  all.reserve(points->size(), false, false);
-  points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
+  const GatheredPoints all = scenes::gathered(*points);
   ASSERT_EQ(all.size(), 1024u);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double u = all.index()[i] % 32, v = all.index()[i] / 32;
@@ -88,12 +84,7 @@ TEST(FrameAverage, APointOfAnImageMovesAlongItsRay) {
 
 TEST(FrameAverage, AnEmptyFrameIsOneInWhichAllAreMissing) {
   FrameAverage average({}, scenes::kernels());
-  const auto count = [](const NeighbourSearch& points) {
-    GatheredPoints all;
-    all.reserve(points.size(), false, false);
-    points.gather({Vec3::Zero(), 10}, scenes::kernels(), all);
-    return all.size();
-  };
+  const auto count = [](const NeighbourSearch& points) { return scenes::gathered(points).size(); };
   average.next(*make_search(scenes::flat_grid(20)));
   average.next(*make_search(scenes::flat_grid(20)));
   EXPECT_EQ(count(*average.next(*make_search({}))), 400u);
@@ -111,9 +102,7 @@ TEST(FrameAverage, RegionsAndStiffnessAreThoseOfTheNewestFrame) {
   const auto points = average.next(*make_search(cloud));
   EXPECT_TRUE(points->has_regions());
   EXPECT_EQ(points->max_fixture_radius_m(), 0.01);
-  GatheredPoints all;
-  all.reserve(points->size(), true, true);
-  points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
+  const GatheredPoints all = scenes::gathered(*points);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all.view().radius[i], all.index()[i] == 7 ? 0.01 : 0.003);
     EXPECT_EQ(all.view().stiffness[i], 50);
@@ -132,10 +121,8 @@ TEST(BlockSearch, FindsWhatBruteForceFinds) {
   }
   search.finish();
   for (const double radius : {0.0, 0.004, 0.03, 0.2}) {
-    GatheredPoints a, b;
-    a.reserve(1003, true, false), b.reserve(1003, true, false);
-    oracle.gather({Vec3(0.01, -0.02, 0.005), radius}, scenes::kernels(), a);
-    search.gather({Vec3(0.01, -0.02, 0.005), radius}, scenes::kernels(), b);
+    const Ball ball{Vec3(0.01, -0.02, 0.005), radius};
+    const GatheredPoints a = scenes::gathered(oracle, ball), b = scenes::gathered(search, ball);
     ASSERT_EQ(a.size(), b.size()) << radius;
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a.index()[i], b.index()[i]);
   }

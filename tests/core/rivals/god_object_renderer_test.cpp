@@ -108,11 +108,7 @@ TEST(GodObject, NeverPassesAMeshThatRests) {
   GridMesh mesh(kDefault.max_edge_length_m);
   BruteForceSearch search(cloud);
   mesh.reserve(search.size());
-  GatheredPoints points;
-  points.reserve(search.size(), false, false);
-  search.gather({Vec3::Zero(), 1}, scenes::kernels(), points);
-  points.finish();
-  mesh.assign(points, 60, {Vec3::Zero(), 1});
+  mesh.assign(scenes::gathered(search, {Vec3::Zero(), 1}), 60, {Vec3::Zero(), 1});
   const PointCloud goals = scenes::random_cloud(60, 0.02, 11);
   Vec3 hip(0, 0.02, 0), proxy = r.step({hip}, 0).proxy_W;
   const auto is_above = [&](const Vec3& p) {  // parity of the crossings straight up: the mesh may overhang

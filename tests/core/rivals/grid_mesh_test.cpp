@@ -17,19 +17,11 @@ namespace {
 constexpr double kLimit_m = 0.004;
 const Ball kEverything{Vec3::Zero(), 1};
 
-GatheredPoints gathered(const NeighbourSearch& search, const Ball& ball) {
-  GatheredPoints points;
-  points.reserve(search.size(), false, false);
-  search.gather(ball, scenes::kernels(), points);
-  points.finish();
-  return points;
-}
-
 GridMesh mesh_of(const NeighbourSearch& search, const Ball& ball = kEverything) {
   GridMesh mesh(kLimit_m);
   mesh.reserve(search.size());
-  const GatheredPoints points = gathered(search, {ball.centre, ball.radius + kLimit_m});
-  mesh.assign(points, search.organised_columns(), ball);
+  mesh.assign(scenes::gathered(search, {ball.centre, ball.radius + kLimit_m}), search.organised_columns(),
+              ball);
   return mesh;
 }
 

@@ -45,8 +45,7 @@ PointCloud bumps(int n) {
 
 // A metaball of one point: w(q) = T at q = 0.5 for T = w(0.5).
 TEST(ImplicitSurfaceRenderer, OnePointIsABallOfTheRadiusWhereItsWeightIsTheThreshold) {
-  PointCloud cloud;
-  cloud.append(Vec3::Zero());
+  const PointCloud cloud = scenes::cloud_of({Vec3::Zero()});
   Settings p;
   p.threshold = 1 - 4.0 / 9 / 64 + 17.0 / 9 / 16 - 22.0 / 9 / 4;
   ImplicitSurfaceRenderer r = over(cloud, p);
@@ -89,8 +88,7 @@ TEST(ImplicitSurfaceRenderer, ProxyIsOnTheSurfaceWhileTheHipPressesAndSlides) {
   for (const Settings& p : kAll) {
     ImplicitSurfaceRenderer r = over(cloud, p);
     const PointSurface surface(p.surface, p.weight, p.support_radius_m, p.threshold);
-    Neighbourhood near(p.support_radius_m, scenes::kernels());
-    near.set_points(make_search(cloud));
+    Neighbourhood near = scenes::neighbourhood(make_search(cloud), p.support_radius_m);
     go(r, {-0.02, 0.03, 0}, {-0.02, -0.01, 0});
     for (int tick = 0; tick < 400; ++tick) {
       const RenderOutput out =

@@ -21,12 +21,6 @@ Vec3 force(PenaltyRenderer& r, const Vec3& hip, double time_s = 0) {
   return r.step({hip}, time_s).force_N;
 }
 
-PointCloud point_at(const Vec3& p) {
-  PointCloud cloud;
-  cloud.append(p);
-  return cloud;
-}
-
 // The nearest distance over a point of a dense plane is the height, and the normal points up.
 TEST(PenaltyRenderer, PushesByHowFarTheNearestPointIsInTheBall) {
   PenaltyRenderer r = over(scenes::flat_grid(61, 0.0005));
@@ -41,7 +35,7 @@ TEST(PenaltyRenderer, PushesByHowFarTheNearestPointIsInTheBall) {
 }
 
 TEST(PenaltyRenderer, IsZeroInFreeSpaceAndRisesFromZeroAtTheRim) {
-  PenaltyRenderer r = over(point_at(Vec3::Zero()));
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
   EXPECT_EQ(force(r, {0, kRadius_m, 0}), Vec3::Zero());
   EXPECT_EQ(force(r, {0.02, 0, 0}), Vec3::Zero());
   EXPECT_NEAR(force(r, {0, kRadius_m - 1e-6, 0}).y(), kStiffness_N_per_m * 1e-6, 1e-12);
@@ -66,7 +60,7 @@ TEST(PenaltyRenderer, PopsThrough) {
 TEST(PenaltyRenderer, TheDamperSlowsAlongTheNormalAndNeverPulls) {
   PenaltyParameters p;
   p.damping_Ns_per_m = 2;
-  PenaltyRenderer r = over(point_at(Vec3::Zero()), p);
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}), p);
   force(r, {0, 0.004, 0}, 0);
   const double spring = kStiffness_N_per_m * 0.0015;
   EXPECT_NEAR(force(r, {0, 0.0035, 0}, 0.001).y(), spring + 2 * 0.5, 1e-9);
@@ -76,36 +70,36 @@ TEST(PenaltyRenderer, TheDamperSlowsAlongTheNormalAndNeverPulls) {
 TEST(PenaltyRenderer, TheDamperSpreadsADifferenceOverMissedTicks) {
   PenaltyParameters p;
   p.damping_Ns_per_m = 2;
-  PenaltyRenderer r = over(point_at(Vec3::Zero()), p);
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}), p);
   force(r, {0, 0.004, 0}, 0);
   EXPECT_NEAR(force(r, {0, 0.003, 0}, 0.004).y(), kStiffness_N_per_m * 0.002 + 2 * 0.25, 1e-9);
 }
 
 // (5.5), (5.8): a point with a region and a stiffness of its own.
 TEST(PenaltyRenderer, TakesRegionsAndStiffnessOfThePoints) {
-  PointCloud cloud = point_at(Vec3::Zero());
+  PointCloud cloud = scenes::cloud_of({Vec3::Zero()});
   cloud.fixture_radius_m = {0.01}, cloud.stiffness_N_per_m = {250};
   PenaltyRenderer r = over(cloud);
   EXPECT_NEAR(force(r, {0, 0.012, 0}).y(), 250 * 0.003, 1e-6);
 }
 
 TEST(PenaltyRenderer, HasNoDirectionAtAPointUntilItHadOne) {
-  PenaltyRenderer fresh = over(point_at(Vec3::Zero()));
+  PenaltyRenderer fresh = over(scenes::cloud_of({Vec3::Zero()}));
   const RenderOutput out = fresh.step({Vec3::Zero()}, 0);
   EXPECT_EQ(out.status, RenderStatus::degenerate_normal);
   EXPECT_TRUE(out.force_N.isZero(0));
-  PenaltyRenderer r = over(point_at(Vec3::Zero()));
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
   force(r, {0, 0.001, 0});
   EXPECT_NEAR(force(r, Vec3::Zero()).y(), kStiffness_N_per_m * kRadius_m, 1e-12);
 }
 
 TEST(PenaltyRenderer, AnEmptyFrameHasNoForceAndAStaleOneIsReported) {
-  PenaltyRenderer r = over(point_at(Vec3::Zero()));
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
   r.on_frame(scenes::frame({}, 1));
   const RenderOutput empty = r.step({Vec3(0, 0.001, 0)}, 0.04);
   EXPECT_TRUE(empty.force_N.isZero(0));
   EXPECT_TRUE(std::isinf(empty.nearest_distance_m));
-  r.on_frame(scenes::frame(point_at(Vec3::Zero()), 0));
+  r.on_frame(scenes::frame(scenes::cloud_of({Vec3::Zero()}), 0));
   const RenderOutput stale = r.step({Vec3(0, 0.001, 0)}, 0.041);
   EXPECT_EQ(stale.status, RenderStatus::stale_frame_dropped);
   EXPECT_EQ(stale.frame_index, 1);
@@ -114,7 +108,7 @@ TEST(PenaltyRenderer, AnEmptyFrameHasNoForceAndAStaleOneIsReported) {
 
 // The base of all rivals; see RenderOutput::slave_W.
 TEST(PenaltyRenderer, SlaveIsNotSentAnywhereBeforeTheHipIsKnown) {
-  PenaltyRenderer r = over(point_at(Vec3::Zero()));
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
   const Vec3 lost = Vec3::Constant(std::nan("")), hip(0, 0.02, 0);
   EXPECT_TRUE(r.step({lost}, 0).slave_W.array().isNaN().all());
   EXPECT_EQ(r.step({hip}, 0.001).slave_W, hip);

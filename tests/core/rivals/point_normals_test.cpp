@@ -45,22 +45,17 @@ TEST(NearestPoints, PointsAtTheSameDistanceBelongTogether) {
 
 // Whatever was found before, a point beyond half a metre does not count.
 TEST(NearestPoints, AreThoseWithinHalfAMetre) {
-  PointCloud three;
-  three.append({0, 0, 0}), three.append({0.3, 0, 0}), three.append({0.6, 0, 0});
-  const auto search = make_search(three);
+  const auto search = make_search(scenes::cloud_of({{0, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}}));
   for (const double before_m : {0.001, 0.1, 0.2, 0.45}) {
-    PointCloud pair;
-    pair.append({0, 0, 0}), pair.append({before_m, 0, 0});
     NearestPoints nearest(scenes::kernels());
-    nearest.find(*make_search(pair), Vec3::Zero(), 2);
+    nearest.find(*make_search(scenes::cloud_of({{0, 0, 0}, {before_m, 0, 0}})), Vec3::Zero(), 2);
     EXPECT_NEAR(nearest.find(*search, Vec3::Zero(), 3), 0.3, 1e-15) << before_m;
     EXPECT_EQ(found_by(nearest).size(), 2u) << before_m;
   }
 }
 
 TEST(NearestPoints, AreAllIfThereAreFewPoints) {
-  PointCloud two;
-  two.append({0, 0, 0}), two.append({0.01, 0, 0});
+  const PointCloud two = scenes::cloud_of({{0, 0, 0}, {0.01, 0, 0}});
   NearestPoints nearest(scenes::kernels());
   EXPECT_NEAR(nearest.find(*make_search(two), Vec3::Zero(), 9), 0.01, 1e-15);
   EXPECT_EQ(nearest.find(*make_search(PointCloud{}), Vec3::Zero(), 9), 0);

@@ -19,8 +19,7 @@ const Vec3 kNoSide = Vec3::Zero();
 
 SurfaceSample sample(const PointSurface& surface, const PointCloud& cloud, const Vec3& p,
                      const Vec3& side = kNoSide) {
-  Neighbourhood near(kR, scenes::kernels());
-  near.set_points(make_search(cloud));
+  Neighbourhood near = scenes::neighbourhood(make_search(cloud), kR);
   const PointsView points = near.around(p).view();
   return surface.at(points, near.sum_grid(), p, side);
 }
@@ -33,8 +32,7 @@ double wendland(double q) {
 }
 
 TEST(PointSurface, AMetaballOfOnePointIsASphere) {
-  PointCloud cloud;
-  cloud.append({0.02, -0.01, 0.03});
+  const PointCloud cloud = scenes::cloud_of({{0.02, -0.01, 0.03}});
   for (const SurfaceWeight weight : {SurfaceWeight::wyvill, SurfaceWeight::wendland}) {
     const auto w = weight == SurfaceWeight::wyvill ? wyvill : wendland;
     const PointSurface surface(SurfaceKind::metaballs, weight, kR, 0.5);
@@ -51,8 +49,7 @@ TEST(PointSurface, AMetaballOfOnePointIsASphere) {
 }
 
 TEST(PointSurface, TwoMetaballsAddUp) {
-  PointCloud cloud;
-  cloud.append({-0.004, 0, 0}), cloud.append({0.004, 0, 0});
+  const PointCloud cloud = scenes::cloud_of({{-0.004, 0, 0}, {0.004, 0, 0}});
   const PointSurface surface(SurfaceKind::metaballs, SurfaceWeight::wyvill, kR, 0.5);
   EXPECT_NEAR(sample(surface, cloud, {0, 0.003, 0}).value, 0.5 - 2 * wyvill(0.5), 1e-12);
 }

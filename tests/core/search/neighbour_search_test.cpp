@@ -11,11 +11,9 @@
 namespace remote_touch::neighbour_search_test {
 namespace {
 
-std::vector<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball, const Kernels& kernels) {
-  GatheredPoints out;
-  out.reserve(search.size(), search.has_fixture_radius(), false);
-  search.gather(ball, kernels, out);
-  out.finish();
+std::vector<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball,
+                                 const Kernels& kernels = scenes::kernels()) {
+  const GatheredPoints out = scenes::gathered(search, ball, kernels);
   std::vector<std::uint32_t> index(out.index(), out.index() + out.size());
   std::sort(index.begin(), index.end());
   return index;
@@ -65,9 +63,7 @@ TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
   EXPECT_EQ(search.organised_columns(), 30);
   EXPECT_EQ(search.cloud().columns(), 0) << "its own points stand in another order";
   EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
-  GatheredPoints out;
-  out.reserve(search.size(), false, false);
-  search.gather({Vec3::Zero(), 1}, scenes::kernels(), out);
+  const GatheredPoints out = scenes::gathered(search);
   ASSERT_EQ(out.size(), grid.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::uint32_t row = out.index()[i] / 30, column = out.index()[i] % 30;
@@ -79,8 +75,7 @@ TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
 void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, double reach) {
   const PointCloud centres = scenes::random_cloud(300, reach, 5);
   std::size_t total = 0;
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-    if (isa > best_isa()) continue;
+  for (const Kernels* kernels : supported_kernels()) {
     for (std::size_t i = 0; i < centres.size(); ++i) {
       // Every other centre lies on a point, where distances are smallest.
       Vec3 centre = centres.point(i);
@@ -88,7 +83,7 @@ void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, do
       if (!centre.allFinite()) continue;
       const Ball ball{centre, 0.002 + 0.0005 * static_cast<double>(i)};
       const auto want = expected(cloud, ball);
-      ASSERT_EQ(found(search, ball, kernels_for(isa)), want) << "centre " << centre.transpose();
+      ASSERT_EQ(found(search, ball, *kernels), want) << "centre " << centre.transpose();
       total += want.size();
     }
   }
@@ -123,10 +118,7 @@ TEST(NeighbourSearch, EachPointIsFoundByTheRadiusOfItsOwnRegion) {
 TEST(NeighbourSearch, KeepsARegionWithItsPoint) {
   PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));
-  GatheredPoints out;
-  out.reserve(cloud.size(), true, true);
-  UniformGridSearch(cloud, 0.01).gather({Vec3(0.02, 0.01, 0), 0.03}, scenes::kernels(), out);
-  out.finish();
+  const GatheredPoints out = scenes::gathered(UniformGridSearch(cloud, 0.01), {Vec3(0.02, 0.01, 0), 0.03});
   ASSERT_GT(out.size(), 50u);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const std::uint32_t i = out.index()[k];
@@ -143,14 +135,14 @@ TEST(NeighbourSearch, WindowAndGridAgreeOnOneCloud) {
   for (std::size_t i = 0; i < cloud.size(); i += 37) {
     if (std::isnan(cloud.x[i])) continue;
     const Ball ball{cloud.point(i) + Vec3(0.002, 0, 0), 0.012};
-    EXPECT_EQ(found(window, ball, scenes::kernels()), found(grid, ball, scenes::kernels()));
+    EXPECT_EQ(found(window, ball), found(grid, ball));
   }
 }
 
 TEST(NeighbourSearch, BallAroundTheCameraIsSearchedWhole) {
   const PointCloud cloud = image_cloud();
   const Ball ball{cloud.image->X_WC.translation(), 0.55};
-  EXPECT_EQ(found(ImageWindowSearch(cloud), ball, scenes::kernels()), expected(cloud, ball));
+  EXPECT_EQ(found(ImageWindowSearch(cloud), ball), expected(cloud, ball));
 }
 
 TEST(NeighbourSearch, OutliersDoNotBlowUpTheGrid) {
@@ -158,17 +150,17 @@ TEST(NeighbourSearch, OutliersDoNotBlowUpTheGrid) {
   cloud.append({1e6, -1e6, 1e6});
   const UniformGridSearch search(cloud, 0.001);
   const Ball ball{Vec3(1e6, -1e6, 1e6), 0.01};
-  EXPECT_EQ(found(search, ball, scenes::kernels()), (std::vector<std::uint32_t>{500}));
+  EXPECT_EQ(found(search, ball), (std::vector<std::uint32_t>{500}));
 }
 
 TEST(NeighbourSearch, HandlesEmptyCloudsAndMissingPoints) {
   PointCloud missing;
   missing.append({std::nan(""), std::nan(""), std::nan("")});
   const Ball ball{Vec3::Zero(), 10};
-  EXPECT_TRUE(found(BruteForceSearch(PointCloud{}), ball, scenes::kernels()).empty());
-  EXPECT_TRUE(found(UniformGridSearch(PointCloud{}, 0.01), ball, scenes::kernels()).empty());
-  EXPECT_TRUE(found(BruteForceSearch(missing), ball, scenes::kernels()).empty());
-  EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball, scenes::kernels()).empty());
+  EXPECT_TRUE(found(BruteForceSearch(PointCloud{}), ball).empty());
+  EXPECT_TRUE(found(UniformGridSearch(PointCloud{}, 0.01), ball).empty());
+  EXPECT_TRUE(found(BruteForceSearch(missing), ball).empty());
+  EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball).empty());
 }
 
 TEST(NeighbourSearch, ABallAtANanPositionHoldsNoPoint) {
@@ -176,9 +168,9 @@ TEST(NeighbourSearch, ABallAtANanPositionHoldsNoPoint) {
   for (int axis = 0; axis < 3; ++axis) {
     Ball ball{Vec3::Zero(), 10};
     ball.centre[axis] = std::nan("");
-    EXPECT_TRUE(found(BruteForceSearch(unordered), ball, scenes::kernels()).empty());
-    EXPECT_TRUE(found(UniformGridSearch(unordered, 0.01), ball, scenes::kernels()).empty());
-    EXPECT_TRUE(found(ImageWindowSearch(cloud), ball, scenes::kernels()).empty());
+    EXPECT_TRUE(found(BruteForceSearch(unordered), ball).empty());
+    EXPECT_TRUE(found(UniformGridSearch(unordered, 0.01), ball).empty());
+    EXPECT_TRUE(found(ImageWindowSearch(cloud), ball).empty());
   }
 }
 

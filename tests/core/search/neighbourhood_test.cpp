@@ -21,8 +21,7 @@ std::shared_ptr<const NeighbourSearch> cloud_with_fixtures() {
 TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
   const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
-  Neighbourhood near(kReach, scenes::kernels());
-  near.set_points(points);
+  Neighbourhood near = scenes::neighbourhood(points, kReach);
   const PointCloud places = scenes::random_cloud(2000, 0.04, 22);
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Vec3 p = places.point(k);
@@ -45,9 +44,7 @@ TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
     other.append({0, 0, 0.3});
     other.fixture_radius_m.assign(other.size(), 0);
     other.fixture_radius_m.back() = radius;
-    Neighbourhood near(kReach, scenes::kernels());
-    near.set_points(make_search(other));
-    return near.around(Vec3::Zero()).size();
+    return scenes::neighbourhood(make_search(other), kReach).around(Vec3::Zero()).size();
   };
   EXPECT_GT(size_with(0), 0u);
   EXPECT_EQ(size_with(0.25), size_with(0));
@@ -57,12 +54,8 @@ TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
 // The first hit found in hops equals that of the whole cloud at once, including regions beside the tube.
 TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   const auto points = cloud_with_fixtures();
-  GatheredPoints all;
-  all.reserve(points->size(), true, false);
-  points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
-  all.finish();
-  Neighbourhood near(kReach, scenes::kernels());
-  near.set_points(points);
+  const GatheredPoints all = scenes::gathered(*points);
+  Neighbourhood near = scenes::neighbourhood(points, kReach);
   const PointCloud from = scenes::random_cloud(400, 0.3, 23), to = scenes::random_cloud(400, 0.06, 24);
   int hits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -81,8 +74,7 @@ TEST(Neighbourhood, FirstHitDoesNotUseTheListOfAnotherPosition) {
   PointCloud cloud;
   const Vec3 p(0.1, 0.08, -0.06), u = Vec3::UnitX();
   cloud.append(p + 0.0105 * u);
-  Neighbourhood near(kReach, scenes::kernels());
-  near.set_points(make_search(cloud));
+  Neighbourhood near = scenes::neighbourhood(make_search(cloud), kReach);
   const double hit = near.first_hit(p, u, kContactRadius, 0.006);
   EXPECT_NEAR(hit, 0.0105 - kContactRadius, 1e-12);
   EXPECT_EQ(near.around(-p).size(), 0u);

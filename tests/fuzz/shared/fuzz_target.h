@@ -15,7 +15,8 @@ struct Target {
   void (*read)(std::string_view bytes);
 };
 
-// The targets of this program: one in a program of libFuzzer, all in the program that replays the corpus.
+// The targets of this program: those of one file in a program of libFuzzer, all in the program that replays
+// the corpus.
 std::vector<Target>& targets();
 
 // A global of this type in a target's file adds the target to the list.

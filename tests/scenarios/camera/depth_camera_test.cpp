@@ -32,10 +32,12 @@ std::size_t pixel(int u, int v) {
 RayHit table(const Vec3& origin, const Vec3& ray) {
   return ray.y() < 0 ? RayHit{-origin.y() / ray.y(), kTable} : RayHit{};
 }
-// A block on the table fills the half-space x > 0 below its top.
-RayHit table_and_block(const Vec3& origin, const Vec3& ray) {
-  const RayHit top = {(kBlockTop_m - origin.y()) / ray.y(), kBlock};
-  return origin.x() + top.t * ray.x() > 0 ? top : table(origin, ray);
+// A block on the table fills the half-space above 0 along the axis (0: x, 2: z), below its top.
+RayCast table_and_block(int axis) {
+  return [axis](const Vec3& origin, const Vec3& ray) {
+    const RayHit top = {(kBlockTop_m - origin.y()) / ray.y(), kBlock};
+    return origin[axis] + top.t * ray[axis] > 0 ? top : table(origin, ray);
+  };
 }
 
 TEST(LookAt, AxesAreRightHandedAndTheWorldsUpIsUpInTheImage) {
@@ -111,24 +113,27 @@ TEST(DepthCamera, MeasuresNothingBeyondThreeMetres) {
 }
 
 TEST(DepthCamera, HolesAreOnlyNearEdgesAndKeepTheirColour) {
-  for (const int reach : {0, 1, 3}) {
-    DepthCameraSettings s = small();
-    s.hole_px = reach;
-    const DepthCamera camera = made(s);
-    const IdealView view = camera.view(table_and_block, true);
-    const PointCloud cloud = camera.measured(view, 0);
-    // The block's edge runs along the optical axis: between the middle columns.
-    for (int v = 0; v < 48; ++v)
-      for (int u = 0; u < 64; ++u) {
-        const std::size_t i = pixel(u, v);
-        EXPECT_EQ(view.hole[i] != 0, u >= 32 - reach && u < 32 + reach) << reach << ": " << u;
-        EXPECT_EQ(std::isnan(cloud.x[i]), view.hole[i] != 0);
-        EXPECT_EQ(cloud.colour[i], u < 32 ? kTable : kBlock);
-      }
-  }
+  for (const int axis : {0, 2})
+    for (const int reach : {0, 1, 3}) {
+      DepthCameraSettings s = small();
+      s.hole_px = reach;
+      const DepthCamera camera = made(s);
+      const IdealView view = camera.view(table_and_block(axis), true);
+      const PointCloud cloud = camera.measured(view, 0);
+      // The block's edge meets the optical axis: it is between the middle columns or rows.
+      for (int v = 0; v < 48; ++v)
+        for (int u = 0; u < 64; ++u) {
+          const std::size_t i = pixel(u, v);
+          const int beyond = axis == 0 ? u - 32 : v - 24;
+          EXPECT_EQ(view.hole[i] != 0, beyond >= -reach && beyond < reach) << reach << ": " << beyond;
+          for (const double c : {cloud.x[i], cloud.y[i], cloud.z[i]})
+            EXPECT_EQ(std::isnan(c), view.hole[i] != 0);
+          EXPECT_EQ(cloud.colour[i], beyond < 0 ? kTable : kBlock);
+        }
+    }
   DepthCameraSettings blind = small();
   blind.edge_jump_m = kBlockTop_m + 1e-9;
-  for (const char hole : made(blind).view(table_and_block, false).hole) EXPECT_EQ(hole, 0);
+  for (const char hole : made(blind).view(table_and_block(0), false).hole) EXPECT_EQ(hole, 0);
 }
 
 TEST(DepthCamera, DepthsAreWholeDisparities) {
@@ -149,19 +154,21 @@ TEST(DepthCamera, DepthsAreWholeDisparities) {
 TEST(DepthCamera, NoiseHasTheSetDeviationAndDependsOnTheFrame) {
   DepthCameraSettings s = small();
   s.noise_per_m = 0.01;
-  const DepthCamera camera = made(s), other = made(s, 2);
-  const IdealView view = camera.view(table, false);
-  double sum = 0, squares = 0, count = 0;
-  for (int frame = 0; frame < 20; ++frame) {
-    for (const double y : camera.measured(view, frame).y) sum += y, squares += y * y, ++count;
-  }
-  const double sigma = 0.01 * 0.5 * 0.5;
-  EXPECT_NEAR(sum / count, 0, 5 * sigma / std::sqrt(count));
-  EXPECT_NEAR(std::sqrt(squares / count), sigma, 5 * sigma / std::sqrt(2 * count));
+  for (const double z : {0.5, 1.0}) {
+    s.camera_position_m = {0, z, 0};
+    const DepthCamera camera = made(s), other = made(s, 2);
+    const IdealView view = camera.view(table, false);
+    double sum = 0, squares = 0, count = 0;
+    for (int frame = 0; frame < 20; ++frame)
+      for (const double y : camera.measured(view, frame).y) sum += y, squares += y * y, ++count;
+    const double sigma = 0.01 * z * z;
+    EXPECT_NEAR(sum / count, 0, 5 * sigma / std::sqrt(count));
+    EXPECT_NEAR(std::sqrt(squares / count), sigma, 5 * sigma / std::sqrt(2 * count));
 
-  EXPECT_EQ(camera.measured(view, 7).y, camera.measured(view, 7).y);
-  EXPECT_NE(camera.measured(view, 7).y, camera.measured(view, 8).y);
-  EXPECT_NE(camera.measured(view, 7).y, other.measured(view, 7).y);
+    EXPECT_EQ(camera.measured(view, 7).y, camera.measured(view, 7).y);
+    EXPECT_NE(camera.measured(view, 7).y, camera.measured(view, 8).y);
+    EXPECT_NE(camera.measured(view, 7).y, other.measured(view, 7).y);
+  }
 }
 
 }  // namespace

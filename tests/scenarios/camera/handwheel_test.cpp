@@ -15,6 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kCentre(0.02, -0.03, 0.06);
 constexpr double kRing_m = 0.045;
+const Handwheel kWheel(kCentre, kRing_m);
 
 // Oracle for the parts, tubes about a curve and cylinders: each has an inequality of its own, and samples.
 struct Cylinder {
@@ -96,11 +97,10 @@ std::vector<Vec3> places(int count, double half_width, unsigned seed) {
 }
 
 TEST(Handwheel, TheDistanceOutsideIsThatToTheNearestSample) {
-  const Handwheel wheel(kCentre, kRing_m);
   const Surface surface;
   int outside = 0;
   for (const Vec3& p : places(500, 0.08, 1)) {
-    const double distance = wheel.signed_distance(p), nearest = surface.nearest(p);
+    const double distance = kWheel.signed_distance(p), nearest = surface.nearest(p);
     ASSERT_EQ(distance < 0, inside(p)) << p.transpose();
     if (distance < 0) {
       EXPECT_GE(nearest, -distance - 1e-12) << "inside, the depth is at least the returned one";
@@ -114,9 +114,8 @@ TEST(Handwheel, TheDistanceOutsideIsThatToTheNearestSample) {
 }
 
 TEST(Handwheel, HasTheKnownDistances) {
-  const Handwheel wheel(kCentre, kRing_m);
   const auto at = [&](double x, double y, double z) {
-    return wheel.signed_distance(kCentre + Vec3(x, y, z));
+    return kWheel.signed_distance(kCentre + Vec3(x, y, z));
   };
   EXPECT_NEAR(at(0, 0, 0.03), 0.02, 1e-15) << "before the hub";
   EXPECT_NEAR(at(0, 0.062, 0), 0.010, 1e-15) << "above the ring";
@@ -130,13 +129,12 @@ TEST(Handwheel, HasTheKnownDistances) {
 
 // Compares cast(), from cameras all around, with a march of small steps to the first position inside.
 TEST(Handwheel, RaysHitItWhereAMarchDoes) {
-  const Handwheel wheel(kCentre, kRing_m);
   const std::vector<Vec3> origins = places(400, 0.5, 2), targets = places(400, 0.07, 3);
   int hits = 0;
   for (std::size_t i = 0; i < origins.size(); ++i) {
     if (inside(origins[i])) continue;
     const Vec3 ray = (0.1 + 0.01 * static_cast<double>(i)) * (targets[i] - origins[i]).normalized();
-    const double t = wheel.cast(origins[i], ray), step = 1e-4 / ray.norm();
+    const double t = kWheel.cast(origins[i], ray), step = 1e-4 / ray.norm();
     double found = kInfinity;
     for (double s = 0; s * ray.norm() < 1.5 && std::isinf(found); s += step)
       if (inside(origins[i] + s * ray)) {
@@ -147,13 +145,13 @@ TEST(Handwheel, RaysHitItWhereAMarchDoes) {
       }
     if (std::isinf(found) && !std::isinf(t)) {
       // The march can step over slivers. The hit of cast() must still be on the surface.
-      EXPECT_LE(std::abs(wheel.signed_distance(origins[i] + t * ray)), 1e-9);
+      EXPECT_LE(std::abs(kWheel.signed_distance(origins[i] + t * ray)), 1e-9);
       continue;
     }
     ASSERT_EQ(std::isinf(t), std::isinf(found)) << i;
     if (std::isinf(t)) continue;
     ++hits;
-    EXPECT_LE(std::abs(wheel.signed_distance(origins[i] + t * ray)), 1e-9) << i;
+    EXPECT_LE(std::abs(kWheel.signed_distance(origins[i] + t * ray)), 1e-9) << i;
     EXPECT_LE(t * ray.norm(), found * ray.norm() + 1e-9) << i;
     // If cast() hits earlier, the march has stepped over a sliver within the last 10 mm.
     EXPECT_GE(t * ray.norm(), found * ray.norm() - 0.01) << i;
@@ -163,26 +161,23 @@ TEST(Handwheel, RaysHitItWhereAMarchDoes) {
 
 // cast() and signed_distance() agree: no ray hits the surface before it has travelled the distance.
 TEST(Handwheel, NoRayMeetsItBeforeTheDistance) {
-  const Handwheel wheel(kCentre, kRing_m);
   const std::vector<Vec3> directions = places(20, 1, 4);
   for (const Vec3& p : places(200, 0.1, 5)) {
-    const double distance = wheel.signed_distance(p);
+    const double distance = kWheel.signed_distance(p);
     for (const Vec3& displacement : directions)
-      EXPECT_GE(wheel.cast(p, displacement.normalized()), std::max(0.0, distance - 1e-8)) << p.transpose();
+      EXPECT_GE(kWheel.cast(p, displacement.normalized()), std::max(0.0, distance - 1e-8)) << p.transpose();
   }
 }
 
 TEST(Handwheel, ARayFromInsideHitsAtOnceAndARayAwayMisses) {
-  const Handwheel wheel(kCentre, kRing_m);
-  EXPECT_EQ(wheel.cast(kCentre, {0, 0, 1}), 0);
-  EXPECT_EQ(wheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, 1}), kInfinity);
-  EXPECT_NEAR(wheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, -1}), 0.19, 1e-9);
-  EXPECT_NEAR(wheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, -0.5}), 0.38, 2e-9) << "t counts in rays";
+  EXPECT_EQ(kWheel.cast(kCentre, {0, 0, 1}), 0);
+  EXPECT_EQ(kWheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, 1}), kInfinity);
+  EXPECT_NEAR(kWheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, -1}), 0.19, 1e-9);
+  EXPECT_NEAR(kWheel.cast(kCentre + Vec3(0, 0, 0.2), {0, 0, -0.5}), 0.38, 2e-9) << "t counts in rays";
 }
 
 TEST(Handwheel, NormalsPointAwayFromTheSurface) {
-  const Handwheel wheel(kCentre, kRing_m);
-  const auto at = [&](double x, double y, double z) { return wheel.normal(kCentre + Vec3(x, y, z)); };
+  const auto at = [&](double x, double y, double z) { return kWheel.normal(kCentre + Vec3(x, y, z)); };
   EXPECT_NEAR((at(0, 0, 0.010) - Vec3(0, 0, 1)).norm(), 0, 1e-8);
   EXPECT_NEAR((at(0.052, 0, 0) - Vec3(1, 0, 0)).norm(), 0, 1e-8);
   EXPECT_NEAR((at(0.038, 0, 0) - Vec3(-1, 0, 0)).norm(), 0, 1e-8);

@@ -249,7 +249,7 @@ TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
       EXPECT_LE(lost, 750 + 3.2 * 0.007 * 0.007 / (0.002 * 0.002) * 1.7);  // the last hole, seen aslant
       expect_round_holes(before, frames.back(), view_direction, 0.007);
     }
-    EXPECT_FALSE(same_bits(frames[0].x, frames[1].x)) << "elsewhere in each frame";
+    EXPECT_FALSE(scenes::same_bits(frames[0].x, frames[1].x)) << "elsewhere in each frame";
   }
 }
 

@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 #include <tuple>
 #include <vector>
 
+#include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
+#include "scenarios/camera/valve_tank.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "scenarios/synthetic/listed_points.h"
 #include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/wedge.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scenario_test {
@@ -25,21 +28,10 @@ Made made(const typename Made::Settings& settings = {}) {
   return Made(settings, kKey, scenes::kernels());
 }
 
-// Compares bits and not values, so that a hole (NaN) equals itself.
-bool same_bits(const PointCloud& a, const PointCloud& b) {
-  const auto same = [](const std::vector<double>& c, const std::vector<double>& d) {
-    return c.size() == d.size() && std::memcmp(c.data(), d.data(), c.size() * sizeof(double)) == 0;
-  };
-  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
-}
-
 using Found = std::tuple<std::uint32_t, double, double, double>;  // number and position of a point
 
 std::vector<Found> gathered(const NeighbourSearch& search, const Ball& ball) {
-  GatheredPoints out;
-  out.reserve(search.size(), false, false);
-  search.gather(ball, scenes::kernels(), out);
-  out.finish();
+  const GatheredPoints out = scenes::gathered(search, ball);
   const PointsView view = out.view();
   std::vector<Found> found;
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -65,9 +57,9 @@ void expect_pure_frames(const typename Made::Settings& settings, const std::vect
   std::vector<PointCloud> clouds;
   for (const int frame : frames) clouds.push_back(one.cloud(frame));
   for (std::size_t i = frames.size(); i-- > 0;) {
-    EXPECT_TRUE(same_bits(other.cloud(frames[i]), clouds[i])) << frames[i];
+    EXPECT_TRUE(scenes::same_clouds(other.cloud(frames[i]), clouds[i])) << frames[i];
     if (i > 0) {
-      EXPECT_FALSE(same_bits(clouds[i], clouds[i - 1])) << "frames differ";
+      EXPECT_FALSE(scenes::same_points(clouds[i], clouds[i - 1])) << "frames differ";
     }
     const Vec3 middle = clouds[i].point(clouds[i].size() / 3);
     const Ball ball{middle.allFinite() ? middle : Vec3::Zero(), 0.02};
@@ -85,7 +77,13 @@ TEST(Scenario, FramesArePure) {
   TriangleWave::Settings wave;
   wave.noise_sigma_m = 0.001;
   expect_pure_frames<TriangleWave>(wave, {0});
+  MovingPlane::Settings plane;  // it waits in the first 30 frames
+  plane.noise_sigma_m = 0.001;
+  expect_pure_frames<MovingPlane>(plane, {0, 1, 40});
+  expect_pure_frames<Wedge>({}, {0, 40, 70, 110});
   expect_pure_frames<CameraScene>({}, {0, 1, 7});
+  expect_pure_frames<BeatingHeart>({}, {3, 9});
+  expect_pure_frames<ValveTank>({}, {3, 9});
 }
 
 TEST(FlatGrid, PointsLieOnACentredGrid) {
@@ -104,7 +102,7 @@ TEST(FlatGrid, NoiseIsRedrawnOrKept) {
   EXPECT_GT(made<FlatGrid>(s).frame_count(), 1000000);
   s.redraw_noise = false;
   EXPECT_EQ(made<FlatGrid>(s).frame_count(), 1);
-  EXPECT_TRUE(same_bits(made<FlatGrid>(s).cloud(0), made<FlatGrid>(s).cloud(3)));
+  EXPECT_TRUE(scenes::same_points(made<FlatGrid>(s).cloud(0), made<FlatGrid>(s).cloud(3)));
   double squares = 0;
   for (const double y : made<FlatGrid>(s).cloud(0).y) squares += y * y;
   EXPECT_NEAR(std::sqrt(squares / 1e4), 0.002, 5 * 0.002 / std::sqrt(2e4));  // standard error for 10^4 draws
@@ -145,31 +143,6 @@ TEST(MovingLift, LazyPointsAreTheCloudBitForBit) {
       EXPECT_GT(empty, 5u);
     }
   }
-}
-
-TEST(MovingLift, HeightsFollowTheSpeeds) {
-  MovingLift::Settings s;
-  s.noise_sigma_m = 0;
-  const MovingLift lift = made<MovingLift>(s);
-  ASSERT_EQ(lift.frame_count(), 26);
-  double v = 0.1, y = -0.05;
-  for (int j = 0; j < lift.frame_count(); ++j) {
-    if (j > 15) v += 3.0 / 30;
-    if (j > 0) y += v / 30;
-    // The time of a frame is rounded, and the plane moves a little within the rounding error.
-    EXPECT_NEAR(lift.surface_height(0, 0, lift.captured_s(j)), y, 1e-15) << j;
-    EXPECT_NEAR(lift.cloud(j).y[17], y, 1e-15) << j;
-    const double between = lift.surface_height(0, 0, lift.captured_s(j) + 0.25 / 30);
-    const double next_v = j >= 15 ? v + 0.1 : v;
-    // The surface follows the parabola of the acceleration, which begins one update before the rise ends.
-    const double sag = j >= 14 ? 0.5 * 0.25 * 0.75 * 3 / 900 : 0;
-    EXPECT_NEAR(between, j == 25 ? y : y + 0.25 * next_v / 30 - sag, 1e-15) << j;
-    // The truth that a renderer is judged by is the newest frame's plane.
-    EXPECT_NEAR(lift.signed_distance({0, 0.01, 0}, lift.captured_s(j)), 0.01 - y, 1e-15) << j;
-    EXPECT_NEAR(lift.signed_distance({0, -1, 0}, lift.captured_s(j) + 0.9 / 30), -1 - y, 1e-15) << j;
-  }
-  EXPECT_NEAR(y, 10 * 0.1 / 30 + 3.0 * 10 * 11 / 2 / 900, 1e-15);  // closed form of the sum
-  EXPECT_NEAR(lift.surface_height(0, 0, 100), y, 1e-15);
 }
 
 // Corners half a period apart, alternately below and above by an amplitude that grows along the grid.
@@ -228,23 +201,19 @@ TEST(Scenario, HasNoBackBesideItsPoints) {
   for (const double y : {0.01, 0.0, -0.01}) EXPECT_TRUE(std::isnan(points.signed_distance({0, y, 0}, 0)));
 }
 
-// Depth along the optical axis. The camera looks from (0.3, 0.6) to (0, 0.02) in the (x, y) plane.
-const Vec3 kForward = Vec3(-0.3, -0.58, 0).normalized();
-double axis_depth(const Vec3& p) {
-  return (p - Vec3(0.3, 0.6, -0.02)).dot(kForward);
-}
+// The camera looks from (0.3, 0.6) to (0, 0.02) in the (x, y) plane.
 std::size_t pixel(int u, int v) {
   return static_cast<std::size_t>(v) * 640 + static_cast<std::size_t>(u);
 }
 
-CameraScene camera(double noise, double quantisation) {
+CameraScene ideal_camera() {
   CameraScene::Settings s;
-  s.camera.noise_per_m = noise, s.camera.quantisation_per_m = quantisation;
+  s.camera.noise_per_m = s.camera.quantisation_per_m = 0;
   return made<CameraScene>(s);
 }
 
 TEST(CameraScene, TableIsSeenAtItsDistance) {
-  const CameraScene scene = camera(0, 0);
+  const CameraScene scene = ideal_camera();
   const PointCloud cloud = scene.cloud(0);
   // The axis passes between ramp and box. A row looks down by its tangent (v - 239.5) / 525.
   for (const int v : {200, 239, 240, 300})
@@ -258,7 +227,7 @@ TEST(CameraScene, TableIsSeenAtItsDistance) {
 }
 
 TEST(CameraScene, NoiseFreePointsLieOnTheSurfaceInSight) {
-  const CameraScene scene = camera(0, 0);
+  const CameraScene scene = ideal_camera();
   const PointCloud cloud = scene.cloud(0);
   int on_solids = 0;
   for (std::size_t i = 0; i < cloud.size(); i += 3) {
@@ -270,67 +239,6 @@ TEST(CameraScene, NoiseFreePointsLieOnTheSurfaceInSight) {
     on_solids += p.y() > 0.001;
   }
   EXPECT_GT(on_solids, 5000);
-}
-
-TEST(CameraScene, DepthIsQuantisedInWholeDisparities) {
-  const double step = 0.00285;
-  const CameraScene scene = camera(0, step);
-  const PointCloud cloud = scene.cloud(0);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (std::isnan(cloud.x[i])) continue;
-    const double z = axis_depth(cloud.point(i)), level = 1 / (step * z);
-    ASSERT_NEAR(level, std::round(level), 1e-9);
-    // Half a disparity is half a step of 0.00285 z^2, to first order in step z.
-    ASSERT_LT(std::abs(z - scene.true_depth().z_m[i]), 0.5 * step * z * z * (1 + step * z));
-  }
-}
-
-TEST(CameraScene, NoiseGrowsWithTheSquareOfTheDepth) {
-  const double noise = 0.0012;
-  const CameraScene scene = camera(noise, 0);
-  const PointCloud cloud = scene.cloud(4);
-  for (const bool far : {false, true}) {
-    double sum = 0, squares = 0, count = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const double truth = scene.true_depth().z_m[i];
-      if (std::isnan(cloud.x[i]) || (truth > 0.7) != far) continue;
-      const double error = (axis_depth(cloud.point(i)) - truth) / (noise * truth * truth);
-      sum += error, squares += error * error, ++count;
-    }
-    ASSERT_GT(count, 30000);
-    EXPECT_NEAR(sum / count, 0, 5 / std::sqrt(count));
-    EXPECT_NEAR(std::sqrt(squares / count), 1, 5 / std::sqrt(2 * count));
-  }
-}
-
-// An edge runs between two pixels. Pixels within hole_px = 2 of it have no depth; all pixels farther away
-// have one.
-TEST(CameraScene, HolesAreOnlyAlongDepthEdges) {
-  const CameraScene scene = made<CameraScene>();
-  const std::vector<double>& truth = scene.true_depth().z_m;
-  const PointCloud cloud = scene.cloud(0);
-  std::vector<double> to_edge(truth.size(), 10);
-  const auto mark = [&](double u, double v) {
-    for (int y = std::max(0, static_cast<int>(v) - 4); y <= std::min(479, static_cast<int>(v) + 4); ++y)
-      for (int x = std::max(0, static_cast<int>(u) - 4); x <= std::min(639, static_cast<int>(u) + 4); ++x)
-        to_edge[pixel(x, y)] = std::min(to_edge[pixel(x, y)], std::max(std::abs(x - u), std::abs(y - v)));
-  };
-  for (int v = 0; v < 479; ++v)
-    for (int u = 0; u < 639; ++u) {
-      const double z = truth[pixel(u, v)];
-      if (std::abs(z - truth[pixel(u + 1, v)]) > 0.02) mark(u + 0.5, v);
-      if (std::abs(z - truth[pixel(u, v + 1)]) > 0.02) mark(u, v + 0.5);
-    }
-  int holes = 0, valid = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const int missing = std::isnan(cloud.x[i]) + std::isnan(cloud.y[i]) + std::isnan(cloud.z[i]);
-    EXPECT_TRUE(missing == 0 || missing == 3);
-    EXPECT_TRUE(to_edge[i] > 2 || missing) << "a point beside an edge: " << i;
-    EXPECT_TRUE(to_edge[i] <= 2 || !missing || std::isnan(truth[i])) << "a hole away from edges: " << i;
-    holes += missing && std::isfinite(truth[i]), valid += !missing;
-  }
-  EXPECT_GT(holes, 500);
-  EXPECT_GT(valid, 0.8 * 640 * 480);
 }
 
 }  // namespace

@@ -60,13 +60,6 @@ TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
             (Shares{0, 0, 1}));
 }
 
-// The colour in the palette determines the selection, not the index.
-TEST_F(ImageMasks, MayHaveAPalette) {
-  const std::uint8_t index[4] = {0, 1, 2, 1}, palette[9] = {0, 0, 7, 0, 0, 0, 255, 255, 255};
-  const fs::path file = folder_.write_png("palette.png", 2, 2, PNG_FORMAT_RGB_COLORMAP, index, palette, 3);
-  EXPECT_EQ(weights(file, image(2, 2)), (Shares{1, 0, 1, 0}));
-}
-
 TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
   PointCloud cloud = image(2, 1);
   cloud.x[0] = cloud.y[0] = cloud.z[0] = std::numeric_limits<double>::quiet_NaN();
@@ -92,10 +85,6 @@ TEST_F(ImageMasks, AreRefusedIfTheyCannotBeRead) {
   EXPECT_THROW(ImageMask mask(settings(missing)), MissingRecording);
   const fs::path text = folder_.write("text.png", "no image at all");
   EXPECT_HAS(why(text), text.string() + ": ");
-  const std::string whole = bytes_of(grey({0, 1, 2, 3}, 2));
-  const fs::path cut = folder_.write("cut.png", whole.substr(0, whole.size() / 2));
-  EXPECT_HAS(why(cut), cut.string() + ": ");
-  EXPECT_HAS(why(folder_.path()), folder_.path().string());
   const std::uint16_t deep[2] = {0, 1};
   const fs::path depth = folder_.write_png("depth.png", 2, 1, PNG_FORMAT_LINEAR_Y, deep);
   EXPECT_HAS(why(depth), depth.string() + ": ");

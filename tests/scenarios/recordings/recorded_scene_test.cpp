@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/rotation.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -16,6 +17,18 @@ namespace remote_touch::recorded_scene_test {
 namespace {
 
 constexpr int kSide = 16;
+
+class RecordedSceneTest : public testing::Test {
+ protected:
+  const TestFolder folder_{"recorded_scene_test"};
+};
+
+// Writes the camera of images of 3 x 2 pixels into this folder of the test's folder.
+void write_camera(const TestFolder& folder, const std::string& rate_hz, const std::string& below = "") {
+  folder.write(below + "camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                                      "depth_scale_m": 0.001, "frame_rate_hz": )" +
+                                          rate_hz + "}");
+}
 
 // Two walls: 0.5 m away in columns 0 to 8, and 0.7 m away from column 9 on.
 RecordedScene::Settings two_walls(const TestFolder& folder) {
@@ -35,9 +48,8 @@ Vec3 seen(double u, double v, double z) {
   return {(u - 7.5) / 100 * z, (v - 7.5) / 100 * z, z};
 }
 
-TEST(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
-  const TestFolder folder("recorded_scene_test");
-  const RecordedScene scene(two_walls(folder), {}, scenes::kernels());
+TEST_F(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
+  const RecordedScene scene(two_walls(folder_), {}, scenes::kernels());
   EXPECT_NEAR(scene.signed_distance(seen(4, 8, 0.49), 0), 0.01, 1e-12);
   EXPECT_NEAR(scene.signed_distance(seen(4, 8, 0.52), 0), -0.02, 1e-12);
   EXPECT_NEAR(scene.signed_distance(seen(13, 8, 0.69), 0), 0.01, 1e-12);
@@ -46,9 +58,8 @@ TEST(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
 
 // Depth edges are found in the camera's depth and not in the base frame's z, which may be negative or lie in
 // the wall.
-TEST(RecordedSceneTest, KnowsTheSameSurfaceForAnyCameraPose) {
-  const TestFolder folder("recorded_scene_test");
-  RecordedScene::Settings settings = two_walls(folder);
+TEST_F(RecordedSceneTest, KnowsTheSameSurfaceForAnyCameraPose) {
+  RecordedScene::Settings settings = two_walls(folder_);
   const RecordedScene as_recorded(settings, {}, scenes::kernels());
   for (const Vec3& turn : {Vec3(180, 0, 0), Vec3(0, 90, 0), Vec3(-90, 0, 0), Vec3(30, 40, 50)})
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1, -2, -3), Vec3(0, 0, 2)}) {
@@ -69,11 +80,9 @@ TEST(RecordedSceneTest, KnowsTheSameSurfaceForAnyCameraPose) {
 
 // A sloping wall in 4 x 3 pixels, seen from (0, 0, 2) against the z axis. The points keep the coordinates of
 // the file.
-TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
-  const TestFolder folder("recorded_scene_test");
+TEST_F(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
   std::string pcd = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
-  const std::string at_origin = "VIEWPOINT 0 0 0 1 0 0 0";
-  pcd.replace(pcd.find(at_origin), at_origin.size(), "VIEWPOINT 0 0 2 0 1 0 0");
+  pcd = seen_from(pcd, "0 0 2 0 1 0 0");
   const auto point = [](int u, int v) {
     const double depth = 1.5 + 0.05 * u;
     return Vec3((u - 1.5) / 100 * depth, -(v - 1) / 100.0 * depth, 2 - depth);
@@ -84,7 +93,7 @@ TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
     pcd += "\n";
   }
   RecordedScene::Settings settings;
-  settings.path = folder.write("x.pcd", pcd).string();
+  settings.path = folder_.write("x.pcd", pcd).string();
   settings.camera_position_m = {0, 1, 0};  // origin of the file's coordinates in the base frame
   settings.truth_radius_m = 0.03;          // the wall is steep
   const RecordedScene scene(settings, {}, scenes::kernels());
@@ -97,15 +106,13 @@ TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
   EXPECT_LT(scene.signed_distance(cloud.point(6) - 0.01 * to_viewpoint, 0), -0.001);
 }
 
-TEST(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
-  const TestFolder folder("recorded_scene_test");
+TEST_F(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
   const std::string at_origin = organised_pcd({16, 12, 20, 25, 7.25, 5.5}, 0);
-  std::string elsewhere = at_origin;
-  const std::string viewpoint = "VIEWPOINT 0 0 0 1 0 0 0";
-  elsewhere.replace(elsewhere.find(viewpoint), viewpoint.size(), "VIEWPOINT 0 0.5 -2 1 0 0 0");
-  folder.write("r/0.pcd", at_origin), folder.write("r/1.pcd", elsewhere), folder.write("r/2.pcd", elsewhere);
+  const std::string elsewhere = seen_from(at_origin, "0 0.5 -2 1 0 0 0");
+  folder_.write("r/0.pcd", at_origin), folder_.write("r/1.pcd", elsewhere),
+      folder_.write("r/2.pcd", elsewhere);
   RecordedScene::Settings settings;
-  settings.path = (folder / "r").string();
+  settings.path = (folder_ / "r").string();
   const RecordedScene scene(settings, {}, scenes::kernels());
   for (const int frame : {0, 1, 1, 2}) scene.cloud(frame);
   const std::vector<Note> notes = scene.input_notes();
@@ -118,8 +125,7 @@ TEST(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
 
 // Points at NaN, at infinity or farther away than any room cannot be touched, so such a first frame is
 // refused.
-TEST(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
-  const TestFolder folder("recorded_scene_test");
+TEST_F(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
   RecordedScene::Settings settings;
   for (const char* value : {"nan", "inf", "1e30", "-inf"}) {
     std::string rows;
@@ -127,7 +133,7 @@ TEST(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
     for (const char* height : {"2", "1"}) {
       const char* width = *height == '2' ? "2" : "4";
       settings.path =
-          folder
+          folder_
               .write("x.pcd",
                      pcd_header("x y z", "4 4 4", "F F F", "1 1 1", width, height, "4", "ascii") + rows)
               .string();
@@ -137,22 +143,20 @@ TEST(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
           << value;
     }
   }
-  folder.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y, std::vector<std::uint16_t>(6).data());
-  folder.write("empty/camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
-                                        "depth_scale_m": 0.001, "frame_rate_hz": 20})");
-  settings.path = (folder / "empty").string();
+  folder_.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y, std::vector<std::uint16_t>(6).data());
+  write_camera(folder_, "20", "empty/");
+  settings.path = (folder_ / "empty").string();
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
              "its first frame has no point within scenario.max_depth_m = 3");
 }
 
 // A cloud in the coordinates of a map is refused. A single far point is not.
-TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
-  const TestFolder folder("recorded_scene_test");
+TEST_F(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
   RecordedScene::Settings settings;
   const std::string far = "1001 0 1\n1001 1 1\n1002 0 1\n1002 1 1\n";
   const auto problem = [&](const std::string& rows) {
     settings.path =
-        folder.write("x.pcd", pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows)
+        folder_.write("x.pcd", pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows)
             .string();
     return refusal([&] {
       RecordedScene(settings, {}, scenes::kernels());
@@ -185,36 +189,34 @@ RecordedScene::Settings recording_in(const TestFolder& folder) {
   return settings;
 }
 
-TEST(RecordedSceneTest, AFrameOfAnotherSizeIsRefusedByItsName) {
-  const TestFolder folder("recorded_scene_test");
-  write_plane(folder, "1.pcd", 8, 6), write_plane(folder, "2.pcd", 4, 3), write_plane(folder, "3.pcd", 48, 1);
-  RecordedScene::Settings settings = recording_in(folder);
+TEST_F(RecordedSceneTest, AFrameOfAnotherSizeIsRefusedByItsName) {
+  write_plane(folder_, "1.pcd", 8, 6), write_plane(folder_, "2.pcd", 4, 3),
+      write_plane(folder_, "3.pcd", 48, 1);
+  RecordedScene::Settings settings = recording_in(folder_);
   const RecordedScene scene(settings, {}, scenes::kernels());
   EXPECT_EQ(refusal([&] { scene.cloud(1); }),
-            (folder / "2.pcd").string() +
+            (folder_ / "2.pcd").string() +
                 ": has 4 x 3 points: expected 8 x 6 points, as the first frame "
                 "that is used has");
-  EXPECT_HAS(refusal([&] { scene.points(2); }), (folder / "3.pcd").string() + ": has points in no order");
+  EXPECT_HAS(refusal([&] { scene.points(2); }), (folder_ / "3.pcd").string() + ": has points in no order");
   settings.first_frame = 1, settings.last_frame = 1;
   EXPECT_TRUE(RecordedScene(settings, {}, scenes::kernels()).cloud(0).image) << "alone it can be used";
 }
 
-TEST(RecordedSceneTest, CloudsInNoOrderMayDifferInSize) {
-  const TestFolder folder("recorded_scene_test");
-  write_plane(folder, "1.pcd", 48, 1), write_plane(folder, "2.pcd", 30, 1);
-  const RecordedScene scene(recording_in(folder), {}, scenes::kernels());
+TEST_F(RecordedSceneTest, CloudsInNoOrderMayDifferInSize) {
+  write_plane(folder_, "1.pcd", 48, 1), write_plane(folder_, "2.pcd", 30, 1);
+  const RecordedScene scene(recording_in(folder_), {}, scenes::kernels());
   EXPECT_EQ(scene.cloud(0).size(), 48u);
   EXPECT_EQ(scene.cloud(1).size(), 30u);
 }
 
 // A frame in which nothing was measured is an image of holes, not a cloud without a camera.
-TEST(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
-  const TestFolder folder("recorded_scene_test");
-  write_plane(folder, "1.pcd", 4, 3);
+TEST_F(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
+  write_plane(folder_, "1.pcd", 4, 3);
   std::string empty = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
   for (int i = 0; i < 12; ++i) empty += "nan nan nan\n";
-  folder.write("2.pcd", empty);
-  const RecordedScene scene(recording_in(folder), {}, scenes::kernels());
+  folder_.write("2.pcd", empty);
+  const RecordedScene scene(recording_in(folder_), {}, scenes::kernels());
   const PointCloud cloud = scene.cloud(1);
   ASSERT_TRUE(cloud.image);
   EXPECT_NEAR(cloud.image->camera.fx, 100, 1e-3);
@@ -225,10 +227,9 @@ TEST(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
 
 // The axes are those of a lidar, x forward and z up. No point above 3 m may be lost, and a limit that the
 // user has set is refused, because it cannot apply.
-TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
-  const TestFolder folder("recorded_scene_test");
-  folder.write("1.pcd", xyz_header("3", "ascii") + "2 0 -1\n2 0 3.5\n2 0 -0.5\n");
-  RecordedScene::Settings settings = recording_in(folder);
+TEST_F(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
+  folder_.write("1.pcd", xyz_header("3", "ascii") + "2 0 -1\n2 0 3.5\n2 0 -0.5\n");
+  RecordedScene::Settings settings = recording_in(folder_);
   const RecordedScene scene(settings, {}, scenes::kernels());
   EXPECT_EQ(scene.cloud(0).z[1], 3.5);
   EXPECT_EQ(scene.points(0)->size(), 3u);
@@ -244,8 +245,7 @@ TEST(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
 
 // Writes the same image for each of these times.
 void write_stamped(const TestFolder& folder, const std::vector<std::string>& stamps) {
-  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
-                             "depth_scale_m": 0.001, "frame_rate_hz": 30})");
+  write_camera(folder, "30");
   std::string list;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     folder.write_depth("depth/" + std::to_string(i) + ".png", 1000);
@@ -254,18 +254,15 @@ void write_stamped(const TestFolder& folder, const std::vector<std::string>& sta
   folder.write("depth.txt", list);
 }
 
-std::vector<std::string> note_kinds_of(const RecordedScene& scene) {
+Kinds note_kinds_of(const RecordedScene& scene) {
   for (int i = 0; i < 4; ++i) scene.cloud(i);
-  std::vector<std::string> kinds;
-  for (const Note& note : scene.input_notes()) kinds.push_back(note.kind);
-  return kinds;
+  return kinds_of(scene.input_notes());
 }
 
-TEST(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
-  const TestFolder folder("recorded_scene_test");
-  RecordedScene::Settings settings = recording_in(folder);
+TEST_F(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
+  RecordedScene::Settings settings = recording_in(folder_);
   const auto scene = [&] { return RecordedScene(settings, {}, scenes::kernels()); };
-  write_stamped(folder, {"0", "33", "66", "100"});
+  write_stamped(folder_, {"0", "33", "66", "100"});
   EXPECT_EQ(note_kinds_of(scene()), std::vector<std::string>{"unusual rate"});
   EXPECT_HAS(scene().input_notes().back().text,
              "0.0303 Hz: stamps are read as seconds, these may be milliseconds");
@@ -274,27 +271,23 @@ TEST(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
   EXPECT_TRUE(note_kinds_of(scene()).empty());
   EXPECT_HAS(scene().input(), " at 30 Hz (recorded at 0.03 Hz), 3 x 2 pixels");
   settings.frame_rate_hz = 0;
-  write_stamped(folder, {"0", "0.033", "0.066", "100"});
+  write_stamped(folder_, {"0", "0.033", "0.066", "100"});
   EXPECT_TRUE(note_kinds_of(scene()).empty()) << "one long pause";
   EXPECT_HAS(scene().input(), " at 30.303 Hz with pauses of up to 99.934 s (0.03 Hz on average)");
 }
 
 // camera.json states its rate in hertz, so no number is read as a stamp.
-TEST(RecordedSceneTest, ARateThatIsGivenIsNotDoubted) {
-  const TestFolder folder("recorded_scene_test");
+TEST_F(RecordedSceneTest, ARateThatIsGivenIsNotDoubted) {
   for (const char* rate : {"0.5", "1200", "1e-9"}) {
-    folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
-                                    "depth_scale_m": 0.001, "frame_rate_hz": )" +
-                                    std::string(rate) + "}");
-    folder.write_depth("depth/0.png", 1000);
-    EXPECT_TRUE(note_kinds_of(RecordedScene(recording_in(folder), {}, scenes::kernels())).empty()) << rate;
+    write_camera(folder_, rate);
+    folder_.write_depth("depth/0.png", 1000);
+    EXPECT_TRUE(note_kinds_of(RecordedScene(recording_in(folder_), {}, scenes::kernels())).empty()) << rate;
   }
 }
 
-TEST(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
-  const TestFolder folder("recorded_scene_test");
-  write_stamped(folder, {"0", "0.1", "0.2", "0.3"});
-  RecordedScene::Settings settings = recording_in(folder);
+TEST_F(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
+  write_stamped(folder_, {"0", "0.1", "0.2", "0.3"});
+  RecordedScene::Settings settings = recording_in(folder_);
   const auto text_after = [&](const std::vector<int>& used) {
     const RecordedScene scene(settings, {}, scenes::kernels());
     for (const int frame : used) scene.cloud(frame);
@@ -316,10 +309,9 @@ TEST(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
 }
 
 // A loop keeps the recorded stamps; the first frame follows one mean period after the last.
-TEST(RecordedSceneTest, ALoopHasTheStampsOfItsFrames) {
-  const TestFolder folder("recorded_scene_test");
-  write_stamped(folder, {"5", "5.25", "5.5", "6.5"});
-  RecordedScene::Settings settings = recording_in(folder);
+TEST_F(RecordedSceneTest, ALoopHasTheStampsOfItsFrames) {
+  write_stamped(folder_, {"5", "5.25", "5.5", "6.5"});
+  RecordedScene::Settings settings = recording_in(folder_);
   settings.playback = RecordedScene::Playback::loop;
   const RecordedScene scene(settings, {}, scenes::kernels());
   EXPECT_EQ(scene.newest_frame(1.4), 2);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -28,13 +27,6 @@ const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind
 
 MovingShape made(const MovingShape::Settings& settings, const NoiseKey& key = kKey) {
   return MovingShape(settings, key, scenes::kernels());
-}
-
-bool same_bits(const PointCloud& a, const PointCloud& b) {
-  const auto same = [](const std::vector<double>& c, const std::vector<double>& d) {
-    return c.size() == d.size() && std::memcmp(c.data(), d.data(), c.size() * sizeof(double)) == 0;
-  };
-  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
 }
 
 Vec3 turned(const Vec3& p, double angle_deg) {
@@ -64,7 +56,7 @@ TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
     const MovingShape other = made(shape);
     ASSERT_EQ(other.frame_count(), one.frame_count());
     for (const int frame : {0, 1, 15, 17, 25})
-      EXPECT_TRUE(same_bits(one.cloud(frame), other.cloud(frame))) << frame;
+      EXPECT_TRUE(scenes::same_points(one.cloud(frame), other.cloud(frame))) << frame;
     for (int tick = 0; tick < 1000; tick += 7) {
       const double time_s = 0.001 * tick;
       const Vec3 p(0.01, 1e-4 * tick - 0.05, -0.02);
@@ -72,44 +64,6 @@ TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
       EXPECT_EQ(one.surface_height(0, 0, time_s), other.surface_height(0, 0, time_s)) << time_s;
     }
   }
-}
-
-TEST(MovingShape, AFlatLiftRendersAsAMovingLift) {
-  const std::string renderer = R"("renderer": {"name": "proxy"}, "trajectory": {"name": "press"},
-      "duration_s": 0.7)";
-  const std::string grid = R"("columns": 60, "rows": 60, "noise_sigma_m": 0.002, "start_depth_m": 0.03,
-      "start_velocity_m_per_s": 0.1, "rise_s": 0.4, "acceleration_m_per_s2": 2, "acceleration_s": 0.25)";
-  const auto run = [&](const std::string& name) {
-    const std::string text = R"({"scenario": {"name": ")" + name + "\", " + grid + "}, " + renderer + "}";
-    return simulate(Experiment::from_json(text, name), {});
-  };
-  const Trace lift = run("moving-lift"), shape = run("moving-shape");
-  EXPECT_EQ(lift.proxy_position_m, shape.proxy_position_m);
-  EXPECT_EQ(lift.force_N, shape.force_N);
-  EXPECT_EQ(lift.signed_distance_m, shape.signed_distance_m);
-}
-
-TEST(MovingShape, MayRecedeAndStartAboveZero) {
-  MovingShape::Settings s;
-  s.motion.lift.start_depth_m = -0.02, s.motion.lift.start_velocity_m_per_s = -0.3,
-  s.motion.lift.rise_s = 0.1;
-  const MovingShape shape = made(s);
-  for (int frame = 0; frame < 4; ++frame) {
-    EXPECT_NEAR(shape.cloud(frame).y[5], 0.02 - 0.01 * frame, 1e-15);
-    EXPECT_NEAR(shape.surface_height(0, 0, frame / 30.0), 0.02 - 0.01 * frame, 1e-15);
-  }
-  EXPECT_EQ(shape.frame_count(), 4);
-}
-
-TEST(MovingShape, MayWaitBeforeItRises) {
-  MovingShape::Settings s;
-  s.motion.lift.start_depth_m = 0.01, s.motion.lift.start_velocity_m_per_s = 0.3, s.motion.lift.rise_s = 0.1;
-  const MovingShape at_once = made(s);
-  s.motion.lift.wait_s = 5 / 30.0;
-  const MovingShape later = made(s);
-  EXPECT_EQ(later.frame_count(), at_once.frame_count() + 5);
-  for (int frame = 0; frame < 12; ++frame)
-    EXPECT_EQ(later.cloud(frame).y[7], at_once.cloud(std::max(0, frame - 5)).y[7]) << frame;
 }
 
 // --- motions in addition to the lift, and the true surface ---
@@ -122,7 +76,7 @@ TEST(MovingShape, NormalsAreThoseOfTheTrueSurface) {
     EXPECT_FALSE(made(s).cloud(3).has_normals());
     s.normals = true;
     const MovingShape shape = made(s);
-    EXPECT_TRUE(same_bits(shape.cloud(5), made(busy(kind)).cloud(5)));
+    EXPECT_TRUE(scenes::same_points(shape.cloud(5), made(busy(kind)).cloud(5)));
     for (const int frame : {0, 9}) {
       const PointCloud cloud = shape.cloud(frame);
       int tried = 0;
@@ -230,11 +184,11 @@ TEST(MovingShape, NoiseBelongsToKeyAndFrame) {
   const MovingShape clean = made(s);
   s.noise_sigma_m = 0.002;
   const MovingShape one = made(s), same = made(s), other = made(s, {9, 2, 3});
-  EXPECT_TRUE(same_bits(one.cloud(4), same.cloud(4)));
-  EXPECT_FALSE(same_bits(one.cloud(4), other.cloud(4)));
+  EXPECT_TRUE(scenes::same_points(one.cloud(4), same.cloud(4)));
+  EXPECT_FALSE(scenes::same_points(one.cloud(4), other.cloud(4)));
   s.redraw_noise = false;
   const MovingShape fixed = made(s);
-  EXPECT_TRUE(same_bits(fixed.cloud(0), one.cloud(0)));
+  EXPECT_TRUE(scenes::same_points(fixed.cloud(0), one.cloud(0)));
   double squares = 0, count = 0;
   for (std::size_t i = 0; i < fixed.cloud(4).size(); ++i) {
     const auto noise = [&](const MovingShape& noisy, int frame) -> Vec3 {
@@ -287,7 +241,7 @@ TEST(MovingShape, VanishesForGood) {
   s.vanish_at_s = -1;
   const MovingShape stays = made(s);
   ASSERT_EQ(shape.frame_count(), 6);
-  EXPECT_TRUE(same_bits(shape.cloud(4), stays.cloud(4)));
+  EXPECT_TRUE(scenes::same_points(shape.cloud(4), stays.cloud(4)));
   EXPECT_EQ(shape.cloud(5).size(), 0u);
   EXPECT_EQ(shape.points(5)->size(), 0u);
   const double gone_s = shape.captured_s(5);
@@ -303,7 +257,7 @@ TEST(MovingShape, OneFrameMayBeEmpty) {
   const MovingShape rests = made(s);
   ASSERT_EQ(rests.frame_count(), 6);
   EXPECT_EQ(rests.cloud(4).size(), 0u);
-  EXPECT_TRUE(same_bits(rests.cloud(3), rests.cloud(5)));
+  EXPECT_TRUE(scenes::same_points(rests.cloud(3), rests.cloud(5)));
   EXPECT_EQ(rests.signed_distance({0, 0.01, 0}, 4.5 / 30), 0.01) << "it is there, and not seen";
   s = busy(Kind::ripple), s.empty_frame_at_s = 4 / 30.0;
   const MovingShape moves = made(s);

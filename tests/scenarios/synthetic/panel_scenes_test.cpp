@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <vector>
 
 #include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/open_box.h"
@@ -200,33 +198,6 @@ TEST(MovingPlane, LimitsItsFramesToTheLargestInt) {
   s.frame_rate_hz = 10000, s.speed_m_per_s = 1e-6, s.rise_height_m = 100;
   EXPECT_EQ(validate(s), "");
   EXPECT_EQ(made<MovingPlane>(s).frame_count(), std::numeric_limits<int>::max());
-}
-
-TEST(MovingPlane, NoiseBelongsToPointAndFrame) {
-  MovingPlane::Settings s;
-  s.noise_sigma_m = 0.001;
-  const MovingPlane plane = made<MovingPlane>(s), again = made<MovingPlane>(s);
-  const PointCloud cloud = plane.cloud(3);
-  EXPECT_EQ(cloud.y, again.cloud(3).y);
-  EXPECT_NE(cloud.y, plane.cloud(4).y);
-  EXPECT_EQ(std::set<double>(cloud.y.begin(), cloud.y.end()).size(), cloud.size());
-  double squares = 0;
-  for (const double y : cloud.y) squares += (y + 0.06) * (y + 0.06);
-  EXPECT_NEAR(std::sqrt(squares / 1e4), 0.001, 5 * 0.001 / std::sqrt(2e4));
-}
-
-// A frame has the same bits if another object computes it, in another order.
-TEST(PanelScenes, FramesArePure) {
-  const Wedge one = made<Wedge>(), other = made<Wedge>();
-  std::vector<PointCloud> clouds;
-  for (const int frame : {0, 40, 70, 110}) clouds.push_back(one.cloud(frame));
-  int i = 3;
-  for (const int frame : {110, 70, 40, 0}) {
-    const PointCloud cloud = other.cloud(frame), &before = clouds[static_cast<std::size_t>(i--)];
-    EXPECT_TRUE(cloud.x == before.x && cloud.y == before.y && cloud.z == before.z) << frame;
-    EXPECT_TRUE(cloud.nx == before.nx && cloud.ny == before.ny && cloud.nz == before.nz) << frame;
-  }
-  EXPECT_NE(clouds[0].z, clouds[1].z);
 }
 
 }  // namespace

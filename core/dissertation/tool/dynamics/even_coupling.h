@@ -14,6 +14,15 @@ struct EvenCoupling {
 };
 
 Parameters parameters(EvenCoupling& p);
+// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
+// of the HIP, N/m, for the settings of a method that has this coupling.
+template <class Settings>
+requires requires(const Settings& s) {
+  s.coupling.stiffness_N_per_m;
+}
+double max_stiffness_N_per_m(const Settings& s) {
+  return s.coupling.stiffness_N_per_m;
+}
 // Returns tool settings with this coupling and without merged disks; the other settings have their defaults.
 ToolParameters tool_parameters(const EvenCoupling& p);
 

@@ -45,8 +45,6 @@ Parameters parameters(ToolParameters& p);
 // Returns merged_disk_m for the rules that merge disks, else 0. It is also 0 if points have no disks, because
 // merged points would then leave gaps.
 double used_merged_disk_m(const ToolParameters& p);
-// Returns one line that describes the first invalid combination of settings; an empty string if there is
-// none.
 std::string validate(const ToolParameters& p);
 // Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
 // of the HIP, N/m. It does not cover points that have a stiffness of their own.

@@ -18,7 +18,7 @@ constexpr int kGodObjectPatience = 8;
 }  // namespace
 
 Parameters parameters(ToolGodObjectParameters& p) {
-  Parameters all = {
+  const Parameters own = {
       {"steps_per_tick", &p.steps_per_tick, 1, 1000,
        "maximum number of steps in a tick, each up to the first new contact; a tick that needs more sets budget_exhausted"},
       {"max_step_m", &p.max_step_m, 1e-5, 2e-3, "maximum displacement of any point of the tool in a step"},
@@ -26,8 +26,7 @@ Parameters parameters(ToolGodObjectParameters& p) {
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
        "each point is a disk, a small face of the scene; its radius is this value times the point spacing; 0: points only"},
   };
-  for (Parameter& parameter : parameters(p.coupling)) all.push_back(std::move(parameter));
-  return all;
+  return appended(own, parameters(p.coupling));
 }
 
 std::string validate(const ToolGodObjectParameters& p) {

@@ -47,14 +47,7 @@ struct ToolGodObjectParameters {
 };
 
 Parameters parameters(ToolGodObjectParameters& p);
-// Returns one line that describes the first invalid combination of settings; an empty string if there is
-// none.
 std::string validate(const ToolGodObjectParameters& p);
-// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
-// of the HIP, N/m.
-inline double max_stiffness_N_per_m(const ToolGodObjectParameters& p) {
-  return p.coupling.stiffness_N_per_m;
-}
 // Returns the settings that ToolRenderer reads: the spring, its limits, and how contacts are counted.
 ToolParameters tool_parameters(const ToolGodObjectParameters& p);
 

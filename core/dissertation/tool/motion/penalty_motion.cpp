@@ -17,7 +17,7 @@ struct PreparedVoxmap final : FramePreparation {
 }  // namespace
 
 Parameters parameters(ToolPenaltyParameters& p) {
-  Parameters all = {
+  const Parameters own = {
       {"force_law", choice(p.force_law, {"distance-field", "voxmap"}), 0, 0,
        "distance-field: points of the cloud in the distance field of the tool; voxmap: points of the tool in a voxmap of the cloud, with tangent planes, as McNeely 1999"},
       {"voxmap_voxel_m", &p.voxmap_voxel_m, 5e-4, 0.05,
@@ -28,8 +28,7 @@ Parameters parameters(ToolPenaltyParameters& p) {
        "maximum number of steps in a tick, each half a voxel or less; a tick that needs more sets budget_exhausted"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},
   };
-  for (Parameter& parameter : parameters(p.coupling)) all.push_back(std::move(parameter));
-  return all;
+  return appended(own, parameters(p.coupling));
 }
 
 ToolParameters tool_parameters(const ToolPenaltyParameters& p) {

@@ -56,11 +56,6 @@ Parameters parameters(ToolPenaltyParameters& p);
 inline std::string validate(const ToolPenaltyParameters&) {
   return {};
 }
-// Returns an upper bound, over all poses, of how fast the magnitude of the force grows with the displacement
-// of the HIP, N/m.
-inline double max_stiffness_N_per_m(const ToolPenaltyParameters& p) {
-  return p.coupling.stiffness_N_per_m;
-}
 // Returns the settings that ToolRenderer reads: the spring, its limits, and how contacts are counted.
 ToolParameters tool_parameters(const ToolPenaltyParameters& p);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/evaluation/figures/tools/figure_form.h"
+
 namespace remote_touch {
 
 namespace {
@@ -40,35 +42,37 @@ std::vector<Counts> counts(const SweepResult& result) {
 }
 
 Table count_table(const Counts& counts) {
-  Table table{counts.name, "contact rule " + counts.rule + ": counts over the spacing of the points"};
-  table.add("spacing", "m", "spacing of the points", counts.spacing_m);
-  table.add("points", "1", "most points that touch at once", counts.points);
-  table.add("active", "1", "most active constraints at once", counts.active);
-  table.add("clusters", "1", "most 10 mm cells that touch at once", counts.clusters);
-  table.add("printed", "1", "as many as 6 contact points (6.3.1)",
-            std::vector<double>(counts.spacing_m.size(), kPrintedContacts));
-  return table;
+  TableRows rows;
+  for (std::size_t i = 0; i < counts.points.size(); ++i)
+    rows.push_back(
+        {counts.spacing_m[i], counts.points[i], counts.active[i], counts.clusters[i], kPrintedContacts});
+  return table_of(counts.name, "contact rule " + counts.rule + ": counts over the spacing of the points",
+                  {{"spacing", "m", "spacing of the points"},
+                   {"points", "1", "most points that touch at once"},
+                   {"active", "1", "most active constraints at once"},
+                   {"clusters", "1", "most 10 mm cells that touch at once"},
+                   {"printed", "1", "as many as 6 contact points (6.3.1)"}},
+                  rows);
 }
 
 void add_claims(Figure& figure, const Counts& counts) {
-  const std::string points = counts.rule + ": points that touch at once, ";
-  figure.claims.push_back(claim_differs(figure.name, points + "3 mm apart",
-                                        "6, at a spacing that is not printed", counts.points_at(0.003),
-                                        counts.known_at_default, counts.known_at_default, "points"));
-  figure.claims.push_back(claim_at_least(
-      figure.name, points + "are 6 at some spacings from 1 to 6 mm in steps of 0.5 mm: number of them",
-      "6, at a spacing that is not printed", counts.spacings_with(kPrintedContacts), 1, "spacings"));
+  const Claims claims(figure, counts.rule + ": points that touch at once, ");
+  const std::string paper = "6, at a spacing that is not printed";
+  claims.differs("3 mm apart", counts.points_at(0.003), counts.known_at_default, counts.known_at_default,
+                 "points", paper);
+  claims.at_least("are 6 at some spacings from 1 to 6 mm in steps of 0.5 mm: number of them",
+                  counts.spacings_with(kPrintedContacts), 1, "spacings", paper);
 }
 
 }  // namespace
 
 void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row) {
-  const auto panel = [&](const char* title, int column) {
-    Panel made{title, "spacing of the points (m)", "most at once"};
-    made.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
-    return made;
+  const auto panel = [&](const char* title, int column, std::pair<double, double> y_range) {
+    return plot(title, "spacing of the points (m)", "most at once", {},
+                {.at = {{row, column}}, .y_range = y_range});
   };
-  Panel points = panel("Points that touch", 0), others = panel("Counts that depend little on the spacing", 1);
+  Panel points = panel("Points that touch", 0, {0, 35}),
+        others = panel("Counts that depend little on the spacing", 1, {0, 8});
   for (const Counts& rule : counts(sweep)) {
     figure.tables.push_back(count_table(rule));
     add_claims(figure, rule);
@@ -78,7 +82,6 @@ void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row
     others.curves.push_back(
         {rule.name, "spacing", "active", CurveStyle::dashed, rule.rule + ", active constraints"});
   }
-  points.y_range = std::pair(0.0, 35.0), others.y_range = std::pair(0.0, 8.0);
   points.curves.push_back({"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "6 (6.3.1)"});
   figure.panels.push_back(points);
   figure.panels.push_back(others);

@@ -4,9 +4,12 @@
 
 namespace remote_touch {
 
-double CarrySweep::value(std::size_t setting, std::size_t axis) const {
-  const std::size_t index = result_.axis_indices(cell(setting, 0, Carrier::voxels)).at(axis);
-  return std::get<std::vector<double>>(result_.axes.at(axis).values).at(index);
+std::vector<double> CarrySweep::values(std::size_t axis) const {
+  const auto& all = std::get<std::vector<double>>(result_.axes.at(axis).values);
+  std::vector<double> of_settings;
+  for (std::size_t setting = 0; setting < settings(); ++setting)
+    of_settings.push_back(all.at(result_.axis_indices(cell(setting, 0, Carrier::voxels)).at(axis)));
+  return of_settings;
 }
 
 Tally CarrySweep::lost(std::size_t setting, std::size_t strength, Carrier rule) const {

@@ -33,8 +33,8 @@ class CarrySweep {
   const std::vector<double>& strengths() const {
     return std::get<std::vector<double>>(result_.axes.at(result_.axes.size() - 2).values);
   }
-  // Value of a numeric axis.
-  double value(std::size_t setting, std::size_t axis) const;
+  // Value of a numeric axis for each setting.
+  std::vector<double> values(std::size_t axis) const;
   Tally lost(std::size_t setting, std::size_t strength, Carrier rule) const;
   struct Limit {
     // Every run is carried up to this strength; NaN: none is known.

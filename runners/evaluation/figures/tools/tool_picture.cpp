@@ -1,10 +1,12 @@
 #include "runners/evaluation/figures/tools/tool_picture.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
@@ -12,15 +14,6 @@ namespace remote_touch {
 namespace {
 
 constexpr std::uint32_t kToolColour = 0xE07B39, kDeviceColour = 0x3A6EA5;
-
-void add_rows(Table& table, const std::vector<std::string>& names, const std::string& unit,
-              const std::string& meaning, const std::vector<std::vector<double>>& rows) {
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : rows) values.push_back(row.at(c));
-    table.add(names[c], unit, meaning, std::move(values));
-  }
-}
 
 std::vector<double> chosen_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen) {
   std::vector<double> kept;
@@ -66,39 +59,48 @@ Table cloud_table(const std::string& name, const std::string& title, const Point
 }
 
 Table vertex_table(const std::string& name, const TriangleMesh& mesh) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const Vec3& p : mesh.vertices) rows.push_back({p.x(), p.y(), p.z()});
-  Table table{name, "vertices of the tool, from its centre of mass"};
-  add_rows(table, {"x", "y", "z"}, "m", "position in the tool's axes", rows);
-  return table;
+  const char* const meaning = "position in the tool's axes";
+  return table_of(name, "vertices of the tool, from its centre of mass",
+                  {{"x", "m", meaning}, {"y", "m", meaning}, {"z", "m", meaning}}, rows);
 }
 
 Table triangle_table(const std::string& name, const TriangleMesh& mesh) {
-  std::vector<std::vector<double>> rows;
+  TableRows rows;
   for (const auto& [a, b, c] : mesh.triangles)
     rows.push_back({static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
-  Table table{name, "triangles of the tool"};
-  add_rows(table, {"a", "b", "c"}, "1", "row of a corner among the vertices", rows);
-  return table;
+  const char* const meaning = "row of a corner among the vertices";
+  return table_of(name, "triangles of the tool",
+                  {{"a", "1", meaning}, {"b", "1", meaning}, {"c", "1", meaning}}, rows);
 }
 
 Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks) {
-  std::vector<double> time_s;
-  std::vector<std::vector<double>> places, turns;
+  TableRows rows;
   const auto add = [&](std::size_t tick, const Vec3& p, const Eigen::Quaterniond& q) {
-    time_s.push_back(trace.time_s[tick]);
-    places.push_back({p.x(), p.y(), p.z()});
-    turns.push_back({q.w(), q.x(), q.y(), q.z()});
+    rows.push_back({trace.time_s[tick], p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
   };
   for (const std::size_t tick : ticks) {
     add(tick, trace.proxy_position_m[tick], trace.tool_orientation[tick]);
     add(tick, trace.hip_position_m[tick], trace.hip_orientation[tick]);
   }
-  Table table{name, "poses of tool and device, in turn"};
-  table.add("time", "s", "simulated time", time_s);
-  add_rows(table, {"x", "y", "z"}, "m", "centre of mass", places);
-  add_rows(table, {"qw", "qx", "qy", "qz"}, "1", "orientation, tool axes to the world's", turns);
-  return table;
+  std::vector<ColumnName> columns = {{"time", "s", "simulated time"}};
+  for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, "m", "centre of mass"});
+  for (const char* part : {"qw", "qx", "qy", "qz"})
+    columns.push_back({part, "1", "orientation, tool axes to the world's"});
+  return table_of(name, "poses of tool and device, in turn", columns, rows);
+}
+
+void add_tool_tables(Figure& figure, const std::string& name, const TriangleMesh& mesh, const Trace& trace,
+                     const std::vector<std::size_t>& ticks) {
+  figure.tables.push_back(vertex_table(name + "_vertices", mesh));
+  figure.tables.push_back(triangle_table(name + "_triangles", mesh));
+  figure.tables.push_back(pose_table(name + "_poses", trace, ticks));
+}
+
+std::size_t tick_of(const Trace& trace, double time_s) {
+  const auto at = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s - kSameTime_s);
+  return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
 }
 
 std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instant, double point_m) {
@@ -116,7 +118,7 @@ std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instan
 
 Panel scene_panel(const std::string& title, int row, int column, Scene scene) {
   Panel panel{title, "", ""};
-  panel.grid_position = std::pair(static_cast<double>(row), static_cast<double>(column));
+  panel.grid_position = {row, column};
   panel.scene = std::move(scene);
   return panel;
 }

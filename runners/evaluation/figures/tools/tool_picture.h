@@ -21,6 +21,14 @@ std::shared_ptr<const VoxelTool> tool_of(const Experiment& experiment);
 // depth pipeline.
 PointCloud processed_cloud(const Experiment& experiment, const Kernels& kernels, int frame);
 
+// Returns the indices of the points for which shows(i) is true.
+template <class Shows>
+std::vector<std::size_t> chosen_points(const PointCloud& cloud, Shows&& shows) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (shows(i)) chosen.push_back(i);
+  return chosen;
+}
 // Returns the chosen points, with their normals, and their colours as 0xRRGGBB if the cloud has them.
 Table cloud_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                   const std::vector<std::size_t>& chosen);
@@ -29,9 +37,16 @@ Table triangle_table(const std::string& name, const TriangleMesh& mesh);
 // Returns two rows for each of the ticks: the tool, then the device.
 Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks);
 
+// Adds the tables NAME_vertices, NAME_triangles and NAME_poses of the ticks.
+void add_tool_tables(Figure& figure, const std::string& name, const TriangleMesh& mesh, const Trace& trace,
+                     const std::vector<std::size_t>& ticks);
+
 // Returns a cloud, and the tool at tick number `instant` of the pose table: filled at the tool's pose,
 // transparent at the device's. Tables are NAME_cloud, NAME_vertices, NAME_triangles and NAME_poses.
 std::vector<ScenePart> tool_in_cloud(const std::string& name, std::size_t instant, double point_m);
+
+// Returns the first tick at or after a time; the last one if there is none.
+std::size_t tick_of(const Trace& trace, double time_s);
 
 Panel scene_panel(const std::string& title, int row, int column, Scene scene);
 

@@ -20,11 +20,7 @@ const PatchRegion kRegion{PatchFrame(Vec3(0.01, 0, -0.01), Vec3(1, 2, 3).normali
 GatheredPoints gathered_points() {
   PointCloud cloud = scenes::random_cloud(5003, 0.06, 3);
   for (std::size_t i = 0; i < cloud.size(); i += 97) cloud.y[i] = std::numeric_limits<double>::quiet_NaN();
-  GatheredPoints gathered;
-  gathered.reserve(cloud.size(), false, false);
-  BruteForceSearch(cloud).gather({Vec3::Zero(), 1}, scenes::kernels(), gathered);
-  gathered.finish();
-  return gathered;
+  return scenes::gathered(BruteForceSearch(cloud));
 }
 
 HeightMap bumpy_map() {
@@ -70,10 +66,7 @@ TEST(PatchPoints, TheRimIsOutside) {
   PointCloud cloud;
   for (const double r : {8.0, 7.75, 8.25})
     for (const Vec3& towards : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(-1, 0, 0)}) cloud.append(r * towards);
-  GatheredPoints gathered;
-  gathered.reserve(cloud.size(), false, false);
-  BruteForceSearch(cloud).gather({Vec3::Zero(), 10}, scenes::kernels(), gathered);
-  gathered.finish();
+  const GatheredPoints gathered = scenes::gathered(BruteForceSearch(cloud));
   for (const Kernels* kernels : supported_kernels()) {
     PatchPoints points(*kernels);
     points.reserve(gathered.size());

@@ -17,9 +17,7 @@ namespace {
 constexpr double kUnit = 0.005;
 
 std::set<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball) {
-  GatheredPoints out;
-  out.reserve(search.size(), search.has_fixture_radius(), search.has_stiffness());
-  search.gather(ball, scenes::kernels(), out);
+  const GatheredPoints out = scenes::gathered(search, ball);
   std::set<std::uint32_t> numbers;
   for (std::size_t i = 0; i < out.size(); ++i) EXPECT_TRUE(numbers.insert(out.index()[i]).second);
   return numbers;
@@ -34,10 +32,7 @@ TEST(SheetSearch, FindsThePointsOfTheFrameIfNoneIsMoved) {
   }
   const std::shared_ptr<const NeighbourSearch> frame = make_search(cloud);
   const PatchRegion region{PatchFrame(Vec3(0.01, 0, -0.01), Vec3(1, 2, 3).normalized(), kUnit), 8, 6};
-  GatheredPoints gathered;
-  gathered.reserve(frame->size(), true, true);
-  frame->gather(region.around(), scenes::kernels(), gathered);
-  gathered.finish();
+  const GatheredPoints gathered = scenes::gathered(*frame, region.around());
   PatchPoints points(scenes::kernels());
   points.reserve(gathered.size());
   points.set_points(gathered, region);

@@ -31,10 +31,7 @@ struct Shown {
 };
 
 Shown shown_of(const NeighbourSearch& points, double height_m, double max_height_m) {
-  GatheredPoints gathered;
-  gathered.reserve(20000, true, true);
-  points.gather({Vec3(0, height_m, 0), 0.1}, scenes::kernels(), gathered);
-  gathered.finish();
+  const GatheredPoints gathered = scenes::gathered(points, {Vec3(0, height_m, 0), 0.1});
   const PointsView all = gathered.view();
   Shown shown;
   for (std::size_t i = 0; i < gathered.size(); ++i) {

@@ -23,15 +23,13 @@ TEST(DepthPipeline, HasTheSameBitsOnEveryLevelAndForAnyNumberOfThreads) {
         Settings{true, 5, 0.02, 13, 0.02, 3, NormalFit::inverse_depth},
         Settings{false, 3, 0.02, 15, 0.02, 1, NormalFit::inverse_depth, true}}) {
     const PointCloud expected = processed(scene, settings);
-    for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-      if (isa > best_isa()) continue;
+    for (const Kernels* kernels : supported_kernels())
       for (const int threads : {1, 2, 5}) {
         omp_set_num_threads(threads);
-        DepthPipeline pipeline(settings, kernels_for(isa));
+        DepthPipeline pipeline(settings, *kernels);
         EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, kIdentity), expected))
-            << kernels_for(isa).isa << ", threads: " << threads;
+            << kernels->isa << ", threads: " << threads;
       }
-    }
   }
   omp_set_num_threads(omp_get_num_procs());
 }

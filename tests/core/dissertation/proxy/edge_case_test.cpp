@@ -34,10 +34,8 @@ TEST(EdgeCase, Float32PointsOneMetreAwayAreTouched) {
 }
 
 TEST(EdgeCase, APointExactlyAtTheProxyDoesNoHarm) {
-  PointCloud cloud;
-  cloud.append({0, 0, 0});
   ProxyRenderer renderer = scenes::renderer();
-  renderer.on_frame(scenes::frame(cloud));
+  renderer.on_frame(scenes::frame(scenes::cloud_of({{0, 0, 0}})));
   const RenderOutput stuck = renderer.step({Vec3::Zero()}, 0);  // starts on the point: no direction is better
   EXPECT_EQ(stuck.status, RenderStatus::degenerate_normal);
   EXPECT_TRUE(stuck.proxy_W.allFinite());
@@ -96,10 +94,8 @@ TEST(EdgeCase, TheCloudVanishesUnderTheProxy) {
 }
 
 TEST(EdgeCase, ACloudOfOnePointIsTouched) {
-  PointCloud cloud;
-  cloud.append({0, 0, 0});
   ProxyRenderer renderer = scenes::renderer();
-  renderer.on_frame(scenes::frame(cloud));
+  renderer.on_frame(scenes::frame(scenes::cloud_of({{0, 0, 0}})));
   hold(renderer, Vec3(0.001, 0.02, 0), 1);
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 100);
   // The proxy stays above the point, in line with the HIP, or slips round the point. It is never nearer than
@@ -229,8 +225,7 @@ TEST(EdgeCase, AThinSheetHoldsFromBothSides) {
 
 // Chapter 5 with the same proxy: the region around a single point of r_f = 0.1 m is never entered, Fig 5.5.
 TEST(EdgeCase, AFixtureRadiusKeepsTheProxyOut) {
-  PointCloud cloud;
-  cloud.append({0, 0, 0});
+  PointCloud cloud = scenes::cloud_of({{0, 0, 0}});
   cloud.fixture_radius_m = {0.1};
   cloud.stiffness_N_per_m = {250};
   ProxyRenderer renderer = scenes::renderer();

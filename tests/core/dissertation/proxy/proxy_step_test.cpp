@@ -19,9 +19,7 @@ const ProxyParameters kDefault;
 const Vec3 kUp = Vec3::UnitY();
 
 Neighbourhood around(const PointCloud& cloud) {
-  Neighbourhood near(kDefault.r3_m, scenes::kernels());
-  near.set_points(make_search(cloud));
-  return near;
+  return scenes::neighbourhood(make_search(cloud), kDefault.r3_m);
 }
 
 double distance(const PointCloud& cloud, std::size_t i, const Vec3& p) {
@@ -81,9 +79,7 @@ TEST(FreeStep, LandsInTheContactShellAMetreAway) {
 }
 
 TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
-  PointCloud lone;
-  lone.append({0.5, 0, 0});
-  Neighbourhood near = around(lone);
+  Neighbourhood near = around(scenes::cloud_of({{0.5, 0, 0}}));
   EXPECT_NEAR(free_step(near, Vec3::Zero(), {1, 0, 0}, kDefault).x(), 0.495, 1e-15);
   EXPECT_NEAR(free_step(near, {0, 0.003, 0}, {1, 0, 0}, kDefault).x(), 0.496, 1e-15);
   EXPECT_NEAR(free_step(near, Vec3::Zero(), {100, 0, 0}, kDefault).x(), 0.495, 1e-13);
@@ -93,17 +89,14 @@ TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
 TEST(FreeStep, HasTheSameBitsFromTheKeptListAndFromHops) {
   const PointCloud cloud = scenes::random_cloud(500, 0.03, 3);
   const PointCloud from = scenes::random_cloud(400, 0.03, 4), directions = scenes::random_cloud(400, 1, 5);
-  const auto search = std::make_shared<BruteForceSearch>(cloud);
+  const BruteForceSearch search(cloud);
   Neighbourhood kept = around(cloud);
   int met = 0, missed = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Vec3 p = from.point(i), u = directions.point(i).normalized();
     if (nearest(cloud, p) <= kDefault.r2_m) continue;
     Neighbourhood hopping = around(cloud);  // has no list yet
-    GatheredPoints all;
-    all.reserve(cloud.size(), false, false);
-    search->gather({p, 10}, scenes::kernels(), all);
-    all.finish();
+    const GatheredPoints all = scenes::gathered(search, {p, 10});
     const double first = scenes::kernels().proxy.first_hit(all.view(), p.data(), u.data(), 0.005);
     kept.around(p);
     for (const double limit : {0.0001, 0.004, 0.009, 0.03, 0.1, 5.0}) {
@@ -118,9 +111,7 @@ TEST(FreeStep, HasTheSameBitsFromTheKeptListAndFromHops) {
 }
 
 TEST(FreeStep, ReachesTheHipExactlyIfNothingIsInTheWay) {
-  PointCloud aside;
-  aside.append({0, -1, 0});
-  Neighbourhood near = around(aside);
+  Neighbourhood near = around(scenes::cloud_of({{0, -1, 0}}));
   const PointCloud directions = scenes::random_cloud(100, 0.3, 6);
   for (std::size_t i = 0; i < directions.size(); ++i)
     EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, directions.point(i), kDefault), directions.point(i));
@@ -128,9 +119,7 @@ TEST(FreeStep, ReachesTheHipExactlyIfNothingIsInTheWay) {
 }
 
 TEST(FreeStep, PrintedRootPullsTheProxyBackToPointsBehind) {
-  PointCloud behind;
-  behind.append({-0.008, 0, 0});
-  Neighbourhood near = around(behind);
+  Neighbourhood near = around(scenes::cloud_of({{-0.008, 0, 0}}));
   ProxyParameters printed;
   printed.free_root = FreeRoot::smallest_magnitude;
   const Vec3 u(0.02, 0, 0);
@@ -150,10 +139,7 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
                normal = directions.point((i + 1) % 100).normalized();
     PointCloud inside;
     for (std::size_t j = 40 * i; j < 40 * i + 40; ++j) inside.append(p + offsets.point(j));
-    GatheredPoints points;
-    points.reserve(inside.size(), false, false);
-    BruteForceSearch(inside).gather({p, 0.1}, scenes::kernels(), points);
-    points.finish();
+    const GatheredPoints points = scenes::gathered(BruteForceSearch(inside), {p, 0.1});
     // All of them are within r1: the half diagonal of the cube they fill is 4.85 mm.
     const Vec3 s = entrenched_step(points.view(), scenes::kernels(), p, normal, Vec3::Zero(), kDefault);
     EXPECT_GT(s.dot(normal), 0);
@@ -164,13 +150,9 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
 }
 
 TEST(EntrenchedStep, GoesBackFromTheHipIfThereIsNoNormal) {
-  PointCloud cloud;
-  cloud.append({0, 0, 0});
-  cloud.append({0.003, 0.004, 0});  // distance r_c: touched, but not within r1, so the point sets no step
-  GatheredPoints points;
-  points.reserve(2, false, false);
-  BruteForceSearch(cloud).gather({Vec3::Zero(), 1}, scenes::kernels(), points);
-  points.finish();
+  // The second one is at the distance r_c: touched, but not within r1, so the point sets no step.
+  const PointCloud cloud = scenes::cloud_of({{0, 0, 0}, {0.003, 0.004, 0}});
+  const GatheredPoints points = scenes::gathered(BruteForceSearch(cloud), {Vec3::Zero(), 1});
   const auto step = [&](const Vec3& normal, const Vec3& u, const ProxyParameters& p = kDefault) {
     return entrenched_step(points.view(), scenes::kernels(), Vec3::Zero(), normal, u, p);
   };
@@ -263,9 +245,7 @@ TEST(ExitRule, TwoStepsFreeTheProxy) {
 TEST(FixedRule, TakesSmallStepsWhateverIsAhead) {
   ProxyParameters fixed;
   fixed.step_rule = StepRule::fixed;
-  PointCloud ahead;
-  ahead.append({0.00505, 0, 0});
-  Neighbourhood near = around(ahead);
+  Neighbourhood near = around(scenes::cloud_of({{0.00505, 0, 0}}));
   // The point would stop the variable rule after 5e-5 m.
   EXPECT_DOUBLE_EQ(free_step(near, Vec3::Zero(), {0.1, 0, 0}, fixed).x(), 1e-4);
   EXPECT_DOUBLE_EQ(free_step(near, Vec3::Zero(), {0, 0, 3e-5}, fixed).z(), 3e-5);

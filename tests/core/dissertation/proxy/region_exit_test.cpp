@@ -16,15 +16,12 @@ namespace {
 const ProxyParameters kDefault;
 
 Neighbourhood neighbourhood(const PointCloud& cloud) {
-  Neighbourhood near(kDefault.r3_m, scenes::kernels());
-  near.set_points(scenes::frame(cloud).points);
-  return near;
+  return scenes::neighbourhood(make_search(cloud), kDefault.r3_m);
 }
 
 // Two balls that overlap, the proxy between them.
 PointCloud two_balls(double half_distance_m, double radius_m) {
-  PointCloud cloud;
-  cloud.append({-half_distance_m, 0, 0}), cloud.append({half_distance_m, 0, 0});
+  PointCloud cloud = scenes::cloud_of({{-half_distance_m, 0, 0}, {half_distance_m, 0, 0}});
   cloud.fixture_radius_m = {radius_m, radius_m};
   return cloud;
 }
@@ -42,12 +39,15 @@ TEST(StraightExit, LeavesTwoBallsInThePlaneBetweenThem) {
   }
 }
 
-// Three balls in a row along the normal: the shortest line out leads to the side.
-TEST(StraightExit, TakesTheShortestOfItsLines) {
-  PointCloud cloud;
-  for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
+// In a row along the normal: the shortest line out leads to the side.
+PointCloud three_balls() {
+  PointCloud cloud = scenes::cloud_of({{0, 0, 0}, {0, 0.03, 0}, {0, 0.06, 0}});
   cloud.fixture_radius_m = {0.02, 0.02, 0.02};
-  Neighbourhood near = neighbourhood(cloud);
+  return cloud;
+}
+
+TEST(StraightExit, TakesTheShortestOfItsLines) {
+  Neighbourhood near = neighbourhood(three_balls());
   const auto exit =
       straight_exit(near, scenes::kernels(), {0.001, 0, 0}, Vec3::UnitY(), {1e-3, 0, 0}, kDefault);
   ASSERT_TRUE(exit);
@@ -56,10 +56,7 @@ TEST(StraightExit, TakesTheShortestOfItsLines) {
 
 // The direction of u is one of the lines, however short u is.
 TEST(StraightExit, OnlyTheDirectionOfTheDisplacementMatters) {
-  PointCloud cloud;
-  for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
-  cloud.fixture_radius_m = {0.02, 0.02, 0.02};
-  Neighbourhood near = neighbourhood(cloud);
+  Neighbourhood near = neighbourhood(three_balls());
   const Vec3 direction = Vec3(1, 0, 1).normalized();
   for (const int exponent : {0, -10, -30, -100}) {
     const auto exit = straight_exit(near, scenes::kernels(), 0.001 * direction, Vec3::UnitY(),

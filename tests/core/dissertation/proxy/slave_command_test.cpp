@@ -9,8 +9,7 @@ namespace remote_touch::slave_command_test {
 namespace {
 
 PointCloud region(const Vec3& centre, double radius) {
-  PointCloud cloud;
-  cloud.append(centre);
+  PointCloud cloud = scenes::cloud_of({centre});
   cloud.fixture_radius_m = {radius};
   return cloud;
 }
@@ -18,8 +17,7 @@ PointCloud region(const Vec3& centre, double radius) {
 // Two regions on a line with the proxy, which overlap once they are enlarged by the contact radius. The exit
 // from either along this line ends inside the other, so a proxy between them moves to and fro for ever.
 PointCloud trap() {
-  PointCloud cloud;
-  cloud.append({-0.01, 0, 0}), cloud.append({0.04, 0, 0});
+  PointCloud cloud = scenes::cloud_of({{-0.01, 0, 0}, {0.04, 0, 0}});
   cloud.fixture_radius_m = {0.02, 0.022};
   return cloud;
 }

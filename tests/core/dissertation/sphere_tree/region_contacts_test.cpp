@@ -30,8 +30,7 @@ std::shared_ptr<const SphereTree> one_leaf(double radius_m) {
 }
 
 PointCloud regions_at(const std::vector<Vec3>& places, double radius_m = kRadius_m) {
-  PointCloud cloud;
-  for (const Vec3& place : places) cloud.append(place);
+  PointCloud cloud = scenes::cloud_of(places);
   cloud.fixture_radius_m.assign(cloud.size(), radius_m);
   return cloud;
 }
@@ -247,11 +246,10 @@ TEST(RegionContacts, DoNotDependOnTheLevelOrOnEarlierQueries) {
   RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));
   slowest.on_frame(formatted<RegionTree>(cloud));
   std::size_t found = 0;
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-    if (isa > best_isa()) continue;
+  for (const Kernels* kernels : supported_kernels()) {
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const ToolPose pose{directions.point(i), rotation(20 * directions.point(i))};
-      RegionContacts fresh(spheres_of_box(), look_ahead_m, kernels_for(isa));
+      RegionContacts fresh(spheres_of_box(), look_ahead_m, *kernels);
       fresh.on_frame(formatted<RegionTree>(cloud));
       const NearContacts a = fresh.near(pose, 0), b = slowest.near(pose, 0);
       EXPECT_EQ(a.deepest_m, b.deepest_m);

@@ -33,8 +33,7 @@ SphereTreeRenderer renderer(const std::vector<Vec3>& leaves = {Vec3::Zero()}, co
 }
 
 PointCloud regions_at(const std::vector<Vec3>& places) {
-  PointCloud cloud;
-  for (const Vec3& place : places) cloud.append(place);
+  PointCloud cloud = scenes::cloud_of(places);
   cloud.fixture_radius_m.assign(cloud.size(), kRegion_m);
   return cloud;
 }

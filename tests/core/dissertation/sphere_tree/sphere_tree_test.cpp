@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/region_tree.h"
-#include "core/dissertation/sphere_tree/tree_collision.h"
 #include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/support/leaf_pairs.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::sphere_tree_test {
@@ -154,38 +154,17 @@ TEST(RegionTree, IsEmptyIfThereAreNoRegions) {
 
 // --- tree against tree ---
 
-std::vector<LeafPair> every_pair(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
-                                 double margin_m) {
-  const Eigen::Matrix3d R_WT = pose.q_WT.toRotationMatrix();
-  std::vector<LeafPair> pairs;
-  for (std::uint32_t i = 0; i < tool.leaves().size(); ++i)
-    for (std::uint32_t j = 0; j < regions.leaves().size(); ++j) {
-      const Sphere &a = tool.leaves()[i], &b = regions.leaves()[j];
-      const double gap_m = (pose.p_W + R_WT * a.centre - b.centre).norm() - a.radius_m - b.radius_m;
-      if (gap_m <= margin_m) pairs.push_back({i, j, gap_m});
-    }
-  return pairs;
-}
-
 TEST(TreeCollision, FindsWhatBruteForceFinds) {
   const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
                    regions = tree_of(random_spheres(4000, 0.05, 2), 100);
   TreeCollision collision(tool, scenes::kernels());
   collision.on_frame(regions);
-  std::vector<LeafPair> buffer(tool.leaves().size() * regions.leaves().size());
   std::size_t max = 0, none = 0;
   for (int i = 0; i < 40; ++i) {
     const ToolPose pose{{0.008 * i - 0.1, 0.004 * i, 0.01}, rotation({0.1 * i, 0.3, -0.05 * i})};
     for (const double margin_m : {-0.001, 0.0, 0.004}) {
-      std::vector<LeafPair> expected = every_pair(tool, pose, regions, margin_m);
-      const std::span<const LeafPair> pairs =
-          std::span(buffer).first(collision.near_pairs(pose, margin_m, buffer));
-      ASSERT_EQ(pairs.size(), expected.size());
-      for (std::size_t k = 0; k < pairs.size(); ++k) {
-        EXPECT_EQ(pairs[k].tool, expected[k].tool);
-        EXPECT_EQ(pairs[k].region, expected[k].region);
-        EXPECT_EQ(pairs[k].gap_m, expected[k].gap_m);
-      }
+      const std::vector<LeafPair> pairs = near_pairs(collision, pose, margin_m);
+      ASSERT_TRUE(pairs == naive_pairs(tool, pose, regions, margin_m)) << i << " " << margin_m;
       max = std::max(max, pairs.size()), none += pairs.empty() ? 1 : 0;
     }
   }
@@ -193,33 +172,12 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
   EXPECT_GT(none, 10u);
 }
 
-// The buffer has room for 100 of thousands of pairs. It receives the deepest.
-TEST(TreeCollision, KeepsTheDeepestPairsIfTheBufferIsFull) {
-  const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
-                   regions = tree_of(random_spheres(4000, 0.05, 2), 100);
-  TreeCollision collision(tool, scenes::kernels());
-  collision.on_frame(regions);
-  std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), buffer(100);
-  ASSERT_EQ(collision.near_pairs({}, 0.002, buffer), expected.size());
-  ASSERT_GT(expected.size(), 1000u);
-  std::stable_sort(expected.begin(), expected.end(),
-                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
-  std::stable_sort(buffer.begin(), buffer.end(),
-                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
-  for (std::size_t i = 0; i < buffer.size(); ++i) {
-    EXPECT_EQ(buffer[i].tool, expected[i].tool);
-    EXPECT_EQ(buffer[i].region, expected[i].region);
-  }
-  EXPECT_EQ(collision.near_pairs({}, 0.002, {}), expected.size());
-}
-
 TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
   const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
-  std::vector<LeafPair> buffer(100);
   const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
     TreeCollision collision(of, scenes::kernels());
     collision.on_frame(regions);
-    return collision.near_pairs(pose, 1, buffer);
+    return near_pairs(collision, pose, 1).size();
   };
   EXPECT_GT(count(tool, tool, {}), 100u);
   EXPECT_EQ(count(tool, nothing, {}), 0u);

@@ -11,6 +11,7 @@
 #include "core/dissertation/virtual_fixtures/near_point.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/colour.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fixture_rules_test {
@@ -20,11 +21,7 @@ using Shares = std::vector<double>;
 
 const Vec3 kMissing = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 
-PointCloud cloud_of(const std::vector<Vec3>& points) {
-  PointCloud cloud;
-  for (const Vec3& p : points) cloud.append(p);
-  return cloud;
-}
+using scenes::cloud_of;
 
 void expect_near(const Shares& weights, const Shares& expected) {
   ASSERT_EQ(weights.size(), expected.size());

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -92,6 +91,28 @@ class CheckBaseline : public testing::Test {
     EXPECT_HAS(result.text, subject);
     EXPECT_HAS(result.text, why);
     EXPECT_FALSE(result.comparison);
+  }
+  void flip(const std::string& name, std::size_t at) const {
+    std::string bytes = bytes_of(folder_ / name);
+    bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
+    folder_.write(name, bytes);
+  }
+  // Damages the stored file in many ways, and restores it. entry: makes the baseline after each damage.
+  void expect_damage_is_found(const std::string& name, const std::function<Baseline()>& entry,
+                              const std::string& why_flipped, const std::string& why_replaced) {
+    const std::string bytes = bytes_of(folder_ / name);
+    for (const std::size_t at :
+         {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
+      flip(name, at);
+      expect_uncomparable(entry(), place(name), why_flipped);
+      folder_.write(name, bytes);
+    }
+    for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
+                                     bytes + "x", std::string(), std::string("a text\n")}) {
+      folder_.write(name, other);
+      expect_uncomparable(entry(), place(name), why_replaced);
+    }
+    folder_.write(name, bytes);
   }
   std::string place(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -232,29 +253,14 @@ TEST_F(CheckBaseline, RefusesAConfigurationThatCannotBeRead) {
 
 // --- checks of damaged files ---
 
-void flip(const fs::path& folder, const std::string& name, std::size_t at) {
-  std::string bytes = bytes_of(folder / name);
-  bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
-  std::ofstream(folder / name, std::ios::binary) << bytes;
-}
-
 // A file whose hash is not that of the manifest is refused, whatever is in it.
 TEST_F(CheckBaseline, RefusesAFileWithAnotherDigest) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   for (const Baseline& baseline : {run, sweep}) {
     const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
     const std::string why = "SHA-256 differs from the manifest";
-    for (const std::size_t at :
-         {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
-      flip(folder_.path(), name, at);
-      expect_uncomparable(baseline, place(name), why);
-      folder_.write(name, bytes);
-    }
-    for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
-                                     bytes + "x", std::string(), std::string("a text\n")}) {
-      folder_.write(name, other);
-      expect_uncomparable(baseline, place(name), why);
-    }
+    expect_damage_is_found(
+        name, [&] { return baseline; }, why, why);
     fs::remove(folder_ / name);
     expect_uncomparable(baseline, place(name), "");
     fs::create_directory(folder_ / name);
@@ -267,20 +273,9 @@ TEST_F(CheckBaseline, RefusesAFileWithAnotherDigest) {
 
 // The manifest holds the hash of the damaged file itself.
 TEST_F(CheckBaseline, RefusesAFileThatWasStoredDamaged) {
-  for (const Baseline& baseline : {stored_run(), stored_sweep()}) {
-    const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
-    for (const std::size_t at :
-         {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
-      flip(folder_.path(), name, at);
-      expect_uncomparable(entered(baseline), place(name), "");
-      folder_.write(name, bytes);
-    }
-    for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
-                                     bytes + "x", std::string(), std::string("a text\n")}) {
-      folder_.write(name, other);
-      expect_uncomparable(entered(baseline), place(name), "expected");
-    }
-  }
+  for (const Baseline& baseline : {stored_run(), stored_sweep()})
+    expect_damage_is_found(
+        baseline.name + ".h5", [&] { return entered(baseline); }, "", "expected");
 }
 
 TEST_F(CheckBaseline, RefusesAnotherSchema) {
@@ -313,7 +308,7 @@ TEST_F(CheckBaseline, DoesNotRunIfItsRecordingIsMissing) {
   folder_.write("nowhere.pcd", "no recording");
   expect_uncomparable(baseline, place("nowhere.pcd"), "");
   fs::remove(folder_ / "nowhere.pcd");
-  flip(folder_.path(), "short.h5", 1000);  // a damaged file is reported all the same
+  flip("short.h5", 1000);  // a damaged file is reported all the same
   expect_uncomparable(baseline, place("short.h5"), "SHA-256");
 }
 

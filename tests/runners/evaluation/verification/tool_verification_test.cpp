@@ -8,7 +8,7 @@
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/evaluation/verification/tool_scenes.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "tests/runners/evaluation/verification/wrong_tools.h"
+#include "tests/runners/evaluation/verification/wrong_renderers.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::tool_verification_test {
@@ -22,24 +22,24 @@ struct Wrong {
 };
 
 const Wrong kWrong[] = {
-    {wrong_tool<ToolFault::silent>("silent"), {"touch"}},
-    {wrong_tool<ToolFault::has_no_pose>("has_no_pose"), {"repeat", "rigid-motion", "frame-rate"}},
-    {wrong_tool<ToolFault::remembers_others>("remembers_others"), {"repeat"}},
-    {wrong_tool<ToolFault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
-    {wrong_tool<ToolFault::sees_first_point>("sees_first_point"), {"order", "search-all"}},
-    {wrong_tool<ToolFault::counts_points>("counts_points"), {"missing-points"}},
-    {wrong_tool<ToolFault::fears_crowds>("fears_crowds"), {"far-points"}},
-    {wrong_tool<ToolFault::sees_radii>("sees_radii"), {"zero-regions"}},
-    {wrong_tool<ToolFault::turns_about_x>("turns_about_x"), {"mirror-y", "mirror-z", "rigid-motion"}},
-    {wrong_tool<ToolFault::turns_about_y>("turns_about_y"), {"mirror-x", "mirror-z", "rigid-motion"}},
-    {wrong_tool<ToolFault::lies_flat>("lies_flat"), {"rigid-motion"}},
-    {wrong_tool<ToolFault::fixed_gap>("fixed_gap"), {"size-2", "size-1/2"}},
-    {wrong_tool<ToolFault::fixed_strength>("fixed_strength"), {"force-1/2"}},
-    {wrong_tool<ToolFault::fixed_rate>("fixed_rate"), {"speed-2"}},
-    {wrong_tool<ToolFault::reads_the_clock>("reads_the_clock"), {"clock", "speed-2"}},
-    {wrong_tool<ToolFault::drops_silently>("drops_silently"), {"sent-twice", "sent-late"}},
-    {wrong_tool<ToolFault::jolts_at_frames>("jolts_at_frames"), {"frame-rate"}},
-    {wrong_tool<ToolFault::jolts_at_frames>("jolts_at_frames, held"), {"frame-rate-held"}},
+    {wrong_tool<Fault::silent>("silent"), {"touch"}},
+    {wrong_tool<Fault::has_no_pose>("has_no_pose"), {"repeat", "rigid-motion", "frame-rate"}},
+    {wrong_tool<Fault::remembers_others>("remembers_others"), {"repeat"}},
+    {wrong_tool<Fault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
+    {wrong_tool<Fault::looks_at_first_point>("sees_first_point"), {"order", "search-all"}},
+    {wrong_tool<Fault::counts_points>("counts_points"), {"missing-points"}},
+    {wrong_tool<Fault::fears_crowds>("fears_crowds"), {"far-points"}},
+    {wrong_tool<Fault::regions_of_nothing>("sees_radii"), {"zero-regions"}},
+    {wrong_tool<Fault::turns_about_x>("turns_about_x"), {"mirror-y", "mirror-z", "rigid-motion"}},
+    {wrong_tool<Fault::turns_about_y>("turns_about_y"), {"mirror-x", "mirror-z", "rigid-motion"}},
+    {wrong_tool<Fault::lies_flat>("lies_flat"), {"rigid-motion"}},
+    {wrong_tool<Fault::fixed_gap>("fixed_gap"), {"size-2", "size-1/2"}},
+    {wrong_tool<Fault::fixed_strength>("fixed_strength"), {"force-1/2"}},
+    {wrong_tool<Fault::fixed_rate>("fixed_rate"), {"speed-2"}},
+    {wrong_tool<Fault::reads_the_clock>("reads_the_clock"), {"clock", "speed-2"}},
+    {wrong_tool<Fault::drops_silently>("drops_silently"), {"sent-twice", "sent-late"}},
+    {wrong_tool<Fault::jolts_at_frames>("jolts_at_frames"), {"frame-rate"}},
+    {wrong_tool<Fault::jolts_at_frames>("jolts_at_frames, held"), {"frame-rate-held"}},
 };
 
 // Returns the one scene that shows a fault. The device rests in tool-held only.
@@ -109,7 +109,7 @@ TEST(ToolVerification, AToolThatIsNamedIsNotMirrored) {
 }
 
 TEST(ToolVerification, ACorrectRendererInTheWrapperPasses) {
-  EXPECT_EQ(caught_by(wrong_tool<ToolFault::none>("none"), telling_scene({})), Names{});
+  EXPECT_EQ(caught_by(wrong_tool<Fault::none>("none"), telling_scene({})), Names{});
 }
 
 TEST(ToolVerification, EveryCheckHasAWrongToolThatItCatches) {

@@ -259,10 +259,7 @@ Parameters parameters(OddParameters& p) {
 TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
   const RendererEntry odd{
       {"odd", "a parameter in an unheard-of unit",
-       []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {
-         return std::make_unique<
-             FactoryFor<WrongRenderer<Fault::none>, OddParameters, Renderer, double, const Kernels&>>();
-       }}};
+       factory<WrongRenderer<Fault::none>, OddParameters, Renderer, double, const Kernels&>}};
   EXPECT_EQ(refusal([&] { verify(odd); }).find("patience_fortnight: ends in no known unit"), 0u);
   const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
   EXPECT_EQ(refusal([&] { verify(proxy, {"r3_m=0.7"}); }).find("r3_m = 0.7: a check multiplies it by 2"), 0u);

@@ -1,14 +1,18 @@
-// Renderers that are wrong in one way each, for tests of the checks that should find it.
+// Renderers that are wrong in one way each, for tests of the checks that should find it: the proxy, and a
+// tool.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/catalog/factory.h"
 #include "runners/experiment/catalog/renderer_contacts.h"
+#include "runners/experiment/tool_files/loaded_tool.h"
 
 namespace remote_touch {
 
@@ -20,27 +24,33 @@ enum class Fault {
   looks_at_first_point,    // depends on the order in which a search returns points
   counts_points,           // size of the whole cloud matters, measured or not
   looks_far,               // points 1 km away matter
+  fears_crowds,            // weaker where there are many points
   regions_of_nothing,      // a column of radii matters, whatever it holds
   mistrusts_stiff_points,  // a column of stiffness matters beyond its values
   adds_its_own,            // adds its own stiffness to that of the points
   leans_x,                 // a little force to one side of the world
   leans_y,
   leans_z,
+  turns_about_x,  // always a little torque about an axis of the world
+  turns_about_y,
   prefers_up,         // forces along y are stronger
-  fixed_gap,          // stays 0.1 mm further off, whatever its size
-  fixed_strength,     // no force above 3 N, whatever the stiffness
+  lies_flat,          // ignores how the device is turned
+  fixed_gap,          // stays 0.1 mm (a tool: 2 mm) further off, whatever its size
+  fixed_strength,     // no force above 3 N (a tool: 2 N), whatever the stiffness
   fixed_rate,         // uses the motion per tick as a velocity, as if ticks came at 1024 Hz
   reads_the_clock,    // weakens as time passes
   takes_every_frame,  // uses the newest frame to arrive, whenever it was captured
   drops_silently,     // does not report a dropped frame
-  jolts_at_frames,    // every frame moves the proxy a little further
+  jolts_at_frames,    // every frame moves the proxy or tool a little further
+  has_no_pose,        // an orientation that is not finite
 };
 
-template <Fault kFault>
-class WrongRenderer final : public Renderer {
+template <Fault kFault, class Right, class SettingsOfRight>
+class Spoiled final : public Renderer {
  public:
-  WrongRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
-      : parameters_(parameters), kernels_(kernels), right_(parameters, haptic_rate_hz, kernels) {
+  using Settings = SettingsOfRight;
+  Spoiled(const Settings& settings, double haptic_rate_hz, const Kernels& kernels)
+      : settings_(settings), kernels_(kernels), right_(settings, haptic_rate_hz, kernels) {
     static int built = 0;
     ordinal_ = ++built;
   }
@@ -58,24 +68,32 @@ class WrongRenderer final : public Renderer {
   }
 
   RenderOutput step(const DeviceState& device, double time_s) override {
-    RenderOutput out = right_.step(device, time_s);
+    DeviceState felt = device;
+    if (kFault == Fault::lies_flat) felt.orientation_W.setIdentity();
+    RenderOutput out = right_.step(felt, time_s);
     spoil(out, time_s);
     previous_W_ = out.proxy_W;
     return out;
   }
 
  private:
+  static constexpr bool kIsTool = std::is_same_v<Right, LoadedTool>;
+
   std::size_t found_within(const Vec3& centre, double radius_m) {
     found_.clear();
     if (points_) points_->gather({centre, radius_m}, kernels_, found_);
     return found_.size();
   }
-  double first_x() { return found_within(previous_W_, 0.01) > 0 ? found_.view().x[0] : 0; }
+  double first_x() { return found_within(previous_W_, kIsTool ? 0.02 : 0.01) > 0 ? found_.view().x[0] : 0; }
 
   void spoil(RenderOutput& out, double time_s) {
     const double strength = out.force_N.norm();
+    const bool has_radii = points_ && points_->has_fixture_radius(),
+               has_stiffness = points_ && points_->has_stiffness();
     switch (kFault) {
       case Fault::none:
+      case Fault::lies_flat:
+      case Fault::takes_every_frame:
         break;
       case Fault::silent:
         out.force_N.setZero();
@@ -95,49 +113,60 @@ class WrongRenderer final : public Renderer {
       case Fault::looks_far:
         out.force_N *= 1 + 1e-9 * static_cast<double>(found_within(out.proxy_W, 1000));
         break;
+      case Fault::fears_crowds:
+        if (points_ && points_->size() > 3500) out.force_N *= 0.5;
+        break;
       case Fault::regions_of_nothing:
-        if (points_ && points_->has_fixture_radius()) out.nearest_distance_m += 1e-9;
+        if (has_radii && kIsTool) out.force_N *= 1 + 1e-9;
+        if (has_radii && !kIsTool) out.nearest_distance_m += 1e-9;
         break;
       case Fault::mistrusts_stiff_points:
-        if (points_ && points_->has_stiffness()) out.force_N *= 1 + 1e-5;
+        if (has_stiffness) out.force_N *= 1 + 1e-5;
         break;
       case Fault::adds_its_own:
-        if (points_ && points_->has_stiffness()) out.force_N *= 1 + 1e-6 * parameters_.stiffness_N_per_m;
+        if constexpr (!kIsTool)
+          if (has_stiffness) out.force_N *= 1 + 1e-6 * settings_.stiffness_N_per_m;
         break;
       case Fault::leans_x:
       case Fault::leans_y:
       case Fault::leans_z:
         out.force_N[static_cast<int>(kFault) - static_cast<int>(Fault::leans_x)] += 1e-12 * strength;
         break;
+      case Fault::turns_about_x:
+      case Fault::turns_about_y:
+        out.tool->torque_Nm[kFault == Fault::turns_about_x ? 0 : 1] += 0.1;
+        break;
       case Fault::prefers_up:
         out.force_N.y() *= 1.001;
         break;
       case Fault::fixed_gap:
-        out.proxy_W += 1e-4 * out.normal_W;
+        out.proxy_W += (kIsTool ? 2e-3 : 1e-4) * out.normal_W;
         break;
       case Fault::fixed_strength:
-        out.force_N *= strength > 3 ? 3 / strength : 1;
+        out.force_N *= strength > kMaxForce_N ? kMaxForce_N / strength : 1;
         break;
       case Fault::fixed_rate:
         out.surface_velocity_m_per_s += 1e-9 * 1024 * (out.proxy_W - previous_W_).norm();
         break;
       case Fault::reads_the_clock:
-        out.force_N *= 1 - 1e-9 * time_s;
-        break;
-      case Fault::takes_every_frame:
+        (kIsTool ? out.tool->torque_Nm : out.force_N) *= 1 - 1e-9 * time_s;
         break;
       case Fault::drops_silently:
         if (out.status == RenderStatus::stale_frame_dropped) out.status = RenderStatus::ok;
         break;
       case Fault::jolts_at_frames:
-        out.proxy_W += 1e-9 * frames_ * out.normal_W;
+        out.proxy_W += (kIsTool ? 1e-3 : 1e-9) * frames_ * out.normal_W;
+        break;
+      case Fault::has_no_pose:
+        out.tool->orientation_W.coeffs().setConstant(std::nan(""));
         break;
     }
   }
 
-  const ProxyParameters parameters_;
+  static constexpr double kMaxForce_N = kIsTool ? 2 : 3;
+  const Settings settings_;
   const Kernels& kernels_;
-  ProxyRenderer right_;
+  Right right_;
   std::shared_ptr<const NeighbourSearch> points_;
   GatheredPoints found_;
   Vec3 previous_W_ = Vec3::Zero();
@@ -145,13 +174,19 @@ class WrongRenderer final : public Renderer {
   int frames_ = 0, ordinal_ = 0;
 };
 
+template <Fault kFault>
+using WrongRenderer = Spoiled<kFault, ProxyRenderer, ProxyParameters>;
+
 // Returns an entry as a line of the catalog makes it.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
-  return {{name, "wrong in one way", []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {
-             return std::make_unique<
-                 FactoryFor<WrongRenderer<kFault>, ProxyParameters, Renderer, double, const Kernels&>>();
-           }}};
+  return renderer_entry<WrongRenderer<kFault>>(name, DegreesOfFreedom::three, ContactModel::points,
+                                               "wrong in one way");
+}
+template <Fault kFault>
+RendererEntry wrong_tool(const char* name) {
+  return renderer_entry<Spoiled<kFault, LoadedTool, LoadedTool::Settings>>(
+      name, DegreesOfFreedom::six, ContactModel::points, "wrong in one way");
 }
 
 }  // namespace remote_touch

@@ -7,23 +7,12 @@
 
 #include "core/geometry/camera.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/experiment/catalog/experiment.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::catalog_test {
 namespace {
-
-TEST(Catalog, EveryStoredExperimentCanBeReadAndIsCompleteWhenWritten) {
-  ASSERT_FALSE(embedded_experiments().empty());
-  for (const EmbeddedText& stored : embedded_experiments()) {
-    const Experiment experiment = Experiment::load(stored.name);
-    EXPECT_FALSE(experiment.settings().title.empty()) << stored.name;
-    const std::string resolved = experiment.to_json();
-    EXPECT_EQ(Experiment::from_json(resolved, stored.name).to_json(), resolved) << stored.name;
-  }
-}
 
 TEST(Catalog, NamesAreUniqueAndDescribed) {
   const auto check = [](const auto& entries) {

@@ -58,23 +58,6 @@ TEST(Experiments, SurviveARoundTrip) {
   }
 }
 
-// The resolved configuration has every parameter of the run and of its parts.
-TEST(Experiments, AreResolvedCompletely) {
-  const Json json = Json::parse(
-      Experiment::load("fig4.11", {R"(fixtures=[{"name": "half-space"}, {"name": "hue-range"}])"}).to_json());
-  RunSettings run;
-  EXPECT_EQ(json.size(), parameters(run).size() + 4);
-  const auto expect_all = [](const Json& part, auto entries) {
-    const auto factory = find_entry(entries, part["name"].template get<std::string>(), "part").make();
-    EXPECT_EQ(part.size(), factory->settings().size() + 1) << part;
-    for (const Parameter& p : factory->settings()) EXPECT_TRUE(part.contains(p.name)) << p.name;
-  };
-  expect_all(json["scenario"], scenarios()), expect_all(json["renderer"], renderers()),
-      expect_all(json["trajectory"], trajectories());
-  ASSERT_EQ(json["fixtures"].size(), 2u);
-  for (const Json& rule : json["fixtures"]) expect_all(rule, fixtures());
-}
-
 constexpr const char* kSmall = R"({"seed": 5, "scenario": {"name": "flat-grid", "columns": 7},
     "renderer": {"name": "proxy", "xi": 0.25}, "trajectory": {"name": "waypoints"}})";
 
@@ -212,6 +195,9 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
   EXPECT_HAS(nearest("saftey.ramp_s=3"), "did you mean safety");
   EXPECT_HAS(nearest("renderer.nam=proxy"), "did you mean renderer.name");
   EXPECT_HAS(nearest("run.seed=3"), "run: unknown");
+  // A key without its section is named with it.
+  EXPECT_HAS(nearest("spacing_m=0.001"), "spacing_m: unknown; did you mean scenario.spacing_m");
+  EXPECT_HAS(nearest("r1_m=0.001"), "r1_m: unknown; did you mean renderer.r1_m");
 }
 
 TEST(Experiments, RefuseTextThatIsNoExperiment) {
@@ -244,15 +230,6 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(missing); }), missing + ": ");
   EXPECT_HAS(refusal([&] { Experiment::load(folder.path().string()); }), folder.path().string() + ": ");
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
-}
-
-TEST(Experiment, AKeyWithoutItsSectionIsRefusedWithASuggestion) {
-  const auto refused = [](const std::string& assignment) {
-    return refusal([&] { Experiment::load("fig4.12", {assignment}); });
-  };
-  EXPECT_HAS(refused("noise_sigma_m=0.001"), "noise_sigma_m: unknown; did you mean scenario.noise_sigma_m");
-  EXPECT_HAS(refused("r1_m=0.001"), "r1_m: unknown; did you mean renderer.r1_m");
-  EXPECT_HAS(refused("duration_ms=1"), "duration_ms: unknown; did you mean duration_s");
 }
 
 }  // namespace

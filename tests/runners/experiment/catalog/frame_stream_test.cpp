@@ -12,19 +12,12 @@
 #include "core/dissertation/virtual_fixtures/everywhere.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/synthetic/moving_lift.h"
+#include "tests/doubles/frame_recorder.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::frame_stream_test {
 namespace {
-
-// Records the frames that it receives.
-class Recorder final : public Renderer {
- public:
-  void on_frame(const Frame& frame) override { frames.push_back(frame); }
-  RenderOutput step(const DeviceState&, double) override { return {}; }
-  std::vector<Frame> frames;
-};
 
 // One point, which is at x = j in frame j.
 class Walk final : public Scenario {
@@ -32,9 +25,6 @@ class Walk final : public Scenario {
   explicit Walk(int frames) : frames_(frames) {}
   double frame_rate_hz() const override { return 100; }
   int frame_count() const override { return frames_; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override {
     EXPECT_TRUE(frame >= 0 && frame < frames_) << frame;
     PointCloud cloud;
@@ -57,23 +47,10 @@ FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {})
   return FixtureAssignment(std::move(rules));
 }
 
-// Returns the frames that a renderer receives up to a time. The stream is polled every millisecond, as in a
-// run.
 std::vector<Frame> received(const Scenario& scenario, double until_s, const Transport& transport,
                             std::uint64_t seed = 1, FixtureAssignment fixtures = {}) {
   FrameStream stream(scenario, {nullptr, std::move(fixtures)}, transport, {seed}, false);
-  Recorder recorder;
-  for (int tick = 0; 0.001 * tick <= until_s; ++tick) {
-    const double now_s = 0.001 * tick;
-    const std::size_t before = recorder.frames.size();
-    stream.deliver_until(now_s, recorder);
-    for (std::size_t i = before; i < recorder.frames.size(); ++i) {
-      // A frame is delivered in the tick in which it arrives, neither before nor after.
-      EXPECT_LE(recorder.frames[i].arrives_s, now_s + kSameTime_s);
-      EXPECT_GT(recorder.frames[i].arrives_s, now_s - 0.001 - kSameTime_s);
-    }
-  }
-  return recorder.frames;
+  return received(stream, until_s);
 }
 
 std::vector<int> indices(const std::vector<Frame>& frames) {
@@ -154,7 +131,7 @@ TEST(FrameStream, OneLateCallDeliversTheSameFrames) {
   const Walk walk(300);
   const Transport transport{0.01, 0.05, 0.2};
   FrameStream stream(walk, {}, transport, {7}, false);
-  Recorder recorder;
+  FrameRecorder recorder;
   stream.deliver_until(4, recorder);
   EXPECT_EQ(indices(recorder.frames), indices(received(walk, 4, transport, 7)));
 }
@@ -230,7 +207,7 @@ TEST(FrameStream, ASceneAtRestIsRepeatedIfFramesCanBeLost) {
 std::vector<std::uint64_t> hashes(const Scenario& scenario, FixtureAssignment fixtures,
                                   double latency_s = 0) {
   FrameStream stream(scenario, {nullptr, std::move(fixtures)}, {latency_s}, {1}, true);
-  Recorder recorder;
+  FrameRecorder recorder;
   std::vector<std::uint64_t> list;
   for (int tick = 0; tick < 40; ++tick) {
     stream.deliver_until(0.001 * tick, recorder);
@@ -250,29 +227,29 @@ TEST(FrameStream, TheNewestHashIsThatOfTheNewestFrame) {
   for (std::size_t tick = 5; tick < late.size(); ++tick) EXPECT_EQ(late[tick], plain[tick - 5]) << tick;
 }
 
-// The points are made on request, by the number of the frame. A scene that is sent on shows its last frame.
-TEST(FrameStream, ARepeatedFrameHasTheHashOfTheLastFrame) {
-  MovingLift::Settings settings;
-  settings.grid = {4, 4, 0.0015, 0, 0}, settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
-  const MovingLift lift(settings, {1}, scenes::kernels());
-  FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, true);
-  Recorder recorder;
-  for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
-  ASSERT_GT(recorder.frames.back().index, lift.frame_count());
-  EXPECT_EQ(stream.newest_hash(), mixed(points_hash(lift.cloud(lift.frame_count() - 1)),
-                                        std::bit_cast<std::uint64_t>(recorder.frames.back().captured_s)));
-}
-
-TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
+// Rises for two frames.
+MovingLift short_lift() {
   MovingLift::Settings settings;
   settings.grid = {4, 4, 0.0015, 0, 0}, settings.noise_sigma_m = 0.001;
   settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
-  const MovingLift lift(settings, {1}, scenes::kernels());
+  return {settings, {1}, scenes::kernels()};
+}
+
+// The points are made on request, by the number of the frame. A scene that is sent on shows its last frame.
+TEST(FrameStream, ARepeatedFrameHasTheHashOfTheLastFrame) {
+  const MovingLift lift = short_lift();
+  FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, true);
+  const Frame last = received(stream, 0.299).back();
+  ASSERT_GT(last.index, lift.frame_count());
+  EXPECT_EQ(stream.newest_hash(), mixed(points_hash(lift.cloud(lift.frame_count() - 1)),
+                                        std::bit_cast<std::uint64_t>(last.captured_s)));
+}
+
+TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
+  const MovingLift lift = short_lift();
   for (const bool made : {false, true}) {
     FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, false, made);
-    Recorder recorder;
-    for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
-    const Frame& last = recorder.frames.back();
+    const Frame last = received(stream, 0.299).back();
     const auto* stored = dynamic_cast<const CloudSearch*>(last.points.get());
     ASSERT_EQ(stored != nullptr, made);
     if (!made) continue;
@@ -295,7 +272,7 @@ TEST(FrameStream, TheHashChangesWithTheFixtures) {
 TEST(FrameStream, TheHashIsZeroUnlessRequested) {
   const Walk walk(3);
   FrameStream stream(walk, {}, {}, {1}, false);
-  Recorder recorder;
+  FrameRecorder recorder;
   stream.deliver_until(1, recorder);
   EXPECT_EQ(recorder.frames.size(), 3u);
   EXPECT_EQ(stream.newest_hash(), 0u);
@@ -303,14 +280,18 @@ TEST(FrameStream, TheHashIsZeroUnlessRequested) {
 
 // --- a recording that ends ---
 
-TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
-  const TestFolder folder("frame_stream_test");
+RecordedScene::Settings two_frames(const TestFolder& folder) {
   folder.write_depth("depth/0000.png", 500), folder.write_depth("depth/0001.png", 600);
   folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
                                   "depth_scale_m": 0.001, "frame_rate_hz": 20})");
   RecordedScene::Settings settings;
   settings.path = folder.path().string();
-  const RecordedScene scene(settings, {}, scenes::kernels());
+  return settings;
+}
+
+TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
+  const TestFolder folder("frame_stream_test");
+  const RecordedScene scene(two_frames(folder), {}, scenes::kernels());
   EXPECT_EQ(indices(received(scene, 1, {})), (std::vector<int>{0, 1}));
 
   // The recording continues at its rate while fixtures change, with the last image of the camera.
@@ -327,11 +308,7 @@ TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
 // A registration moves the cloud, its camera and the truth as one.
 TEST(FrameStream, ARecordingIsRegisteredToTheBaseFrame) {
   const TestFolder folder("frame_stream_test");
-  folder.write_depth("depth/0000.png", 500);
-  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
-                                  "depth_scale_m": 0.001, "frame_rate_hz": 20})");
-  RecordedScene::Settings settings;
-  settings.path = folder.path().string();
+  RecordedScene::Settings settings = two_frames(folder);
   const RecordedScene as_recorded(settings, {}, scenes::kernels());
   settings.camera_position_m = {1, 2, 3}, settings.camera_rotation_deg = {0, 0, 90};
   const RecordedScene moved(settings, {}, scenes::kernels());

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "core/parameters/input_error.h"
 #include "core/parameters/unit.h"
@@ -22,12 +24,25 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Calls visit(label, make) for everything that has parameters; make() gives a new owner of default settings.
+// Calls visit(make) for everything that has parameters; make() gives a new owner of default settings.
 template <class Visit>
 void for_each_owner(Visit visit) {
   for (const ExperimentSection& section : experiment_sections())
-    for (const SectionEntry& entry : section.entries())
-      visit(std::string(section.key) + " " + entry.name, entry.make);
+    for (const SectionEntry& entry : section.entries()) {
+      SCOPED_TRACE(std::string(section.key) + " " + entry.name);
+      visit(entry.make);
+    }
+}
+
+template <class Visit>
+void for_each_parameter(Visit visit) {
+  for_each_owner([&](const auto& make) {
+    const auto owner = make();
+    for (const Parameter& p : owner->settings()) {
+      SCOPED_TRACE(p.name);
+      visit(p);
+    }
+  });
 }
 
 template <class Owner>
@@ -64,8 +79,7 @@ bool is_number(const Parameter& p) {
 // --- lists of parameters ---
 
 TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    SCOPED_TRACE(label);
+  for_each_owner([](const auto& make) {
     const auto owner = make();
     std::set<std::string> names;
     for (const Parameter& p : owner->settings()) {
@@ -79,82 +93,36 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
   });
 }
 
+// Names of pure numbers, counts and pixels.
+constexpr const char* kPure =
+    "gamma max_missed_frames max_exit_steps xi phase_x phase_z steps_per_tick columns rows "
+    "first_frame last_frame width height row first_column last_column column seed cell replicate "
+    "normal strength min_saturation min_lightness max_lightness filter_window normal_window "
+    "normal_step device_scale detections_per_tick disk_radius_ratio colour_noise approach_axis "
+    "max_tool_leaves max_patches min_points button fraction sheets view_direction threshold "
+    "normal_neighbours friction fused_frames view alpha persistence_hits persistence_frames "
+    "mean_frames radius_ratio rotational_stiffness_ratio stiffness_ratio neighbours";
+
 // True for pure numbers, counts and pixels, which have no unit, and for names that end in their unit or in
 // the kind of fraction that they are.
 bool carries_unit(const std::string& name) {
-  static const std::set<std::string> kPure = {"gamma",
-                                              "max_missed_frames",
-                                              "max_exit_steps",
-                                              "xi",
-                                              "phase_x",
-                                              "phase_z",
-                                              "steps_per_tick",
-                                              "columns",
-                                              "rows",
-                                              "first_frame",
-                                              "last_frame",
-                                              "width",
-                                              "height",
-                                              "row",
-                                              "first_column",
-                                              "last_column",
-                                              "column",
-                                              "seed",
-                                              "cell",
-                                              "replicate",
-                                              "normal",
-                                              "strength",
-                                              "min_saturation",
-                                              "min_lightness",
-                                              "max_lightness",
-                                              "filter_window",
-                                              "normal_window",
-                                              "normal_step",
-                                              "device_scale",
-                                              "detections_per_tick",
-                                              "disk_radius_ratio",
-                                              "colour_noise",
-                                              "approach_axis",
-                                              "max_tool_leaves",
-                                              "max_patches",
-                                              "min_points",
-                                              "button",
-                                              "fraction",
-                                              "sheets",
-                                              "view_direction",
-                                              "threshold",
-                                              "normal_neighbours",
-                                              "friction",
-                                              "fused_frames",
-                                              "view",
-                                              "alpha",
-                                              "persistence_hits",
-                                              "persistence_frames",
-                                              "mean_frames",
-                                              "radius_ratio",
-                                              "rotational_stiffness_ratio",
-                                              "stiffness_ratio",
-                                              "neighbours"};
+  std::istringstream words(kPure);
+  static const std::set<std::string> pure(std::istream_iterator<std::string>(words), {});
   if (name == "value") return true;  // of a change: the unit of the parameter that changes
-  return kPure.contains(name) || unit_of(name) != nullptr;
+  return pure.contains(name) || unit_of(name) != nullptr;
 }
 
 TEST(Parameters, NumbersCarryTheirUnit) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    SCOPED_TRACE(label);
-    const auto owner = make();
-    for (const Parameter& p : owner->settings()) {
-      std::vector<std::string> names;
-      if (is_number(p)) names = {p.name};
-      if (const auto* rows = std::get_if<Rows>(&p.value)) names = rows->columns;
-      for (const std::string& name : names) EXPECT_TRUE(carries_unit(name)) << name;
-    }
+  for_each_parameter([](const Parameter& p) {
+    std::vector<std::string> names;
+    if (is_number(p)) names = {p.name};
+    if (const auto* rows = std::get_if<Rows>(&p.value)) names = rows->columns;
+    for (const std::string& name : names) EXPECT_TRUE(carries_unit(name)) << name;
   });
 }
 
 TEST(Parameters, DefaultsAreAllowedAndSurviveARoundTrip) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    SCOPED_TRACE(label);
+  for_each_owner([](const auto& make) {
     const auto owner = make(), again = make();
     const Json defaults = written(*owner);
     EXPECT_EQ(defaults.size(), owner->settings().size());
@@ -181,8 +149,7 @@ struct Change {
 };
 
 TEST(Parameters, EveryValueSurvivesARoundTrip) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    SCOPED_TRACE(label);
+  for_each_owner([](const auto& make) {
     const auto owner = make(), again = make();
     for (const Parameter& p : owner->settings()) std::visit(Change{p}, p.value);
     const Json changed = written(*owner);
@@ -253,30 +220,18 @@ struct Bounds {
 };
 
 TEST(Parameters, AcceptTheEndsOfTheRangeAndRefuseValuesOutside) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    const auto owner = make();
-    for (const Parameter& p : owner->settings()) {
-      SCOPED_TRACE(label + "." + p.name);
-      std::visit(Bounds{p}, p.value);
-    }
-  });
+  for_each_parameter([](const Parameter& p) { std::visit(Bounds{p}, p.value); });
 }
 
 TEST(Parameters, RefuseEveryOtherKind) {
-  for_each_owner([](const std::string& label, const auto& make) {
-    const auto owner = make();
-    for (const Parameter& p : owner->settings()) {
-      SCOPED_TRACE(label + "." + p.name);
-      const bool vector = std::holds_alternative<Vec3*>(p.value);
-      const bool text = std::holds_alternative<std::string*>(p.value);
-      expect_refused(p, nullptr);
-      expect_refused(p, Json::object());
-      expect_refused(p, Json::array({Json::object()}));
-      if (!std::holds_alternative<bool*>(p.value)) expect_refused(p, true);
-      if (!text) expect_refused(p, "1");
-      if (!is_number(p) || vector) expect_refused(p, 1);
-      if (!std::holds_alternative<Rows>(p.value)) expect_refused(p, Json::array());
-    }
+  for_each_parameter([](const Parameter& p) {
+    expect_refused(p, nullptr);
+    expect_refused(p, Json::object());
+    expect_refused(p, Json::array({Json::object()}));
+    if (!std::holds_alternative<bool*>(p.value)) expect_refused(p, true);
+    if (!std::holds_alternative<std::string*>(p.value)) expect_refused(p, "1");
+    if (!is_number(p) || std::holds_alternative<Vec3*>(p.value)) expect_refused(p, 1);
+    if (!std::holds_alternative<Rows>(p.value)) expect_refused(p, Json::array());
   });
 }
 

@@ -12,6 +12,7 @@
 
 #include "runners/experiment/hand/image_scan.h"
 #include "tests/support/depth_scenes.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::harsh_images {
@@ -41,9 +42,6 @@ class Views final : public Scenario {
   explicit Views(std::vector<DepthImage> frames) : frames_(std::move(frames)) {}
   double frame_rate_hz() const override { return 30; }
   int frame_count() const override { return static_cast<int>(frames_.size()); }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override {
     const int last = frame_count() - 1;
     return cloud_from_depth(frames_[static_cast<std::size_t>(std::min(frame, last))], kCamera,
@@ -123,11 +121,8 @@ inline bool is_mug(double x, double y) {
   return std::isfinite(mug(x, y));
 }
 
-inline std::vector<std::string> kinds(const Trajectory& hand) {
-  std::vector<std::string> kinds;
-  for (const Note& note : hand.notes()) kinds.push_back(note.kind);
-  return kinds;
+inline Kinds kinds(const Trajectory& hand) {
+  return kinds_of(hand.notes());
 }
-using Kinds = std::vector<std::string>;
 
 }  // namespace remote_touch::harsh_images

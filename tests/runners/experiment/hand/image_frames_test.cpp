@@ -36,9 +36,6 @@ class Frames final : public Scenario {
   explicit Frames(std::vector<PointCloud> frames) : frames_(std::move(frames)) {}
   double frame_rate_hz() const override { return 10; }
   int frame_count() const override { return static_cast<int>(frames_.size()); }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override { return frames_[static_cast<std::size_t>(frame)]; }
   double signed_distance(const Vec3&, double) const override { return kNaN; }
 

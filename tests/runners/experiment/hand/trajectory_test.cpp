@@ -31,7 +31,6 @@ class PointsOnly final : public Scenario {
  public:
   double frame_rate_hz() const override { return 30; }
   int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int) const override { return make_search(cloud(0)); }
   PointCloud cloud(int) const override { return scenes::flat_grid(5); }
   double signed_distance(const Vec3&, double) const override { return std::nan(""); }
 };

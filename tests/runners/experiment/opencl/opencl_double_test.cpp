@@ -11,19 +11,15 @@
 #include "runners/experiment/opencl/device_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
-#include "tests/doubles/opencl_double.h"
+#include "tests/doubles/loaded_opencl_double.h"
 #include "tests/runners/experiment/opencl/coloured_frames.h"
+#include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 
 namespace remote_touch::opencl_double_test {
 namespace {
 
 using namespace depth_cases;
-
-OpenClDouble& library() {
-  static OpenClDouble& one = loaded_opencl_double(REMOTE_TOUCH_DOUBLE_OPENCL);
-  return one;
-}
 
 class OpenClDoubleTest : public testing::Test {
  protected:
@@ -142,7 +138,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_TRUE(DevicePipeline::kFrameLimit == std::chrono::seconds(2));
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   ASSERT_EQ(reported_.size(), 1u);
-  EXPECT_NE(reported_[0].find("no answer within 2 s"), std::string::npos) << reported_[0];
+  EXPECT_HAS(reported_[0], "no answer within 2 s");
   pipeline.reset();  // does not wait for the driver
   library().is_released = true;
   EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver returns
@@ -153,7 +149,7 @@ TEST_F(OpenClDoubleTest, AShortLimitIsReportedInFractionsOfASecond) {
   library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   ASSERT_EQ(reported_.size(), 1u);
-  EXPECT_NE(reported_[0].find("no answer within 0.05 s"), std::string::npos) << reported_[0];
+  EXPECT_HAS(reported_[0], "no answer within 0.05 s");
   pipeline.reset();
   library().is_released = true;
   EXPECT_TRUE(everything_is_released());
@@ -207,7 +203,7 @@ TEST_F(OpenClDoubleTest, ListingOfDevicesTimesOutIfDriversHang) {
   EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
   // The call throws at once while they still hang. ctest would not wait 10 hours for a test.
   EXPECT_THROW(listed_devices(std::chrono::hours(10)), OpenClTimeout);
-  EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
+  EXPECT_HAS(refusal("opencl"), "did not list their devices");
   EXPECT_TRUE(refusal("auto").empty());
   library().is_released = true;
   std::vector<OpenClDevice> again;
@@ -228,13 +224,12 @@ TEST_F(OpenClDoubleTest, ADeviceThatCannotBeOpenedIsRefusedWithTheReason) {
                                "clBuildProgram", "clCreateKernel", "clFinish"}) {
     begin_anew();
     library().failing = function, library().failing_call = 1;
-    EXPECT_NE(refusal("opencl").find(std::string(function) + ": CL_OUT_OF_RESOURCES"), std::string::npos)
-        << refusal("opencl");
+    EXPECT_HAS(refusal("opencl"), std::string(function) + ": CL_OUT_OF_RESOURCES");
     EXPECT_TRUE(refusal("auto").empty());  // then the CPU does it
   }
   begin_anew();
   library().failing = "clBuildProgram", library().code = CL_BUILD_PROGRAM_FAILURE;
-  EXPECT_NE(refusal("opencl").find("clBuildProgram: error: of the double"), std::string::npos);
+  EXPECT_HAS(refusal("opencl"), "clBuildProgram: error: of the double");
 }
 
 TEST_F(OpenClDoubleTest, NormalsThatOnlyTheCpuComputesAreRefusedForADevice) {
@@ -254,17 +249,15 @@ TEST_F(OpenClDoubleTest, NormalsThatOnlyTheCpuComputesAreRefusedForADevice) {
 
 TEST_F(OpenClDoubleTest, ADeviceWithOtherBitsIsRefusedUnlessItIsAllowed) {
   library().is_imprecise = true;
-  EXPECT_NE(refusal("opencl:0:0").find("flushes subnormal numbers to zero in single precision"),
-            std::string::npos)
-      << refusal("opencl:0:0");
+  EXPECT_HAS(refusal("opencl:0:0"), "flushes subnormal numbers to zero in single precision");
   EXPECT_TRUE(refusal("opencl:0:0", false).empty());
   begin_anew();
   library().is_wrong = true;
   const std::string told = refusal("opencl");
-  EXPECT_NE(told.find("gave other bits than the CPU in a trial frame"), std::string::npos) << told;
-  EXPECT_NE(told.find("exact = false allows it"), std::string::npos) << told;
+  EXPECT_HAS(told, "gave other bits than the CPU in a trial frame");
+  EXPECT_HAS(told, "exact = false allows it");
   EXPECT_TRUE(refusal("opencl", false).empty());
-  EXPECT_NE(refusal("opencl:0:1").find("there is no such device"), std::string::npos);
+  EXPECT_HAS(refusal("opencl:0:1"), "there is no such device");
 }
 
 }  // namespace

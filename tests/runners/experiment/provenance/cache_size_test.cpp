@@ -16,6 +16,11 @@
 namespace remote_touch::cache_size_test {
 namespace {
 
+void take(Unpacker& unpack) {
+  std::string text;
+  unpack.text(text);
+}
+
 class CacheSizeTest : public testing::Test {
  protected:
   CacheSizeTest() { ::unsetenv("REMOTE_TOUCH_CACHE_MB"); }  // the user may have set it
@@ -69,10 +74,6 @@ TEST_F(CacheSizeTest, AMissingFolderCountsAsEmpty) {
 TEST_F(CacheSizeTest, WritingKeepsTheCacheBelowItsMaximum) {
   ::setenv("REMOTE_TOUCH_CACHE_MB", "0.0025", 1);  // 2500 bytes: two files
   const auto put = [](CacheWriter& pack) { pack.text(std::string(1000, 'x')); };
-  const auto take = [](Unpacker& unpack) {
-    std::string text;
-    unpack.text(text);
-  };
   const CacheKind kind{"tool", 1};
   ASSERT_TRUE(write_cache_file(folder_.path(), kind, "a", put));
   ASSERT_TRUE(write_cache_file(folder_.path(), kind, "b", put));
@@ -85,10 +86,6 @@ TEST_F(CacheSizeTest, WritingKeepsTheCacheBelowItsMaximum) {
 // A small file is written whatever the maximum is. A file that is longer than its kind can be is not read.
 TEST_F(CacheSizeTest, AKindCanHaveAMaximum) {
   ::setenv("REMOTE_TOUCH_CACHE_MB", "wrong", 1);
-  const auto take = [](Unpacker& unpack) {
-    std::string text;
-    unpack.text(text);
-  };
   const CacheKind kind{"levels", 1, 200};
   for (const std::size_t length : {10u, 200u}) {
     const auto put = [&](CacheWriter& pack) { pack.text(std::string(length, 'x')); };

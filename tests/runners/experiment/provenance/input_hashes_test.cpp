@@ -163,53 +163,53 @@ TEST_F(Inputs, AreRefusedIfTheyChangeDuringARun) {
 }
 
 // Three short runs on a cloud.
-Sweep sweep_on(const std::string& cloud_file) {
-  return Sweep::from_json(R"({"experiment": {"scenario": {"name": "recording", "path": ")" + cloud_file +
-                              R"("}, "renderer": {"name": "proxy"}, "duration_s": 0.01,
+class SweepInputs : public Inputs {
+ protected:
+  std::string write_cloud(const std::string& more = "") const {
+    return folder_.write("cloud.pcd", xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n" + more).string();
+  }
+  // Calls done() after each run.
+  template <class Done>
+  bool run(const Done& done) {
+    return SweepSession(sweep_, {}, attributes_, result_)
+        .run(kernels_for(best_isa()), nullptr, [&](auto, auto, auto) { done(); });
+  }
+  std::size_t runs_in(RunState state) const { return read_sweep(result_).result.runs_in(state).size(); }
+
+  const std::filesystem::path result_ = folder_ / "sweep.h5";
+  const Sweep sweep_ =
+      Sweep::from_json(R"({"experiment": {"scenario": {"name": "recording", "path": ")" + write_cloud() +
+                           R"("}, "renderer": {"name": "proxy"}, "duration_s": 0.01,
               "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.4, 0], [0, 0, 0.4, 0.01]]}},
           "measures": ["max_force"], "axes": [{"parameter": "renderer.steps_per_tick", "values": [10, 20, 30]}]})",
-                          "test");
-}
+                       "test");
+  const TextAttributes attributes_{{"config", sweep_.to_json()},
+                                   {"input_digests", input_hashes(sweep_.inputs())}};
+};
 
 // The first run that ends changes the recording: no run of that call is kept, and the next call does them
 // all.
-TEST_F(Inputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
-  const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
-  const Sweep sweep = sweep_on(folder_.write("cloud.pcd", cloud).string());
-  const TextAttributes attributes{{"config", sweep.to_json()},
-                                  {"input_digests", input_hashes(sweep.inputs())}};
-  const auto result = folder_ / "sweep.h5";
-  const Kernels& kernels = kernels_for(best_isa());
-  const std::string message = refusal([&] {
-    SweepSession(sweep, {}, attributes, result).run(kernels, nullptr, [&](auto, auto, auto) {
-      folder_.write("cloud.pcd", cloud + "\n");
-    });
-  });
-  EXPECT_HAS(message, "changed while it was read");
-  EXPECT_EQ(read_sweep(result).result.runs_in(RunState::pending).size(), 3u);
-  folder_.write("cloud.pcd", cloud);
-  EXPECT_TRUE(SweepSession(sweep, {}, attributes, result).run(kernels, nullptr, [](auto, auto, auto) {}));
-  EXPECT_EQ(read_sweep(result).result.runs_in(RunState::done).size(), 3u);
+TEST_F(SweepInputs, UndoTheRunsOfASweepIfTheyChangeDuringIt) {
+  EXPECT_HAS(refusal([&] { run([&] { write_cloud("\n"); }); }), "changed while it was read");
+  EXPECT_EQ(runs_in(RunState::pending), 3u);
+  write_cloud();
+  EXPECT_TRUE(run([] {}));
+  EXPECT_EQ(runs_in(RunState::done), 3u);
 }
 
 // The sweep fails as it does if the file cannot be written, or if a run finds no memory.
-TEST_F(Inputs, UndoTheRunsOfASweepThatFailsIfTheyChangeDuringIt) {
-  const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
-  const Sweep sweep = sweep_on(folder_.write("cloud.pcd", cloud).string());
-  const TextAttributes attributes{{"config", sweep.to_json()},
-                                  {"input_digests", input_hashes(sweep.inputs())}};
-  const auto result = folder_ / "sweep.h5";
-  const auto run = [&](const std::string& now) {
-    SweepSession(sweep, {}, attributes, result).run(kernels_for(best_isa()), nullptr, [&](auto, auto, auto) {
-      folder_.write("cloud.pcd", now);
+TEST_F(SweepInputs, UndoTheRunsOfASweepThatFailsIfTheyChangeDuringIt) {
+  const auto fail_with = [&](const std::string& more) {
+    run([&] {
+      write_cloud(more);
       throw InputError("a full disk");
     });
   };
-  EXPECT_HAS(refusal([&] { run(cloud + "\n"); }), "changed while it was read");
-  EXPECT_TRUE(read_sweep(result).result.runs_in(RunState::done).empty());
-  folder_.write("cloud.pcd", cloud);
-  EXPECT_EQ(refusal([&] { run(cloud); }), "a full disk");
-  EXPECT_FALSE(read_sweep(result).result.runs_in(RunState::done).empty());
+  EXPECT_HAS(refusal([&] { fail_with("\n"); }), "changed while it was read");
+  EXPECT_EQ(runs_in(RunState::done), 0u);
+  write_cloud();
+  EXPECT_EQ(refusal([&] { fail_with(""); }), "a full disk");
+  EXPECT_GT(runs_in(RunState::done), 0u);
 }
 
 TEST(ChangedInputs, AreListedByPath) {

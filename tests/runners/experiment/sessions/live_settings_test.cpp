@@ -3,30 +3,26 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
+#include <vector>
 
 namespace remote_touch::live_settings_test {
 namespace {
 
-// Every parameter sets the field of its name and allows its default.
+// Every parameter sets the field of its name.
 TEST(LiveSettings, ParametersReachTheSettings) {
   LiveSettings s;
-  std::set<std::string> names;
+  std::vector<std::string> names;
   for (const Parameter& p : parameters(s)) {
-    names.insert(p.name);
-    EXPECT_FALSE(p.help.empty()) << p.name;
-    if (const auto* vector = std::get_if<Vec3*>(&p.value)) {
-      EXPECT_LT(p.low, 0) << p.name;
-      EXPECT_GT(p.high, 0) << p.name;
-      **vector = Vec3::Constant(static_cast<double>(names.size()));
-    } else {
-      EXPECT_GT(p.low, 0) << p.name;
-      *std::get<double*>(p.value) = static_cast<double>(names.size());
-    }
+    names.push_back(p.name);
+    const auto number = static_cast<double>(names.size());
+    if (const auto* vector = std::get_if<Vec3*>(&p.value))
+      **vector = Vec3::Constant(number);
+    else
+      *std::get<double*>(p.value) = number;
   }
-  EXPECT_EQ(names, (std::set<std::string>{"device_position_m", "device_rotation_deg", "device_scale",
-                                          "camera_position_m", "camera_rotation_deg"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"device_position_m", "device_rotation_deg", "device_scale",
+                                             "camera_position_m", "camera_rotation_deg"}));
   EXPECT_EQ(s.device_position_m, Vec3::Constant(1));
   EXPECT_EQ(s.device_rotation_deg, Vec3::Constant(2));
   EXPECT_EQ(s.device_scale, 3);

@@ -297,38 +297,17 @@ TEST(SessionFile, RefusesWhatNoLoopRecords) {
       {[](RawSession& s) { s.live_parameters = ""; }, "its attribute live_parameters cannot be read"},
       {[](RawSession& s) { s.live_parameters = "[3, 4]"; }, "its attribute live_parameters cannot be read"},
       {[](RawSession& s) { s.value[1] = std::numeric_limits<double>::infinity(); }, changes},
-      {[](RawSession& s) {
-         s.number = {3, 3, 9};
-       },
-       ticks},
-      {[](RawSession& s) {
-         s.number = {4, 3, 9};
-       },
-       ticks},
+      {[](RawSession& s) { s.number[1] = 3; }, ticks},
+      {[](RawSession& s) { s.number[1] = 2; }, ticks},
       {[](RawSession& s) { s.number[2] = std::uint64_t{1} << 31; }, ticks},
       {[](RawSession& s) { s.number[2] = ~std::uint64_t{0}; }, ticks},
       {[](RawSession& s) { s.taken[1] = -2; }, ticks},
       {[](RawSession& s) { s.taken[2] = 2; }, ticks},
-      {[](RawSession& s) {
-         s.taken = {0, 0, 1};
-       },
-       ticks},
-      {[](RawSession& s) {
-         s.taken = {1, -1, 0};
-       },
-       ticks},
-      {[](RawSession& s) {
-         s.frame_number = {6, 6};
-       },
-       frames},
-      {[](RawSession& s) {
-         s.frame_number = {6, 5};
-       },
-       frames},
-      {[](RawSession& s) {
-         s.captured = {0.1, 0.1};
-       },
-       frames},
+      {[](RawSession& s) { s.taken[1] = 0; }, ticks},
+      {[](RawSession& s) { s.taken[0] = 1, s.taken[2] = 0; }, ticks},
+      {[](RawSession& s) { s.frame_number[0] = 6; }, frames},
+      {[](RawSession& s) { s.frame_number[0] = 7; }, frames},
+      {[](RawSession& s) { s.captured[0] = 0.1; }, frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::quiet_NaN(); }, frames},
       {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::infinity(); }, frames},
       {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that are not button states"},

@@ -22,9 +22,6 @@ class Plate final : public Scenario {
   Plate(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
   double frame_rate_hz() const override { return 30; }
   int frame_count() const override { return 1; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int) const override {
     constexpr int kSide = 31;
     PointCloud cloud;

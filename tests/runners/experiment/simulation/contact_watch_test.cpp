@@ -3,44 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "analysis/measures/measures.h"
 #include "analysis/theory/first_touch.h"
-#include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
-#include "runners/experiment/simulation/simulation.h"
+#include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::contact_watch_test {
 namespace {
-
-struct Noted {
-  RunReport report;
-  Trace trace;
-
-  std::vector<std::string> kinds() const {
-    std::vector<std::string> kinds;
-    for (const Note& note : report.notes) kinds.push_back(note.kind);
-    return kinds;
-  }
-  bool has(const std::string& kind) const {
-    const std::vector<std::string> all = kinds();
-    return std::count(all.begin(), all.end(), kind) > 0;
-  }
-};
-
-Noted run(const std::string& scenario, const std::string& trajectory, const std::string& renderer = "proxy",
-          const std::string& duration_s = "0.3") {
-  const std::string text = R"({"scenario": )" + scenario + R"(, "renderer": {"name": ")" + renderer +
-                           R"("}, "trajectory": )" + trajectory + R"(, "duration_s": )" + duration_s + "}";
-  Noted made;
-  SimulationOptions options;
-  options.report = &made.report;
-  made.trace = simulate(Experiment::from_json(text, "test"), options);
-  return made;
-}
 
 std::string flat(const std::string& spacing_m) {
   return R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )" + spacing_m + "}";
@@ -59,30 +30,29 @@ std::string straight_down(double x_m, double z_m) {
 // The contact radius is 5 mm.
 TEST(ContactWatch, ReportsAHandThatStartsInContact) {
   for (const double height_m : {0.02, 0.0051})
-    EXPECT_EQ(run(flat("0.0015"), press_from(0.0003, height_m)).kinds(), std::vector<std::string>{})
-        << height_m;
+    EXPECT_EQ(run_of(flat("0.0015"), press_from(0.0003, height_m)).kinds(), Kinds{}) << height_m;
   for (const double height_m : {0.0049, 0.0002, 0.0, -0.0002, -0.008}) {
-    const Noted made = run(flat("0.0015"), press_from(0.0003, height_m));
+    const ReportedRun made = run_of(flat("0.0015"), press_from(0.0003, height_m));
     EXPECT_TRUE(made.has("starts in contact")) << height_m;
   }
-  EXPECT_HAS(run(flat("0.0015"), press_from(0, 0.002)).report.notes.front().text,
+  EXPECT_HAS(run_of(flat("0.0015"), press_from(0, 0.002)).report.notes.front().text,
              "the hand starts 2 mm in front of the true surface, nearer than the contact radius of 5 mm");
-  EXPECT_HAS(run(flat("0.0015"), press_from(0, -0.002)).report.notes.front().text,
+  EXPECT_HAS(run_of(flat("0.0015"), press_from(0, -0.002)).report.notes.front().text,
              "the hand starts 2 mm behind the true surface");
 }
 
 // Single points have no sides, so that their distance alone counts.
 TEST(ContactWatch, ReportsAStartAtPointsWithoutATrueSurface) {
   const std::string points = R"({"name": "points", "points": [[0, 0.016, 0]]})";
-  EXPECT_TRUE(run(points, straight_down(0, 0)).has("starts in contact"));
-  EXPECT_FALSE(run(points, straight_down(0.0035, 0)).has("starts in contact")) << "5.3 mm away";
+  EXPECT_TRUE(run_of(points, straight_down(0, 0)).has("starts in contact"));
+  EXPECT_FALSE(run_of(points, straight_down(0.0035, 0)).has("starts in contact")) << "5.3 mm away";
 }
 
 // The plate is there, but the sensor does not see it, because it is too high: nothing is touched.
 TEST(ContactWatch, AStartBehindASurfaceWithoutPointsIsNotReported) {
   const std::string hidden =
       R"({"name": "plates", "plates": [[0, 0.03, 0, 0.2, 0.2, 0, 0, 0, 0]], "max_height_m": 0.01})";
-  EXPECT_FALSE(run(hidden, straight_down(0, 0)).has("starts in contact"));
+  EXPECT_FALSE(run_of(hidden, straight_down(0, 0)).has("starts in contact"));
 }
 
 // The rows are 12.5 mm apart, the points of a row 1.6 mm: every point has near neighbours.
@@ -96,21 +66,19 @@ std::string scan_lines(double rows_m) {
 }
 
 TEST(ContactWatch, ReportsScanLinesFarApart) {
-  const Noted apart = run(scan_lines(0.0125), straight_down(0.0007, 0.003));
-  EXPECT_EQ(apart.kinds(), std::vector<std::string>{"wide spacing"});
+  const ReportedRun apart = run_of(scan_lines(0.0125), straight_down(0.0007, 0.003));
+  EXPECT_EQ(apart.kinds(), Kinds{"wide spacing"});
   EXPECT_HAS(apart.report.notes.front().text, "a gap of radius 6.3 mm at the first contact");
-  EXPECT_EQ(run(scan_lines(0.02), straight_down(0.0007, 0)).kinds(),
-            std::vector<std::string>{"wide spacing"});
-  EXPECT_EQ(run(scan_lines(0.0095), straight_down(0.0007, 0.003)).kinds(), std::vector<std::string>{});
+  EXPECT_EQ(run_of(scan_lines(0.02), straight_down(0.0007, 0)).kinds(), Kinds{"wide spacing"});
+  EXPECT_EQ(run_of(scan_lines(0.0095), straight_down(0.0007, 0.003)).kinds(), Kinds{});
 }
 
 // A ball that falls through the middle of a cell touches nothing.
 TEST(ContactWatch, ReportsWideSpacingWithoutAContact) {
-  const Noted made = run(flat("0.012"), straight_down(0.006, 0.006));
-  EXPECT_EQ(made.kinds(), (std::vector<std::string>{"no contact", "wide spacing"}));
+  const ReportedRun made = run_of(flat("0.012"), straight_down(0.006, 0.006));
+  EXPECT_EQ(made.kinds(), (Kinds{"no contact", "wide spacing"}));
   EXPECT_HAS(made.report.notes.back().text, "where the proxy came nearest to them");
-  EXPECT_EQ(run(flat("0.0015"), straight_down(0.04, 0)).kinds(), std::vector<std::string>{"no contact"})
-      << "beside the grid";
+  EXPECT_EQ(run_of(flat("0.0015"), straight_down(0.04, 0)).kinds(), Kinds{"no contact"}) << "beside the grid";
 }
 
 // A renderer that holds its proxy up to 1 mm behind the surface loses it only beyond that, see
@@ -136,14 +104,18 @@ TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
 TEST(ContactWatch, AProxyThatSinglePointsDoNotHoldHasNoNoteOnSpacing) {
   for (const char* name :
        {"god-object", "density-proxy", "surfels", "implicit-surface", "penalty", "tracked-sheet"})
-    EXPECT_FALSE(run(flat("0.008"), press_from(0.0003, 0.02), name).has("wide spacing")) << name;
+    EXPECT_FALSE(
+        run_of(flat("0.008"), press_from(0.0003, 0.02), R"("duration_s": 0.3)", name).has("wide spacing"))
+        << name;
   for (const char* name : {"proxy", "averaged-proxy", "oracle-proxy"})
-    EXPECT_TRUE(run(flat("0.008"), press_from(0.0003, 0.02), name).has("wide spacing")) << name;
+    EXPECT_TRUE(
+        run_of(flat("0.008"), press_from(0.0003, 0.02), R"("duration_s": 0.3)", name).has("wide spacing"))
+        << name;
 }
 
 TEST(ContactWatch, ASinglePointHasNoSpacing) {
-  const Noted made = run(R"({"name": "points", "points": [[0, 0, 0]]})", straight_down(0.001, 0));
-  EXPECT_EQ(made.kinds(), std::vector<std::string>{});
+  const ReportedRun made = run_of(R"({"name": "points", "points": [[0, 0, 0]]})", straight_down(0.001, 0));
+  EXPECT_EQ(made.kinds(), Kinds{});
 }
 
 std::string lift(double velocity_m_per_s, double wait_s, const std::string& more = "") {
@@ -161,7 +133,8 @@ TEST(ContactWatch, ReportsProxiesThatTheFirstTouchLoses) {
   for (const double velocity_m_per_s : {0.13, 0.2, 0.25, 0.4}) {
     int noted = 0;
     for (int phase = 0; phase < kPhases; ++phase) {
-      const Noted made = run(lift(velocity_m_per_s, (phase + 0.5) / kPhases / 30), kRest, "proxy", "0.5");
+      const ReportedRun made =
+          run_of(lift(velocity_m_per_s, (phase + 0.5) / kPhases / 30), kRest, R"("duration_s": 0.5)");
       noted += made.has("lost at the first touch") ? 1 : 0;
       EXPECT_EQ(made.has("lost at the first touch"), popped_through(made.trace) == 1) << velocity_m_per_s;
     }
@@ -172,15 +145,15 @@ TEST(ContactWatch, ReportsProxiesThatTheFirstTouchLoses) {
 
 // The acceleration is above r_1 f_c^2 = 4.5 m/s^2, (4.14). It loses the proxy long after the first touch.
 TEST(ContactWatch, ALaterLossIsNoneAtTheFirstTouch) {
-  const Noted made =
-      run(lift(0.1, 0, R"("acceleration_m_per_s2": 20, "acceleration_s": 0.2, )"), kRest, "proxy", "0.9");
+  const ReportedRun made = run_of(lift(0.1, 0, R"("acceleration_m_per_s2": 20, "acceleration_s": 0.2, )"),
+                                  kRest, R"("duration_s": 0.9)");
   EXPECT_EQ(popped_through(made.trace), 1);
-  EXPECT_EQ(made.kinds(), std::vector<std::string>{});
+  EXPECT_EQ(made.kinds(), Kinds{});
 }
 
 // This proxy is lost at its first touch because the points are too far apart, not because of motion.
 TEST(ContactWatch, ASurfaceAtRestLosesNoProxyAtTheFirstTouch) {
-  EXPECT_EQ(run(flat("0.0075"), press_from(0.0003, 0.02)).kinds(), std::vector<std::string>{"wide spacing"});
+  EXPECT_EQ(run_of(flat("0.0075"), press_from(0.0003, 0.02)).kinds(), Kinds{"wide spacing"});
 }
 
 }  // namespace

@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/trace/trace.h"
 #include "core/dissertation/virtual_fixtures/half_space.h"
 #include "core/search/neighbour_search.h"
-#include "runners/experiment/simulation/simulation.h"
-#include "tests/support/test_files.h"
+#include "tests/runners/experiment/simulation/reported_run.h"
 
 namespace remote_touch::fixture_notes_test {
 namespace {
@@ -58,17 +56,13 @@ TEST(FixtureNotes, AreNoneIfThereAreNoRulesOrFrames) {
 
 TEST(FixtureNotes, ARunHasThem) {
   const auto notes_of = [](const std::string& height_m) {
-    RunReport report;
-    SimulationOptions options;
-    options.report = &report;
-    simulate(Experiment::from_json(R"({"scenario": {"name": "flat-grid", "rows": 11, "columns": 11},
-      "renderer": {"name": "proxy"}, "duration_s": 0.3,
-      "fixtures": [{"name": "half-space", "point_m": [0, )" +
-                                       height_m + R"(, 0], "normal": [0, 1, 0]}],
-      "trajectory": {"name": "press", "press_at_s": 0.1, "depth_m": 0.01, "start_m": [0.0003, 0.03, 0.0001]}})",
-                                   "test"),
-             options);
-    return texts_of(report.notes);
+    const std::string press =
+        R"({"name": "press", "press_at_s": 0.1, "depth_m": 0.01, "start_m": [0.0003, 0.03, 0.0001]})";
+    const std::string rule =
+        R"({"name": "half-space", "point_m": [0, )" + height_m + R"(, 0], "normal": [0, 1, 0]})";
+    return texts_of(run_of(R"({"name": "flat-grid", "rows": 11, "columns": 11})", press,
+                           R"("duration_s": 0.3, "fixtures": [)" + rule + "]")
+                        .report.notes);
   };
   EXPECT_EQ(notes_of("0.01"),
             Texts{"nothing selected: fixtures.0 selects no point of the first frame and none of the last"});

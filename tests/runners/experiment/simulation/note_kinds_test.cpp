@@ -10,33 +10,16 @@ namespace {
 
 // New kinds are appended; a stored bit keeps its name.
 TEST(NoteKinds, KeepTheirBits) {
-  const std::vector<std::string> stored = {"other",
-                                           "phase not reached",
-                                           "after the motion",
-                                           "no contact",
-                                           "no frame",
-                                           "wide spacing",
-                                           "points dropped",
-                                           "frames unused",
-                                           "frames apart",
-                                           "unusual rate",
-                                           "recording incomplete",
-                                           "colours missing",
-                                           "viewpoint unused",
-                                           "behind the surface",
-                                           "off the surface",
-                                           "holes bridged",
-                                           "edges bridged",
-                                           "object not scanned",
-                                           "camera changes",
-                                           "starts in contact",
-                                           "lost at the first touch",
-                                           "object not pressed",
-                                           "hand jumped",
-                                           "nothing selected"};
+  const std::string stored =
+      "other,phase not reached,after the motion,no contact,no frame,wide spacing,"
+      "points dropped,frames unused,frames apart,unusual rate,recording incomplete,"
+      "colours missing,viewpoint unused,behind the surface,off the surface,holes bridged,"
+      "edges bridged,object not scanned,camera changes,starts in contact,"
+      "lost at the first touch,object not pressed,hand jumped,nothing selected";
   const std::vector<std::string> names = note_kind_names();
-  ASSERT_GE(names.size(), stored.size());
-  for (std::size_t i = 0; i < stored.size(); ++i) EXPECT_EQ(names[i], stored[i]);
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ",") + name;
+  EXPECT_EQ(joined.substr(0, stored.size()), stored);
   EXPECT_LE(names.size(), 31u) << "bits of a number without its sign";
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   for (const std::string& name : names) EXPECT_EQ(name.find(','), std::string::npos) << "it separates names";

@@ -4,39 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/trace/trace.h"
-#include "runners/experiment/simulation/simulation.h"
+#include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::run_report_test {
 namespace {
-
-// A press into a plane at rest, as JSON with two gaps to fill: the scene and the hand.
-RunReport report_of_run(const std::string& scenario, const std::string& trajectory,
-                        const std::string& rest = R"("duration_s": 0.3)") {
-  const std::string text = R"({"scenario": )" + scenario +
-                           R"(, "renderer": {"name": "proxy"}, "trajectory": )" + trajectory + ", " + rest +
-                           "}";
-  RunReport report;
-  SimulationOptions options;
-  options.report = &report;
-  simulate(Experiment::from_json(text, "test"), options);
-  return report;
-}
-
-std::vector<std::string> kinds_of(const RunReport& report) {
-  std::vector<std::string> kinds;
-  for (const Note& note : report.notes) kinds.push_back(note.kind);
-  return kinds;
-}
-using Kinds = std::vector<std::string>;
 
 constexpr const char* kPlane = R"({"name": "flat-grid", "rows": 40, "columns": 40, "spacing_m": 0.0015})";
 constexpr const char* kPress =
     R"({"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.01})";
 
 TEST(RunReport, AnOrdinaryPressHasNoNotes) {
-  const RunReport report = report_of_run(kPlane, kPress);
+  const RunReport report = run_of(kPlane, kPress).report;
   EXPECT_TRUE(report.notes.empty());
   EXPECT_TRUE(report.inputs.empty());  // no recording was read
   EXPECT_EQ(text_of(report), "");
@@ -44,8 +23,8 @@ TEST(RunReport, AnOrdinaryPressHasNoNotes) {
 }
 
 TEST(RunReport, ReportsAPressThatWasNotReached) {
-  const RunReport report = report_of_run(kPlane, kPress, R"("duration_s": 0.1)");
-  EXPECT_EQ(kinds_of(report), (Kinds{"phase not reached", "no contact"}));
+  const RunReport report = run_of(kPlane, kPress, R"("duration_s": 0.1)").report;
+  EXPECT_EQ(kinds_of(report.notes), (Kinds{"phase not reached", "no contact"}));
   EXPECT_EQ(report.notes[0].text, "the run ends at 0.1 s, before the press begins at 0.1 s");
   EXPECT_HAS(text_of(report), "  note (phase not reached): the run ends at 0.1 s");
   EXPECT_EQ(refusal([&] { refuse_notes(report); }),
@@ -56,28 +35,28 @@ TEST(RunReport, ReportsAPressThatWasNotReached) {
 
 TEST(RunReport, ReportsAMotionOfTheSceneThatWasNotReached) {
   const std::string waits = R"({"name": "moving-plane", "start_height_m": 0, "wait_s": 0.4})";
-  EXPECT_EQ(kinds_of(report_of_run(waits, kPress)), Kinds{"phase not reached"});
-  EXPECT_EQ(kinds_of(report_of_run(waits, kPress, R"("duration_s": 0.5)")), Kinds{});
+  EXPECT_EQ(run_of(waits, kPress).kinds(), Kinds{"phase not reached"});
+  EXPECT_EQ(run_of(waits, kPress, R"("duration_s": 0.5)").kinds(), Kinds{});
 }
 
 TEST(RunReport, ReportsAPressAfterTheMotion) {
   const std::string rises =
       R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 0.2, "rise_height_m": 0.01})";
-  const RunReport report = report_of_run(rises, kPress);
-  EXPECT_EQ(kinds_of(report), Kinds{"after the motion"});
+  const RunReport report = run_of(rises, kPress).report;
+  EXPECT_EQ(kinds_of(report.notes), Kinds{"after the motion"});
   EXPECT_HAS(report.notes[0].text,
              "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s");
 }
 
 TEST(RunReport, ReportsATrajectoryThatDoesNotEnd) {
   const std::string path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})";
-  EXPECT_EQ(kinds_of(report_of_run(kPlane, path)), Kinds{});
-  EXPECT_EQ(kinds_of(report_of_run(kPlane, path, R"("duration_s": 0.14)")), Kinds{"phase not reached"});
+  EXPECT_EQ(run_of(kPlane, path).kinds(), Kinds{});
+  EXPECT_EQ(run_of(kPlane, path, R"("duration_s": 0.14)").kinds(), Kinds{"phase not reached"});
 }
 
 TEST(RunReport, ReportsThatNothingWasTouched) {
   const std::string above = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, 0.01, 0, 0.3]]})";
-  EXPECT_EQ(kinds_of(report_of_run(kPlane, above)), Kinds{"no contact"});
+  EXPECT_EQ(run_of(kPlane, above).kinds(), Kinds{"no contact"});
 }
 
 // The proxy falls through a square of points farther apart than sqrt(2) r_c = 7.07 mm.
@@ -85,9 +64,9 @@ TEST(RunReport, ReportsPointsThatAreTooFarApart) {
   const auto plane = [](const char* spacing) {
     return std::string(R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )") + spacing + "}";
   };
-  EXPECT_EQ(kinds_of(report_of_run(plane("0.0069"), kPress)), Kinds{});
-  const RunReport report = report_of_run(plane("0.0072"), kPress);
-  EXPECT_EQ(kinds_of(report), Kinds{"wide spacing"});
+  EXPECT_EQ(run_of(plane("0.0069"), kPress).kinds(), Kinds{});
+  const RunReport report = run_of(plane("0.0072"), kPress).report;
+  EXPECT_EQ(kinds_of(report.notes), Kinds{"wide spacing"});
   // The centre of a square is 7.2 mm / sqrt(2) from its corners.
   EXPECT_HAS(report.notes[0].text, "a gap of radius 5.09 mm at the first contact");
   EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
@@ -134,10 +113,9 @@ TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
   };
   for (const auto& run : runs) {
     const bool has_duration = run.rest.find("duration_s") != std::string::npos;
-    const RunReport report =
-        report_of_run(run.scenario, still, has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest);
+    const std::string rest = has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest;
     std::vector<std::string> begins;
-    for (const Note& note : report.notes)
+    for (const Note& note : run_of(run.scenario, still, rest).report.notes)
       if (note.kind == "phase not reached") begins.push_back(note.text.substr(note.text.find("before ") + 7));
     EXPECT_EQ(begins, run.begins) << run.scenario << run.rest;
   }
@@ -146,8 +124,8 @@ TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
 // A motion that never happens is neither missed nor over.
 TEST(RunReport, SaysNothingOfAPlaneThatDoesNotRise) {
   const std::string rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )";
-  EXPECT_EQ(kinds_of(report_of_run(rests + "5}", kPress)), Kinds{});
-  EXPECT_EQ(kinds_of(report_of_run(rests + "0}", kPress)), Kinds{});
+  EXPECT_EQ(run_of(rests + "5}", kPress).kinds(), Kinds{});
+  EXPECT_EQ(run_of(rests + "0}", kPress).kinds(), Kinds{});
 }
 
 TEST(RunReport, BecomesAttributesOfTheResult) {

@@ -12,10 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/trace.h"
 #include "core/geometry/camera.h"
-#include "runners/experiment/simulation/run_report.h"
-#include "runners/experiment/simulation/simulation.h"
+#include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::surface_watch_test {
@@ -30,9 +28,6 @@ class MovingPlane final : public Scenario {
   explicit MovingPlane(std::vector<double> depths_m) : depths_m_(std::move(depths_m)) {}
   double frame_rate_hz() const override { return 10; }
   int frame_count() const override { return static_cast<int>(depths_m_.size()); }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override {
     DepthImage image{kCamera.width, kCamera.height, {}};
     for (int i = 0; i < kCamera.width * kCamera.height; ++i)
@@ -65,13 +60,6 @@ Vec3 in_world(double x, double y, double z) {
   return {1 + z, 2 + x, 3 + y};
 }
 
-using Kinds = std::vector<std::string>;
-Kinds kinds(const std::vector<Note>& notes) {
-  Kinds kinds;
-  for (const Note& note : notes) kinds.push_back(note.kind);
-  return kinds;
-}
-
 constexpr SurfacePlan kTouches{true, -0.006, 0.016, 0.004}, kLifted{false, -0.006, 0.016, 0.004};
 
 // Frames at 0, 0.1, ..., 0.5 s; a tick in the middle of each.
@@ -86,14 +74,14 @@ std::vector<Note> watched(const std::vector<double>& depths_m, const std::option
 }
 
 TEST(SurfaceWatch, HasNoNoteOnAHandAtTheSurface) {
-  EXPECT_EQ(kinds(watched({0.5, 0.496, 0.512}, kTouches, {0.1, 0, 0.51})), Kinds{});
+  EXPECT_EQ(kinds_of(watched({0.5, 0.496, 0.512}, kTouches, {0.1, 0, 0.51})), Kinds{});
 }
 
 TEST(SurfaceWatch, ReportsAHandThatFliesBehind) {
   const std::vector<double> depths{0.5, 0.49, 0.45, 0.428, 0.5};
   for (const auto& plan : {kTouches, kLifted}) {
     const std::vector<Note> notes = watched(depths, plan, {0.1, 0, 0.51});
-    EXPECT_EQ(kinds(notes), Kinds{"behind the surface"});
+    EXPECT_EQ(kinds_of(notes), Kinds{"behind the surface"});
     // The hand is 20, 60 and 82 mm behind in 3 of 5 ticks; up to 16 mm are planned.
     EXPECT_HAS(notes[0].text, "in 60 % of the ticks, first at 0.15 s, by up to 82 mm; at most 16 mm");
   }
@@ -103,11 +91,11 @@ TEST(SurfaceWatch, ReportsAHandThatLeavesTheSurface) {
   const Vec3 on_plane(0.1, 0, 0.51), over_hole(-0.1, 0, 0.51), outside(0.4, 0, 0.51),
       behind_camera(0, 0, -0.2);
   const std::vector<double> rests{0.5, 0.5}, recedes{0.5, 0.52};
-  EXPECT_EQ(kinds(watched(recedes, kLifted, on_plane)), Kinds{});
+  EXPECT_EQ(kinds_of(watched(recedes, kLifted, on_plane)), Kinds{});
   EXPECT_HAS(watched(recedes, kTouches, on_plane).at(0).text, "in 50 % of the ticks, first at 0.15 s");
   for (const Vec3& hand : {over_hole, outside, behind_camera}) {
-    EXPECT_EQ(kinds(watched(rests, kTouches, hand)), Kinds{"off the surface"}) << hand.transpose();
-    EXPECT_EQ(kinds(watched(rests, kLifted, hand)), Kinds{}) << hand.transpose();
+    EXPECT_EQ(kinds_of(watched(rests, kTouches, hand)), Kinds{"off the surface"}) << hand.transpose();
+    EXPECT_EQ(kinds_of(watched(rests, kLifted, hand)), Kinds{}) << hand.transpose();
   }
 }
 
@@ -115,12 +103,12 @@ TEST(SurfaceWatch, ReportsAHandThatLeavesTheSurface) {
 // counts.
 TEST(SurfaceWatch, BridgesToWhatIsMeasuredNearTheRay) {
   const auto column = [](double u) { return Vec3((u - kCamera.cx) * 0.51 / kCamera.fx, 0, 0.51); };
-  EXPECT_EQ(kinds(watched({0.5}, kTouches, column(49))), Kinds{});
-  EXPECT_EQ(kinds(watched({0.5}, kTouches, column(48))), Kinds{"off the surface"});
+  EXPECT_EQ(kinds_of(watched({0.5}, kTouches, column(49))), Kinds{});
+  EXPECT_EQ(kinds_of(watched({0.5}, kTouches, column(48))), Kinds{"off the surface"});
 }
 
 TEST(SurfaceWatch, IgnoresMotionsWithoutAPlan) {
-  EXPECT_EQ(kinds(watched({0.5, 0.2}, std::nullopt, {0.1, 0, 0.51})), Kinds{});
+  EXPECT_EQ(kinds_of(watched({0.5, 0.2}, std::nullopt, {0.1, 0, 0.51})), Kinds{});
 }
 
 // Steps of 30, 60 and 90 mm; 50 mm are planned. 0: no limit is stated.
@@ -136,9 +124,9 @@ TEST(SurfaceWatch, ReportsAHandThatJumps) {
     }
     const std::vector<Note> notes = watch.notes();
     if (max_step_m == 0) {
-      EXPECT_EQ(kinds(notes), Kinds{});
+      EXPECT_EQ(kinds_of(notes), Kinds{});
     } else {
-      ASSERT_EQ(kinds(notes), Kinds{"hand jumped"});
+      ASSERT_EQ(kinds_of(notes), Kinds{"hand jumped"});
       EXPECT_EQ(
           notes[0].text,
           "the hand jumped by 60 mm at 0.39 s, because its pixel then showed another surface; it jumped 2 "
@@ -147,44 +135,40 @@ TEST(SurfaceWatch, ReportsAHandThatJumps) {
   }
 }
 
-// Frames that a camera recorded: depth in units of 0.1 mm, 320 x 240 pixels.
-void write_frame(const TestFolder& folder, int number, const std::function<double(double, double)>& depth_m) {
-  std::vector<std::uint16_t> samples;
-  for (int v = 0; v < 240; ++v)
-    for (int u = 0; u < 320; ++u)
-      samples.push_back(
-          static_cast<std::uint16_t>(0.5 + 1e4 * depth_m((u - 159.5) / 300, (v - 119.5) / 300)));
-  folder.write_png("depth/" + std::to_string(number) + ".png", 320, 240, PNG_FORMAT_LINEAR_Y, samples.data());
+// Frames that a camera recorded: depth in units of 0.1 mm, 320 x 240 pixels, at 30 Hz. depth_m: at the ray
+// (x, y, 1) of a frame.
+void record(const TestFolder& folder, int frames, const std::function<double(int, double, double)>& depth_m) {
+  folder.write("camera.json", R"({"width": 320, "height": 240, "fx": 300, "fy": 300, "cx": 159.5, "cy": 119.5,
+    "depth_scale_m": 0.0001, "frame_rate_hz": 30})");
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<std::uint16_t> samples;
+    for (int v = 0; v < 240; ++v)
+      for (int u = 0; u < 320; ++u)
+        samples.push_back(
+            static_cast<std::uint16_t>(0.5 + 1e4 * depth_m(frame, (u - 159.5) / 300, (v - 119.5) / 300)));
+    folder.write_png("depth/" + std::to_string(frame) + ".png", 320, 240, PNG_FORMAT_LINEAR_Y,
+                     samples.data());
+  }
 }
 
-constexpr const char* kHalf_s = R"(, "duration_s": 0.5)";
+constexpr const char* kHalf_s = R"("duration_s": 0.5)";
 
-RunReport report_of_run(const std::string& path, const std::string& trajectory,
-                        const std::string& rest = "") {
-  const std::string text = R"({"scenario": {"name": "recording", "path": ")" + path +
-                           R"("}, "renderer": {"name": "proxy"}, "trajectory": )" + trajectory + rest + "}";
-  RunReport report;
-  SimulationOptions options;
-  options.report = &report;
-  simulate(Experiment::from_json(text, "test"), options);
-  return report;
+ReportedRun run_on(const std::string& path, const std::string& trajectory, const std::string& rest = "") {
+  return run_of(R"({"name": "recording", "path": ")" + path + R"("})", trajectory, rest);
 }
 
 // A box of 16 cm before a wall. It comes nearer by 5 cm in frame 10, while the hand follows the first frame.
 TEST(SurfaceWatch, ReportsAScanOfASceneThatMoves) {
   const TestFolder folder("moving_box");
-  folder.write("camera.json", R"({"width": 320, "height": 240, "fx": 300, "fy": 300, "cx": 159.5, "cy": 119.5,
-    "depth_scale_m": 0.0001, "frame_rate_hz": 30})");
-  for (int i = 0; i < 20; ++i)
-    write_frame(folder, i, [&](double x, double y) {
-      const double z = i < 10 ? 0.6 : 0.55;
-      return std::max(std::abs(x), std::abs(y)) * z < 0.08 ? z : 0.8;
-    });
-  const RunReport moved = report_of_run(folder.path().string(), R"({"name": "image-scan", "row": 120,
+  record(folder, 20, [](int frame, double x, double y) {
+    const double z = frame < 10 ? 0.6 : 0.55;
+    return std::max(std::abs(x), std::abs(y)) * z < 0.08 ? z : 0.8;
+  });
+  const ReportedRun moved = run_on(folder.path().string(), R"({"name": "image-scan", "row": 120,
     "first_column": 130, "last_column": 190})");
-  EXPECT_EQ(kinds(moved.notes), Kinds{"behind the surface"});
-  EXPECT_HAS(moved.notes[0].text, "by up to 60 mm; at most 16 mm were planned");
-  EXPECT_EQ(kinds(report_of_run(folder.path().string(), R"({"name": "image-press"})", kHalf_s).notes),
+  EXPECT_EQ(moved.kinds(), Kinds{"behind the surface"});
+  EXPECT_HAS(moved.report.notes[0].text, "by up to 60 mm; at most 16 mm were planned");
+  EXPECT_EQ(run_on(folder.path().string(), R"({"name": "image-press"})", kHalf_s).kinds(),
             Kinds{"frames unused"});
 }
 
@@ -192,15 +176,12 @@ TEST(SurfaceWatch, ReportsAScanOfASceneThatMoves) {
 // hand has nothing to lift off from, and jumps.
 TEST(SurfaceWatch, ReportsAPressWhosePixelSeesAnotherPosition) {
   const TestFolder folder("box_taken_away");
-  folder.write("camera.json", R"({"width": 320, "height": 240, "fx": 300, "fy": 300, "cx": 159.5, "cy": 119.5,
-    "depth_scale_m": 0.0001, "frame_rate_hz": 30})");
-  for (int i = 0; i < 10; ++i)
-    write_frame(folder, i, [&](double x, double y) {
-      return i < 5 && std::max(std::abs(x), std::abs(y)) * 0.5 < 0.08 ? 0.5 : 0.9;
-    });
+  record(folder, 10, [](int frame, double x, double y) {
+    return frame < 5 && std::max(std::abs(x), std::abs(y)) * 0.5 < 0.08 ? 0.5 : 0.9;
+  });
   const RunReport report =
-      report_of_run(folder.path().string(), R"({"name": "image-press"})", R"(, "duration_s": 0.31)");
-  ASSERT_EQ(kinds(report.notes), Kinds{"hand jumped"});
+      run_on(folder.path().string(), R"({"name": "image-press"})", R"("duration_s": 0.31)").report;
+  ASSERT_EQ(kinds_of(report.notes), Kinds{"hand jumped"});
   EXPECT_HAS(report.notes[0].text, "jumped by 400 mm at 0.167 s");
   EXPECT_HAS(report.hand, "image-press, row ");
   EXPECT_HAS(report.hand, " at depth 0.500 m");
@@ -236,12 +217,10 @@ TEST(SurfaceWatch, HasNoNoteOnAScanOfOneCloudOfAMug) {
                          points)
         .string();
   };
-  const RunReport report = report_of_run(write("image.pcd", true), R"({"name": "image-scan"})");
-  EXPECT_EQ(kinds(report.notes), Kinds{});
+  EXPECT_EQ(run_on(write("image.pcd", true), R"({"name": "image-scan"})").kinds(), Kinds{});
   const std::string unorganised = write("points.pcd", false);
-  EXPECT_HAS(refusal([&] { report_of_run(unorganised, R"({"name": "image-scan"})"); }), "are not images");
-  EXPECT_HAS(refusal([&] { report_of_run(unorganised, R"({"name": "image-press"})", kHalf_s); }),
-             "are not images");
+  EXPECT_HAS(refusal([&] { run_on(unorganised, R"({"name": "image-scan"})"); }), "are not images");
+  EXPECT_HAS(refusal([&] { run_on(unorganised, R"({"name": "image-press"})", kHalf_s); }), "are not images");
 }
 
 }  // namespace

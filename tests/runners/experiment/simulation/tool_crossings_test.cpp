@@ -91,16 +91,12 @@ void expect_none(const std::string& name, const std::string& rule, double tolera
   }
 }
 
-TEST_P(ToolCrossings, LookAheadHasNone) {
-  expect_none(GetParam(), "look-ahead", kLookAhead_m);
-}
-
-TEST_P(ToolCrossings, ThereAreNoneByTheContinuousRule) {
-  expect_none(GetParam(), "continuous", kContinuous_m);
-}
-
-TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
-  expect_none(GetParam(), "voxels", kVoxels_m);
+TEST_P(ToolCrossings, ThereAreNone) {
+  for (const auto& [rule, tolerance_m] :
+       {std::pair("look-ahead", kLookAhead_m), {"continuous", kContinuous_m}, {"voxels", kVoxels_m}}) {
+    SCOPED_TRACE(rule);
+    expect_none(GetParam(), rule, tolerance_m);
+  }
 }
 
 // Points are so dense here that one disk stands for many. Each motion is still checked against every point.

@@ -24,6 +24,10 @@ class MeshFileTest : public testing::Test {
   MeshCheck check(const std::string& name, const std::string& bytes) const {
     return check_mesh(read_mesh(folder_.write(name, bytes)));
   }
+  std::string refused(const std::string& name, const std::string& bytes) const {
+    const fs::path file = folder_.write(name, bytes);
+    return refusal([&] { read_mesh(file); });
+  }
   TestFolder folder_{"mesh_file"};
 };
 
@@ -65,12 +69,13 @@ TEST_F(MeshFileTest, StlHasNoSharedVertices) {
   EXPECT_NEAR(check_of.volume_m3, -1.0 / 6, 1e-9);
 }
 
+const std::string kPlyText =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+    "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
 TEST_F(MeshFileTest, APlyFileIsRead) {
-  const MeshCheck solid =
-      check("t.ply",
-            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
-            "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
+  const MeshCheck solid = check("t.ply", kPlyText);
   EXPECT_TRUE(solid.closed()) << text(solid);
   EXPECT_NEAR(solid.volume_m3, 1.0 / 6, 1e-9);
 }
@@ -100,9 +105,7 @@ TEST_F(MeshFileTest, ConcavePolygonsKeepTheirArea) {
 
 // They are refused before the repair, which would make a closed surface of them.
 TEST_F(MeshFileTest, PolygonsThatCrossThemselvesAreRefused) {
-  const fs::path file =
-      folder_.write("u.obj", std::string(kU) + "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 15 14 16\n");
-  EXPECT_HAS(refusal([&] { read_mesh(file); }),
+  EXPECT_HAS(refused("u.obj", std::string(kU) + "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 15 14 16\n"),
              "u.obj: cannot be read (a face of 8 corners, the first at 4 4 2, crosses or touches itself");
 }
 
@@ -141,11 +144,7 @@ const std::string kCube = kVertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 
 
 TEST_F(MeshFileTest, ByteOrderMarksAreSkipped) {
   EXPECT_TRUE(check("cube.obj", kMark + kCube).closed());
-  const std::string ply =
-      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
-      "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-  EXPECT_TRUE(check("t.ply", kMark + ply).closed());
+  EXPECT_TRUE(check("t.ply", kMark + kPlyText).closed());
 }
 
 // Texture coordinates, normals and materials may be missing or wrong, because a tool does not use them.
@@ -166,8 +165,7 @@ TEST_F(MeshFileTest, ObjVerticesMayHaveColours) {
   const MeshCheck whole = check("cube.obj", cube);
   EXPECT_TRUE(whole.closed());
   EXPECT_NEAR(whole.volume_m3, 1, 1e-9);
-  const fs::path flat = folder_.write("flat.obj", "v 1 2\n" + kCube);
-  EXPECT_HAS(refusal([&] { read_mesh(flat); }),
+  EXPECT_HAS(refused("flat.obj", "v 1 2\n" + kCube),
              "flat.obj: cannot be read (line 1: a vertex has fewer than three");
 }
 
@@ -185,8 +183,7 @@ class ChangedMeshTest : public MeshFileTest {
                       const std::string& changed) const {
     const std::size_t at = text.find(old);
     EXPECT_NE(at, std::string::npos) << old;
-    const fs::path file = folder_.write(name, text.replace(at, old.size(), changed));
-    return refusal([&] { read_mesh(file); });
+    return refused(name, text.replace(at, old.size(), changed));
   }
 };
 
@@ -209,11 +206,6 @@ TEST_F(ChangedMeshTest, ObjNumbersAreWholeWords) {
   EXPECT_HAS(face("f 1 3 4 99"), "line 9: vertex 99: expected 1 to 8");
 }
 
-const std::string kPlyText =
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
-    "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-
 TEST_F(ChangedMeshTest, PlyRowsHaveWhatTheHeaderSays) {
   const auto row = [&](const std::string& old, const std::string& line) {
     return problem("x.ply", kPlyText, old + "\n", line + "\n");
@@ -233,6 +225,16 @@ TEST_F(ChangedMeshTest, PlyRowsHaveWhatTheHeaderSays) {
   EXPECT_HAS(row("format ascii 1.0", "format text 1.0"), "format 'text': expected ascii or a binary one");
 }
 
+// The four faces of a tetrahedron, as lists of bytes with integers.
+std::string packed_faces() {
+  std::string data;
+  for (const auto& face : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    data += '\3';
+    for (const int corner : face) data += raw(corner);
+  }
+  return data;
+}
+
 TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
   const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 4\ncomment of faces\nproperty list uchar int vertex_indices\n";
@@ -242,11 +244,7 @@ TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
       check("t.ply", "ply\nformat ascii 1.0\n" + faces + vertices + "end_header\n" + corners + points);
   EXPECT_TRUE(text.closed());
   EXPECT_NEAR(text.volume_m3, 1.0 / 6, 1e-9);
-  std::string data;
-  for (const auto& face : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
-    data += '\3';
-    for (const int corner : face) data += raw(corner);
-  }
+  std::string data = packed_faces();
   data += std::string("\0\1", 2);
   for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) data += raw(value);
   const std::string header =
@@ -254,12 +252,10 @@ TEST_F(MeshFileTest, PlyFacesMayComeBeforeTheirVertices) {
   const MeshCheck binary = check("b.ply", header + data);
   EXPECT_TRUE(binary.closed());
   EXPECT_NEAR(binary.volume_m3, 1.0 / 6, 1e-9);
-  const auto error = [&](const std::string& bytes) {
-    return refusal([&] { read_mesh(folder_.write("b.ply", header + bytes)); });
-  };
-  EXPECT_HAS(error(data + "face"), "b.ply: cannot be read (it has 4 bytes after the last element)");
+  EXPECT_HAS(refused("b.ply", header + data + "face"),
+             "b.ply: cannot be read (it has 4 bytes after the last element)");
   data[4 * 13 - 13] = '\7';  // a list that reads the bytes of the next elements
-  EXPECT_HAS(error(data), "b.ply: cannot be read (it ends after ");
+  EXPECT_HAS(refused("b.ply", header + data), "b.ply: cannot be read (it ends after ");
 }
 
 TEST_F(MeshFileTest, BinaryPlyListsAreNotNegative) {
@@ -268,9 +264,7 @@ TEST_F(MeshFileTest, BinaryPlyListsAreNotNegative) {
                                " 1.0\nelement face 1\nproperty list char uchar vertex_indices\n"
                                "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                                "end_header\n";
-    EXPECT_HAS(refusal([&] {
-                 read_mesh(folder_.write("b.ply", header + '\xff' + std::string(255 + 3 * 12, '\0')));
-               }),
+    EXPECT_HAS(refused("b.ply", header + '\xff' + std::string(255 + 3 * 12, '\0')),
                "b.ply: cannot be read (element 'face' 0 has a list of negative length)");
   }
 }
@@ -317,10 +311,7 @@ TEST_F(MeshFileTest, BinaryPlyMayBeginWithALineFeed) {
   std::string data;
   const float first = std::bit_cast<float>(0x3f80000au);  // begins with the byte 0x0A
   for (const float value : {first, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 2.f}) data += raw(value);
-  for (const auto& face : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
-    data += '\3';
-    for (const int corner : face) data += raw(corner);
-  }
+  data += packed_faces();
   ASSERT_EQ(data.front(), '\n');
   std::string windows = header;
   for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2)
@@ -334,13 +325,11 @@ TEST_F(MeshFileTest, BinaryPlyMayBeginWithALineFeed) {
 
 TEST_F(MeshFileTest, RefusalsNameTheFile) {
   EXPECT_HAS(refusal([&] { read_mesh(folder_ / "none.obj"); }), "none.obj: no such file: expected an OBJ");
-  EXPECT_HAS(refusal([&] { read_mesh(folder_.write("a.txt", "v 0 0 0\n")); }), "a.txt: not a mesh");
-  EXPECT_HAS(refusal([&] { read_mesh(folder_.write("empty.obj", "")); }), "empty.obj: cannot be read");
-  EXPECT_HAS(refusal([&] { read_mesh(folder_.write("bad.ply", "ply\nformat nothing\n")); }),
-             "bad.ply: cannot be read");
-  EXPECT_HAS(refusal([&] { read_mesh(folder_.write("points.obj", kVertices + "p 1\np 2\n")); }),
-             "points.obj: ");
-  EXPECT_HAS(refusal([&] { read_mesh(folder_.write("cut.stl", std::string(84, '\1'))); }), "cut.stl: ");
+  EXPECT_HAS(refused("a.txt", "v 0 0 0\n"), "a.txt: not a mesh");
+  EXPECT_HAS(refused("empty.obj", ""), "empty.obj: cannot be read");
+  EXPECT_HAS(refused("bad.ply", "ply\nformat nothing\n"), "bad.ply: cannot be read");
+  EXPECT_HAS(refused("points.obj", kVertices + "p 1\np 2\n"), "points.obj: ");
+  EXPECT_HAS(refused("cut.stl", std::string(84, '\1')), "cut.stl: ");
 }
 
 std::string ply(const std::string& format, const std::string& vertices, const std::string& faces) {
@@ -352,10 +341,6 @@ std::string ply(const std::string& format, const std::string& vertices, const st
 // Each of these files made the library allocate gigabytes or run for ever.
 TEST_F(MeshFileTest, FilesThatClaimMoreThanTheyHoldAreRefused) {
   const std::string points(9 * 4, '\0');
-  const auto refused = [&](const std::string& name, const std::string& bytes) {
-    const fs::path file = folder_.write(name, bytes);
-    return refusal([&] { read_mesh(file); });
-  };
   EXPECT_HAS(refused("cut.ply", "ply\nformat ascii 1.0\n"),
              "cut.ply: cannot be read (its header has no end)");
   EXPECT_HAS(refused("many.ply", ply("ascii", "300000000", "1") + "0 0 0\n"),

@@ -12,7 +12,7 @@ const std::vector<std::string> kKnown{"rate", "force"};
 TEST(DeviceAddress, HasAPathAndSettings) {
   const DeviceAddress address("fd", "0?rate=500&force=vector", kKnown);
   EXPECT_EQ(address.place(), "0");
-  EXPECT_EQ(address.written(), "fd:0?rate=500&force=vector");
+  EXPECT_EQ(address.refusal("x").what(), std::string("fd:0?rate=500&force=vector: x"));
   EXPECT_EQ(address.number("rate", 1000, 1, 4000), 500);
   EXPECT_EQ(address.choice("force", {"values", "vector"}), "vector");
   EXPECT_EQ(address.word("force", "none"), "vector");

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/parameters/input_error.h"
-#include "tests/doubles/simulated_clock.h"
+#include "tests/doubles/vendor_devices.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -26,26 +26,15 @@ class DeviceTable : public testing::Test {
   SimulatedClock clock_;
 };
 
-struct Positions final : DeviceCycle {
-  explicit Positions(HapticDevice& opened) : device(opened) {}
-  bool tick() noexcept override {
-    DeviceReading reading;
-    device.read(reading);
-    device.write({});
-    list.push_back(reading.position_m);
-    return list.size() < 300;
-  }
-  HapticDevice& device;
-  std::vector<Vec3> list;
-};
-
 // The scenario lives as long as the device.
 TEST_F(DeviceTable, TheSimulatedHandFollowsATrajectoryThatReadsFrames) {
   const auto device = open("sim:");
-  Positions positions(*device);
-  device->run(positions);
-  for (std::size_t i = 0; i < positions.list.size(); ++i)
-    EXPECT_EQ(positions.list[i], script_->at(static_cast<double>(i + 1) / 1000).position_W) << "tick " << i;
+  run_ticks(*device, 300, [&](int i) {
+    DeviceReading reading;
+    device->read(reading);
+    device->write({});
+    EXPECT_EQ(reading.position_m, script_->at((i + 1) / 1000.0).position_W) << "tick " << i;
+  });
 }
 
 // The fourth image has another size. read() does not throw: that would end the program.
@@ -63,22 +52,17 @@ TEST_F(DeviceTable, ATrajectoryThatCannotUseAFrameIsAFault) {
           R"("}, "renderer": {"name": "proxy"}, "trajectory": {"name": "image-press"}, "duration_s": 0.2})",
       "a test");
   const auto device = open_device("sim:", {press, scenes::kernels(), clock_, nullptr});
-  struct UntilFault final : DeviceCycle {
-    bool tick() noexcept override {
-      DeviceReading reading;
-      fault = device->read(reading);
-      ++ticks;
-      return !fault && ticks < 1000;
-    }
-    HapticDevice* device = nullptr;
-    DeviceFault fault;
-    int ticks = 0;
-  } cycle;
-  cycle.device = device.get();
+  DeviceFault fault;
+  int ticks = 0;
+  CallCycle cycle([&] {
+    DeviceReading reading;
+    fault = device->read(reading);
+    return ++ticks < 1000 && !fault;
+  });
   EXPECT_HAS(refusal([&] { device->run(cycle); }), "depth/3.png");
-  EXPECT_EQ(cycle.ticks, 100) << "the first tick is 1 ms, and frame 3 is captured at 0.1 s";
-  ASSERT_TRUE(cycle.fault);
-  EXPECT_HAS(cycle.fault.what, "80 x 120 pixels");
+  EXPECT_EQ(ticks, 100) << "the first tick is 1 ms, and frame 3 is captured at 0.1 s";
+  ASSERT_TRUE(fault);
+  EXPECT_HAS(fault.what, "80 x 120 pixels");
 }
 
 TEST_F(DeviceTable, TheMouseBeginsWhereTheExperimentDoes) {

@@ -16,22 +16,6 @@ class EntactTest : public testing::Test {
   DoubleInstalled double_{kEntact, &clock_};
 };
 
-// The handle is 10 mm towards the user, 20 mm to the right and 30 mm up. A quarter turn of the handle about
-// the upward axis turns the axis that points to the user to the right.
-TEST_F(EntactTest, ConvertsMillimetresAndRows) {
-  double_->set([](DeviceDouble::State& state) {
-    state.position = {10, 20, 30};
-    state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  });
-  const auto device = open_entact("", clock_);
-  const auto [reading, fault] = read_once(*device);
-  ASSERT_FALSE(fault);
-  EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.02, 0.03, 0.01), 1e-12));
-  EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
-  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
-  EXPECT_EQ(double_->now().sent, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
-}
-
 TEST_F(EntactTest, DevicesHaveAddresses) {
   EXPECT_NO_THROW(open_entact("192.168.1.144", clock_));
   EXPECT_HAS(refusal([&] { open_entact("192.168.1.145", clock_); }),

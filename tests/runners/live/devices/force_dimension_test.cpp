@@ -14,23 +14,6 @@ class ForceDimensionTest : public testing::Test {
   DoubleInstalled double_{kForceDimension, &clock_};
 };
 
-// The handle is 0.1 m towards the user, 0.2 m to the right and 0.3 m up. A quarter turn of the handle about
-// the upward axis turns the axis that points to the user to the right.
-TEST_F(ForceDimensionTest, ConvertsTheAxes) {
-  double_->set([](DeviceDouble::State& state) {
-    state.position = {0.1, 0.2, 0.3};
-    state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  });
-  const auto device = open_force_dimension("", clock_);
-  const auto [reading, fault] = read_once(*device);
-  ASSERT_FALSE(fault);
-  EXPECT_EQ(reading.position_m, Vec3(0.2, 0.3, 0.1));
-  EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
-  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(4, 5, 6)}); });
-  const auto events = double_->events();
-  EXPECT_EQ(events.back().sent, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
-}
-
 TEST_F(ForceDimensionTest, DevicesAreNumbered) {
   for (const char* address : {"x", "-1", "0x", "1.5", "128", " 0"})
     EXPECT_HAS(refusal([&] { open_force_dimension(address, clock_); }),

@@ -57,12 +57,12 @@ TEST(HaplyLink, ExchangesCommandsAndAnswers) {
 
 TEST(HaplyLink, AServiceThatHangsIsWaitedForUntilTheDeadlineAndMayComeBack) {
   HaplyService service;
-  service.hang();
+  service.set(HaplyService::Mood::hangs);
   const auto link = open_and_send(service);
   const double start_s = now_s();
   EXPECT_EQ(receive(*link, kSoon_s), kLate);
   EXPECT_GE(now_s() - start_s, kSoon_s);
-  service.resume();
+  service.set(HaplyService::Mood::answers);
   EXPECT_HAS(receive(*link), "cursor_position");
 }
 
@@ -77,7 +77,7 @@ TEST(HaplyLink, AKilledServiceIsAFault) {
 
 TEST(HaplyLink, AMessageThatStopsInTheMiddleTimesOut) {
   HaplyService service;
-  service.hang_in_the_middle();
+  service.set(HaplyService::Mood::hangs_in_the_middle);
   const auto link = open_and_send(service);
   ASSERT_TRUE(wait_until([&] { return service.misbehaves(); }));
   EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
@@ -86,7 +86,7 @@ TEST(HaplyLink, AMessageThatStopsInTheMiddleTimesOut) {
 // There is always something to read, and never an answer.
 TEST(HaplyLink, EndlessPingsTimeOut) {
   HaplyService service;
-  service.ping_without_end();
+  service.set(HaplyService::Mood::pings);
   const auto link = open_and_send(service);
   ASSERT_TRUE(wait_until([&] { return service.misbehaves(); }));
   EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
@@ -107,7 +107,7 @@ TEST(HaplyLink, TextThatIsTooLongOrNoUtf8EndsTheConnection) {
 
 TEST(HaplyLink, ACutEndsACallUnderWay) {
   HaplyService service;
-  service.hang();
+  service.set(HaplyService::Mood::hangs);
   const auto link = open_and_send(service);
   std::thread other([&] { link->cut(); });
   EXPECT_EQ(receive(*link), "the Haply service closed the connection");

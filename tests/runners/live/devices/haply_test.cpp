@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 
+#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"
 
@@ -117,32 +118,17 @@ TEST_F(Haply, AServiceThatIsSilentIsRefusedAfterASecond) {
   EXPECT_EQ(clock_.now_ns(), ms(1000));
 }
 
-class CountedTicks final : public DeviceCycle {
- public:
-  explicit CountedTicks(HapticDevice& device, int max_ticks) : device_(device), max_ticks_(max_ticks) {}
-  bool tick() noexcept override {
-    DeviceReading reading;
-    faults += device_.read(reading) ? 1 : 0;
-    faults += device_.write(force({0, 0.2, 0})) ? 1 : 0;
-    return ++ticks_ < max_ticks_;
-  }
-  int faults = 0;
-
- private:
-  HapticDevice& device_;
-  const int max_ticks_;
-  int ticks_ = 0;
-};
-
 // The rate of commands at the service is that of the loop.
 TEST_F(Haply, SendsOneCommandPerTickAtTheRequestedRate) {
   for (const int rate_hz : {1000, 4000}) {
     const auto device = service_.open("?rate=" + std::to_string(rate_hz));
     EXPECT_EQ(device->traits().tick_rate_hz, rate_hz);
     const std::int64_t start_ns = clock_.now_ns();
-    CountedTicks ticks(*device, rate_hz);
-    device->run(ticks);
-    EXPECT_EQ(ticks.faults, 0);
+    run_ticks(*device, rate_hz, [&](int) {
+      DeviceReading reading;
+      EXPECT_FALSE(device->read(reading));
+      EXPECT_FALSE(device->write(force({0, 0.2, 0})));
+    });
     std::vector<std::int64_t> pushed_ns;
     for (const auto& sent : service_.sent())
       if (sent.at_ns >= start_ns && !sent.command.force_N.isZero()) pushed_ns.push_back(sent.at_ns);

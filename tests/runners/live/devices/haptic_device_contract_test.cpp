@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "tests/doubles/vendor_devices.h"
-#include "tests/support/loaded_libraries.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::haptic_device_contract_test {
@@ -138,18 +137,7 @@ TEST_P(RunsByTheClock, LateTicksAreLeftOut) {
 }
 
 TEST_P(HapticDeviceContract, AbsentLibraryIsNamedWithTheVariable) {
-  unsetenv(vendor().variable);
-  std::string message = refusal([&] { open(); });
-  if (!has_loaded(vendor().library)) {  // it may be installed here
-    EXPECT_HAS(message, std::string(vendor().library) + ": cannot be loaded (");
-    EXPECT_HAS(message, vendor().variable);
-    EXPECT_EQ(vendor().availability().detail, message);
-    EXPECT_FALSE(vendor().availability().found);
-  }
-  setenv(vendor().variable, "/no/such/library.so", 1);
-  message = refusal([&] { open(); });
-  EXPECT_HAS(message, "/no/such/library.so: cannot be loaded (");
-  EXPECT_HAS(message, std::string(vendor().variable) + " must name the library of ");
+  expect_absent_library_is_named(vendor(), [&] { open(); });
 }
 
 TEST_P(HapticDeviceContract, AnotherLibraryIsRefused) {

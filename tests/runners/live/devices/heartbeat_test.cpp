@@ -13,13 +13,9 @@ class CountingDevice final : public HapticDevice {
   using HapticDevice::HapticDevice;
   int release_count = 0;
 
-  const DeviceTraits& traits() const override { return traits_; }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
   void release() noexcept override { ++release_count; }
-
- private:
-  DeviceTraits traits_;
 };
 
 class HeartbeatTest : public testing::Test {

@@ -14,22 +14,6 @@ class OpenHapticsTest : public testing::Test {
   DoubleInstalled double_{kOpenHaptics, &clock_};
 };
 
-// The double gives its transform by columns: a quarter turn about z maps x to y, not back.
-TEST_F(OpenHapticsTest, ConvertsMillimetresAndColumns) {
-  double_->set([](DeviceDouble::State& state) {
-    state.position = {10, 20, 30}, state.velocity = {-1000, 0, 0};
-    state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  });
-  const auto device = open_open_haptics("", clock_);
-  const auto [reading, fault] = read_once(*device);
-  ASSERT_FALSE(fault);
-  EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.01, 0.02, 0.03), 1e-12));
-  EXPECT_TRUE(reading.velocity_m_per_s.isApprox(Vec3(-1, 0, 0), 1e-12));
-  EXPECT_TRUE((reading.orientation * Vec3::UnitX()).isApprox(Vec3::UnitY(), 1e-12));
-  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
-  EXPECT_EQ(sent_forces(*double_), (std::vector<std::array<double, 6>>{{1, 2, 3, 4, 5, 6}}));
-}
-
 // No force remains after a tick without one, nor after the last tick.
 TEST_F(OpenHapticsTest, SendsZeroForceAfterATickWithoutOneAndAfterTheLast) {
   const auto device = open_open_haptics("", clock_);

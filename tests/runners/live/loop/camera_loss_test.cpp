@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
@@ -53,16 +52,11 @@ class CameraLoss : public testing::Test {
     reported_ = run.reported();
     return result;
   }
-  void hold(double above_m) {
-    const Vec3 place = kForceDimension.axes * Vec3(0, height_m_ + above_m, 0);
-    double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
-  }
+  void hold(double above_m) { put(*double_, kForceDimension, {0, height_m_ + above_m, 0}); }
   // Checks that the last cloud stays: the force is as before, there is none in free space, and another one at
   // another depth.
   void expect_the_last_cloud_to_hold() const {
-    ForceOverTime force;
-    for (const DeviceDouble::Event& event : double_->events())
-      force.pieces.push_back({event.at_ns, event.force()});
+    const ForceOverTime force = force_of(*double_);
     const double pressed_N = force.at(ms(900));
     EXPECT_GT(pressed_N, 1);
     EXPECT_NEAR(force.at(ms(1500)), pressed_N, 0.02 * pressed_N);

@@ -9,19 +9,13 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/live/devices/device_table.h"
-#include "tests/doubles/opencl_double.h"
+#include "tests/doubles/loaded_opencl_double.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 
 namespace remote_touch::depth_device_loss_test {
 namespace {
-
-OpenClDouble& library() {
-  static OpenClDouble& one = loaded_opencl_double(REMOTE_TOUCH_DOUBLE_OPENCL);
-  return one;
-}
 
 // A hand in front of the valves, which are forbidden by their colours. The hash of each frame, its points,
 // radii and stiffness, is in the trace.
@@ -49,12 +43,9 @@ class DepthDeviceLoss : public testing::Test {
   LiveResult run(
       const std::string& device, const std::function<void()>& fail = [] {}) {
     SimulatedClock clock;
-    SimulatedRun run(clock, at_the_valves(device), [](const Experiment& experiment, Clock& own) {
-      return open_device("sim:", {experiment, scenes::kernels(), own});
-    });
+    SimulatedRun run(clock, at_the_valves(device));
     run.options.duration_s = 1;
-    run.options.provenance = {{"config", at_the_valves(device).to_json()}};
-    run.options.record = folder_ / (device + ".h5");
+    run.record(folder_ / (device + ".h5"));
     run.options.on_frame = [&](const Frame& frame) {
       frames_.push_back({clock.now_ns(), frame.index, kernel_runs()});
     };

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/doubles/depth_libraries.h"
-#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
@@ -22,11 +21,6 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
       camera_->state.lens = {
           .fx = 250, .fy = 251, .cx = 160.2, .cy = 143.1, .k = {-0.1, 0.01, 0, 0, 0, 0}, .p1 = 1e-3};
   }
-  void TearDown() override {
-    EXPECT_EQ(camera_->held(), 0u);
-    EXPECT_TRUE(camera_->misuse().empty()) << camera_->misuse().front();
-    EXPECT_FALSE(camera_->is_started());
-  }
   // The hand is in front of the wall until kPressed_s, then behind it.
   LiveResult run(double duration_s) {
     hold(kAbove_m);
@@ -42,16 +36,8 @@ class DepthLibraryRun : public testing::TestWithParam<const DepthLibrary*> {
     reported_ = run.reported();
     return result;
   }
-  void hold(double above_m) {
-    const Vec3 place = kForceDimension.axes * Vec3(0, 0, kWall_m - above_m);
-    device_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
-  }
-  ForceOverTime force() const {
-    ForceOverTime force;
-    for (const DeviceDouble::Event& event : device_->events())
-      force.pieces.push_back({event.at_ns, event.force()});
-    return force;
-  }
+  void hold(double above_m) { put(*device_, kForceDimension, {0, 0, kWall_m - above_m}); }
+  ForceOverTime force() const { return force_of(*device_); }
 
   SimulatedClock clock_;
   CameraInstalled camera_{*GetParam(), &clock_};

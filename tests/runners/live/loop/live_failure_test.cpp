@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
@@ -30,16 +29,8 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
     clock_.at(moment_s, [this, what = std::move(what)] { what(*double_); });
   }
   // Puts the centre of the device this far above the table.
-  void hold(double above_m) {
-    const Vec3 place = GetParam()->length_per_m * (GetParam()->axes * Vec3(0, height_m_ + above_m, 0));
-    double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
-  }
-  ForceOverTime force() const {
-    ForceOverTime force;
-    for (const DeviceDouble::Event& event : double_->events())
-      force.pieces.push_back({event.at_ns, event.force()});
-    return force;
-  }
+  void hold(double above_m) { put(*double_, *GetParam(), {0, height_m_ + above_m, 0}); }
+  ForceOverTime force() const { return force_of(*double_); }
   // Checks that the hand is pressed until then, and that there is no force from then on.
   void expect_gone_at(std::int64_t moment_ns) const {
     EXPECT_EQ(force().force_end_ns(), moment_ns);
@@ -53,17 +44,8 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
                     [](const Experiment&, Clock& clock) { return GetParam()->open("", clock); }};
 };
 
-// The tick receives the fault just after 300 ms. The user's part of the run checks every 10 ms, and the tick
-// after its check is the last.
-TEST_P(PressedDevice, AnUnpluggedDeviceEndsTheRunWithItsReason) {
-  at(kTrouble_s + 0.0005,
-     [](DeviceDouble& device) { device.set([](DeviceDouble::State& state) { state.is_unplugged = true; }); });
-  const LiveResult result = run();
-  EXPECT_TRUE(result.failed);
-  EXPECT_HAS(result.ended, "the device failed: ");
-  EXPECT_EQ(clock_.now_ns(), ms(310));
-}
-
+// The tick receives the fault at 300 ms. The user's part of the run checks every 10 ms, and the tick after
+// its check is the last.
 TEST_P(PressedDevice, AReadingThatFailsEndsTheForceInThatTickAndTheRun) {
   at(kTrouble_s, [](DeviceDouble& device) {
     device.set([](DeviceDouble::State& state) { state.reading_error = GetParam()->error; });
@@ -192,16 +174,12 @@ INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHapt
 class DeviceThatLeaves final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;
-  const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override {
     for (int tick = 0; tick < 50 && cycle.tick(); ++tick) clock().sleep_s(1e-3);
   }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
   void release() noexcept override {}
-
- private:
-  DeviceTraits traits_{.name = "a device that leaves"};
 };
 
 TEST(DeviceLoop, EndsTheRunIfItEndsByItself) {

@@ -4,20 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "analysis/storage/hdf5_reader.h"
-#include "runners/live/devices/device_table.h"
 #include "tests/runners/live/loop/simulated_run.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_notes_test {
 namespace {
-
-using Kinds = std::vector<std::string>;
-
-Kinds kinds_of(const RunReport& report) {
-  Kinds kinds;
-  for (const Note& note : report.notes) kinds.push_back(note.kind);
-  return kinds;
-}
 
 // A hand that presses 1 cm into a table from 0.2 s on; 40 x 30 pixels at 30 Hz.
 std::string press(const std::string& trajectory) {
@@ -36,12 +28,9 @@ struct Session {
 Session run(const std::string& experiment, double duration_s) {
   const TestFolder folder("live_notes");
   SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(experiment, "test"), [](const Experiment& of, Clock& with) {
-    return open_device("sim:", {of, scenes::kernels(), with});
-  });
+  SimulatedRun run(clock, Experiment::from_json(experiment, "test"));
   run.options.duration_s = duration_s;
-  run.options.record = folder / "session.h5";
-  run.options.provenance = {{"config", experiment}};
+  run.record(folder / "session.h5");
   Session session{run.run(), {}};
   session.stored = Hdf5Reader(folder / "session.h5").attributes();
   return session;
@@ -56,20 +45,20 @@ TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
   EXPECT_HAS(line, std::to_string(frames) + " frame(s) from sim:, 40 x 30 pixels at 30 Hz; " +
                        std::to_string(frames) + " processed: ");
   EXPECT_HAS(line, " of " + std::to_string(1200 * frames) + " points measured, depth ");
-  EXPECT_EQ(kinds_of(session.result.report), Kinds{});
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{});
   EXPECT_EQ(attribute(session.stored, "frames_read"), line);
   EXPECT_EQ(attribute(session.stored, "notes"), "");
 }
 
 TEST(LiveNotes, ReportASessionWithoutContact) {
   const Session session = run(press(kAbove), 0.5);
-  EXPECT_EQ(kinds_of(session.result.report), Kinds{"no contact"});
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"no contact"});
   EXPECT_EQ(attribute(session.stored, "notes"), "no point was touched, and no force was felt");
 }
 
 TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
   const Session session = run(press(kPress), 0.1);
-  EXPECT_EQ(kinds_of(session.result.report), Kinds{"phase not reached"});
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"phase not reached"});
   EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
 }
 
@@ -80,7 +69,7 @@ TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
   sparse.insert(sparse.find("\"width\""), "\"focal_px\": 60, ");
   const Session session = run(sparse, 0.5);
   ASSERT_FALSE(session.result.report.notes.empty());
-  EXPECT_EQ(kinds_of(session.result.report).back(), "wide spacing");
+  EXPECT_EQ(kinds_of(session.result.report.notes).back(), "wide spacing");
   EXPECT_HAS(attribute(session.stored, "notes"), "a proxy of contact radius 5 mm can fall through it");
 }
 
@@ -110,17 +99,17 @@ RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_tick
 TEST(LiveNotes, ReportFramesThatWereNotUsed) {
   CameraCounts camera;
   camera.received = 95, camera.skipped = 5, camera.overtaken = 3, camera.incomplete = 2;
-  EXPECT_EQ(kinds_of(report_of_counts(camera)), Kinds{}) << "10 of 100: single frames";
+  EXPECT_EQ(kinds_of(report_of_counts(camera).notes), Kinds{}) << "10 of 100: single frames";
   camera.received = 94, camera.skipped = 6;
   const RunReport report = report_of_counts(camera);
-  ASSERT_EQ(kinds_of(report), Kinds{"frames unused"});
+  ASSERT_EQ(kinds_of(report.notes), Kinds{"frames unused"});
   EXPECT_EQ(report.notes[0].text,
             "11 of 100 frames were not used: 6 not sent, or replaced before they were processed, "
             "2 without all pixels or colours, 3 replaced before the haptic loop used them");
 }
 
 TEST(LiveNotes, ASessionWithoutFramesSaysSo) {
-  EXPECT_EQ(kinds_of(report_of_counts({}, 0, 0)), Kinds{"no frame"});
+  EXPECT_EQ(kinds_of(report_of_counts({}, 0, 0).notes), Kinds{"no frame"});
 }
 
 }  // namespace

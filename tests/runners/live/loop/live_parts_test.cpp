@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/dissertation/tool/contact/tiled_cloud.h"
-#include "runners/live/devices/device_table.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
@@ -55,14 +54,10 @@ TEST(LiveParts, ReportTheFrameThatTheSimulatedHandCannotUse) {
   for (const double duration_s : {0.05, 0.3}) {
     SimulatedClock clock;
     // The camera of the run sees another scene, so that only the hand reads the recording.
-    SimulatedRun run(
-        clock, Experiment::from_json(text, "test"),
-        [](const Experiment& of, Clock& with) {
-          return open_device("sim:", {of, scenes::kernels(), with});
-        },
-        [](const Experiment&, Clock& with) {
-          return SimulatedRun::scenario_camera(press_experiment(), with);
-        });
+    SimulatedRun run(clock, Experiment::from_json(text, "test"), SimulatedRun::simulated_device,
+                     [](const Experiment&, Clock& with) {
+                       return SimulatedRun::scenario_camera(press_experiment(), with);
+                     });
     run.options.duration_s = duration_s;
     const LiveResult result = run.run();
     EXPECT_EQ(result.failed, duration_s > 0.1);

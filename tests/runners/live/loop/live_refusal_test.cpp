@@ -6,7 +6,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_file.h"
-#include "runners/live/devices/device_table.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
@@ -22,9 +21,6 @@ class MovingCamera final : public Scenario {
   explicit MovingCamera(std::unique_ptr<const Scenario> scene) : scene_(std::move(scene)) {}
   double frame_rate_hz() const override { return 30; }
   int frame_count() const override { return 100; }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    return make_search(cloud(frame));
-  }
   PointCloud cloud(int frame) const override {
     PointCloud cloud = scene_->cloud(0);
     if (frame < kMoved) return cloud;
@@ -47,20 +43,15 @@ class MovingCamera final : public Scenario {
 class RefusedRun : public testing::Test {
  protected:
   LiveResult run(bool moves) {
-    SimulatedRun run(
-        clock_, press_experiment(),
-        [](const Experiment& experiment, Clock& clock) {
-          return open_device("sim:", {experiment, scenes::kernels(), clock});
-        },
-        [=](const Experiment& experiment, Clock& clock) -> std::unique_ptr<DepthSource> {
-          if (!moves) return SimulatedRun::scenario_camera(experiment, clock);
-          return std::make_unique<ScenarioCamera>(
-              std::make_unique<MovingCamera>(experiment.build_scenario(scenes::kernels())), clock,
-              FrameEncoder::Settings{.name = "./scene"});
-        });
+    SimulatedRun run(clock_, press_experiment(), SimulatedRun::simulated_device,
+                     [=](const Experiment& experiment, Clock& clock) -> std::unique_ptr<DepthSource> {
+                       if (!moves) return SimulatedRun::scenario_camera(experiment, clock);
+                       return std::make_unique<ScenarioCamera>(
+                           std::make_unique<MovingCamera>(experiment.build_scenario(scenes::kernels())),
+                           clock, FrameEncoder::Settings{.name = "./scene"});
+                     });
     run.options.duration_s = 1;
-    run.options.record = session();
-    run.options.provenance = {{"config", press_experiment().to_json()}};
+    run.record(session());
     run.options.check_inputs = check_inputs_;
     LiveResult result = run.run();
     reported_ = run.reported();

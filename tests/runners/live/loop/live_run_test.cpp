@@ -11,7 +11,6 @@
 
 #include "analysis/storage/digest.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/live/devices/device_table.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
@@ -37,12 +36,6 @@ const char* const kTool = R"({
   "renderer": {"name": "tool", "tool_mesh": "ball"},
   "trajectory": {"name": "poses", "poses": [[0, 0.06, 0, 0, 0, 0, 0], [0, 0.01, 0, 0, 0, 0, 0.5],
                                             [0.05, 0.01, 0, 0, 0, 0, 1]]}})";
-
-SimulatedRun::DeviceOpener simulated_device() {
-  return [](const Experiment& experiment, Clock& clock) {
-    return open_device("sim:", {experiment, scenes::kernels(), clock});
-  };
-}
 
 void expect_the_same_offline(const std::filesystem::path& session, const LiveResult& live) {
   ASSERT_FALSE(live.failed) << live.ended;
@@ -73,19 +66,15 @@ class RecordedLiveRun : public testing::TestWithParam<RecordedCase> {
     if (text.front() == '{') return Experiment::from_json(text, "test");
     return Experiment::load(text, {"scenario.width=160", "scenario.height=120", "scenario.focal_px=131"});
   }
-  static void record(SimulatedRun& run, const std::filesystem::path& session) {
-    run.options.duration_s = 2.5;
-    run.options.record = session;
-    run.options.provenance = {{"config", experiment().to_json()}};
-  }
 };
 
 // A tick comes 3.7 ms late, and the numbers have a gap. They are rounded up: the last one is 2500.
 TEST_P(RecordedLiveRun, GivesTheSameDigestOffline) {
   const TestFolder folder("live_run");
   SimulatedClock clock;
-  SimulatedRun run(clock, experiment(), simulated_device());
-  record(run, folder / "session.h5");
+  SimulatedRun run(clock, experiment());
+  run.options.duration_s = 2.5;
+  run.record(folder / "session.h5");
   clock.at(0.7005, [&] { clock.sleep_s(0.0042); });
   const LiveResult result = run.run();
   EXPECT_EQ(result.log.missed_ticks, 4);
@@ -106,8 +95,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(RecordedLiveRun, ChangesOfParametersAreRecordedAndReplayed) {
   const TestFolder folder("live_run");
   SimulatedClock clock;
-  SimulatedRun run(clock, experiment(), simulated_device());
-  record(run, folder / "session.h5");
+  SimulatedRun run(clock, experiment());
+  run.options.duration_s = 2.5;
+  run.record(folder / "session.h5");
   run.options.controls =
       std::make_shared<LiveControls>(experiment(), scenes::kernels(), LiveControls::Camera::simulated);
   std::size_t requested = 0;
@@ -164,12 +154,10 @@ const char* const kSheet = R"({
 TEST(LiveRun, ARecordingOfCloudsGivesTheSameDigestOffline) {
   for (const char* const scene : {kLift, kSheet}) {
     const TestFolder folder("live_run");
-    const Experiment experiment = Experiment::from_json(scene, "test");
     SimulatedClock clock;
-    SimulatedRun run(clock, Experiment::from_json(scene, "test"), simulated_device());
+    SimulatedRun run(clock, Experiment::from_json(scene, "test"));
     run.options.duration_s = 1;
-    run.options.record = folder / "session.h5";
-    run.options.provenance = {{"config", experiment.to_json()}};
+    run.record(folder / "session.h5");
     const LiveResult result = run.run();
     expect_the_same_offline(run.options.record, result);
     double max_force_N = 0;
@@ -190,7 +178,7 @@ TEST(LiveRun, ARecordingInRealTimeGivesTheSameDigestOffline) {
 
 TEST(LiveRun, FollowsItsDurationAndCountsEveryTick) {
   SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
+  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"));
   run.options.duration_s = 0.5;
   const LiveResult result = run.run();
   EXPECT_EQ(result.ended, "its duration has elapsed");
@@ -202,7 +190,7 @@ TEST(LiveRun, FollowsItsDurationAndCountsEveryTick) {
 // A frame arrives in the first tick at or after its time, and rendering takes no time here.
 TEST(LiveRun, MeasuresHowLongAFrameTook) {
   SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
+  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"));
   run.options.duration_s = 1;
   const LiveResult result = run.run();
   ASSERT_EQ(result.log.latency_s.size(), 30u);

@@ -9,7 +9,6 @@
 #include <string>
 #include <thread>
 
-#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"

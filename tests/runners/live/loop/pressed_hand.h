@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runners/experiment/catalog/experiment.h"
+#include "tests/doubles/vendor_devices.h"
 #include "tests/runners/live/loop/simulated_run.h"
 
 namespace remote_touch {
@@ -27,6 +28,12 @@ inline double table_height_m() {
 
 // The hand is above the table until kPressed_s, then 2 mm below it.
 constexpr double kAbove_m = 0.03, kBelow_m = -0.002, kPressed_s = 0.2;
+
+// Puts the handle of the device at a place, in our axes.
+inline void put(DeviceDouble& device, const VendorDevice& vendor, const Vec3& place_m) {
+  const Vec3 place = vendor.length_per_m * (vendor.axes * place_m);
+  device.set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
+}
 
 // The force at the device's side over time, from each moment to the next. If there are several at one moment,
 // the last counts.
@@ -61,5 +68,11 @@ struct ForceOverTime {
     return has_force ? -1 : force_end_ns;
   }
 };
+inline ForceOverTime force_of(const DeviceDouble& device) {
+  ForceOverTime force;
+  for (const DeviceDouble::Event& event : device.events())
+    force.pieces.push_back({event.at_ns, event.force()});
+  return force;
+}
 
 }  // namespace remote_touch

@@ -1,12 +1,14 @@
 // A whole live run in one thread, on a simulated clock: every step of it happens at an exact time.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "runners/live/devices/device_table.h"
 #include "runners/live/loop/live_parts.h"
 #include "runners/live/sensors/scenario_camera.h"
 #include "tests/doubles/simulated_clock.h"
@@ -24,18 +26,27 @@ class SimulatedRun {
   };
 
   // Events that are to happen during the run must be added to the clock before run().
-  SimulatedRun(SimulatedClock& clock, Experiment experiment, DeviceOpener open_device,
-               SourceOpener open_source = scenario_camera)
+  SimulatedRun(SimulatedClock& clock, Experiment experiment, DeviceOpener device = simulated_device,
+               SourceOpener source = scenario_camera)
       : clock_(clock),
         experiment_(std::move(experiment)),
-        open_device_(std::move(open_device)),
-        open_source_(std::move(open_source)) {
+        open_device_(std::move(device)),
+        open_source_(std::move(source)) {
     options.kernels = &scenes::kernels();
     options.report_line = [this](const std::string& line) { reported_.push_back({clock_.now_ns(), line}); };
   }
 
+  static std::unique_ptr<HapticDevice> simulated_device(const Experiment& experiment, Clock& clock) {
+    return open_device("sim:", {experiment, scenes::kernels(), clock});
+  }
   static std::unique_ptr<DepthSource> scenario_camera(const Experiment& experiment, Clock& clock) {
     return std::make_unique<ScenarioCamera>(experiment.build_scenario(scenes::kernels()), clock);
+  }
+
+  // Stores a session that can be simulated again.
+  void record(const std::filesystem::path& session) {
+    options.record = session;
+    options.provenance = {{"config", experiment_.to_json()}};
   }
 
   LiveOptions options;

@@ -8,7 +8,6 @@
 
 #include "runners/experiment/sessions/sensor_cloud.h"
 #include "tests/doubles/depth_libraries.h"
-#include "tests/support/loaded_libraries.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::depth_library_test {
@@ -30,12 +29,6 @@ class DepthLibraryContract : public testing::TestWithParam<const DepthLibrary*> 
     if (is_k4a())
       camera_->state.lens = {
           .fx = 250, .fy = 251, .cx = 160.2, .cy = 143.1, .k = {-0.1, 0.01, 0, 0, 0, 0}, .p1 = 1e-3};
-  }
-  void TearDown() override { expect_all_given_back(); }
-  void expect_all_given_back() {
-    EXPECT_EQ(camera_->held(), 0u);
-    EXPECT_TRUE(camera_->misuse().empty()) << camera_->misuse().front();
-    EXPECT_FALSE(camera_->is_started());
   }
   // The points of a frame lie on the plane. The camera rounds their depth once, and the undistortion rounds
   // it again if the lens distorts.
@@ -225,19 +218,7 @@ TEST_P(DepthLibraryContract, RefusesACameraOfAnotherProgram) {
 }
 
 TEST_P(DepthLibraryContract, AbsentLibraryIsNamedWithTheVariable) {
-  unsetenv(library().variable);
-  std::string message = refusal([&] { open(); });
-  if (!has_loaded(library().library)) {  // the library may be installed here
-    EXPECT_HAS(message, std::string(library().library) + ": cannot be loaded (" + library().library + ", ");
-    EXPECT_HAS(message, library().variable);
-    EXPECT_EQ(library().availability().detail, message);
-    EXPECT_FALSE(library().availability().found);
-  }
-  setenv(library().variable, "/no/such/library.so", 1);
-  message = refusal([&] { open(); });
-  EXPECT_HAS(message,
-             "/no/such/library.so: cannot be loaded (/no/such/library.so: cannot open shared object file");
-  EXPECT_HAS(message, std::string(library().variable) + " must name the library of ");
+  expect_absent_library_is_named(library(), [&] { open(); });
 }
 
 TEST_P(DepthLibraryContract, AnotherLibraryIsRefused) {
@@ -299,7 +280,7 @@ TEST_P(DepthLibraryContract, EveryCallFailsOnce) {
     if (!is_k4a() && !problem.empty()) {
       EXPECT_HAS(problem, " (the library says: " + call + ": the double's text for " + call + ")");
     }
-    expect_all_given_back();
+    camera_.expect_all_given_back();
   }
 }
 

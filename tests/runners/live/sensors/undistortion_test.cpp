@@ -23,29 +23,11 @@ Lens described(const CameraLens& lens) {
 
 // A lens that distorts as strongly as the Azure Kinect's in its wide mode. Its corners see nothing.
 CameraLens wide_lens() {
-  return {.width = 256,
-          .height = 256,
-          .fx = 126,
-          .fy = 126.2,
-          .cx = 129.1,
-          .cy = 125.4,
-          .k = {0.52, 0.16, 0.008, 0.86, 0.26, 0.04},
-          .p1 = 1e-4,
-          .p2 = -2e-4,
-          .max_radius = 1.7};
+  return {256, 256, 126, 126.2, 129.1, 125.4, {0.52, 0.16, 0.008, 0.86, 0.26, 0.04}, 1e-4, -2e-4, 1.7};
 }
 // Barrel distortion, with the tangential part of a lens that is out of line.
 CameraLens narrow_lens() {
-  return {.width = 320,
-          .height = 240,
-          .fx = 250,
-          .fy = 251,
-          .cx = 158.2,
-          .cy = 121.7,
-          .k = {-0.2, 0.05, 0.01, 0, 0, 0},
-          .p1 = 2e-3,
-          .p2 = -3e-3,
-          .max_radius = 1.7};
+  return {320, 240, 250, 251, 158.2, 121.7, {-0.2, 0.05, 0.01, 0, 0, 0}, 2e-3, -3e-3, 1.7};
 }
 
 double plane_depth(const Vector2d& ray, const Vector3d& normal, double distance) {

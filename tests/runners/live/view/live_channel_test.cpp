@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runners/live/view/page_message.h"
+#include "tests/runners/live/view/page_bytes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::live_channel_test {
@@ -29,11 +29,6 @@ LiveTick tick(std::int64_t number) {
   return tick;
 }
 
-std::string acknowledgement(std::uint32_t number) {
-  std::string bytes("\2\0\0\0", 4);
-  return bytes.append(reinterpret_cast<const char*>(&number), 4);
-}
-
 class LiveChannelTest : public testing::Test {
  protected:
   // Returns the next message except the page's role, which live_pages_test.cpp tests.
@@ -51,7 +46,7 @@ class LiveChannelTest : public testing::Test {
     LiveChannel::Message message;
     return take_next(message);
   }
-  void acknowledge(std::uint32_t number) { EXPECT_TRUE(channel_.receive(acknowledgement(number))); }
+  void acknowledge(std::uint32_t number) { EXPECT_TRUE(channel_.receive(acknowledgement_bytes(number))); }
 
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
@@ -222,11 +217,8 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
   channel_.open();
   EXPECT_FALSE(poses_->take());
   EXPECT_FALSE(channel_.receive("hello"));
-  EXPECT_FALSE(channel_.receive(acknowledgement(1))) << "nothing was sent";
-  std::string hand("\1\0\0\0\0\0\0\0", 8);
-  const double pose[] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
-  hand.append(reinterpret_cast<const char*>(pose), sizeof pose);
-  EXPECT_TRUE(channel_.receive(hand));
+  EXPECT_FALSE(channel_.receive(acknowledgement_bytes(1))) << "nothing was sent";
+  EXPECT_TRUE(channel_.receive(hand_bytes({0.1, 0.2, 0.3})));
   ASSERT_TRUE(poses_->take());
   EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
 }
@@ -234,8 +226,7 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
 // The values and the reason of a refusal come back as JSON, also to the page that is opened next.
 TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
   const auto change = [&](double value) {
-    std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
-    return channel_.receive(bytes.append(reinterpret_cast<const char*>(&value), 8));
+    return channel_.receive(page_bytes(3, 1) + change_bytes(3, value));
   };
   const auto answer = [&] {
     const LiveChannel::Message message = next();
@@ -265,12 +256,7 @@ TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
 // The page is closed while its button is down.
 TEST_F(LiveChannelTest, ReleasesTheButtonWhenThePageCloses) {
   channel_.open();
-  const std::uint32_t buttons = 1;
-  std::string hand("\1\0\0\0", 4);
-  hand.append(reinterpret_cast<const char*>(&buttons), 4);
-  const double pose[] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
-  hand.append(reinterpret_cast<const char*>(pose), sizeof pose);
-  EXPECT_TRUE(channel_.receive(hand));
+  EXPECT_TRUE(channel_.receive(hand_bytes({0.1, 0.2, 0.3}, 1)));
   ASSERT_TRUE(poses_->take());
   EXPECT_EQ(poses_->front().buttons, 1u);
   channel_.close();

@@ -5,23 +5,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runners/live/view/page_message.h"
+#include "tests/runners/live/view/page_bytes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::live_pages_test {
 namespace {
 
 std::string hand_at(double x_m, std::uint32_t buttons = 0) {
-  std::string bytes("\1\0\0\0", 4);
-  bytes.append(reinterpret_cast<const char*>(&buttons), 4);
-  const double pose[] = {x_m, 0, 0, 1, 0, 0, 0};
-  return bytes.append(reinterpret_cast<const char*>(pose), sizeof pose);
+  return hand_bytes({x_m, 0, 0}, buttons);
 }
 
 // A change of parameter 3, the stiffness.
 std::string change_to(double value) {
-  std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
-  return bytes.append(reinterpret_cast<const char*>(&value), 8);
+  return page_bytes(3, 1) + change_bytes(3, value);
 }
 
 class LivePagesTest : public testing::Test {

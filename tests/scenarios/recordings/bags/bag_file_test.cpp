@@ -57,6 +57,15 @@ class Bags : public ::testing::Test {
     });
   }
 
+  // Runs the text in a database, which is made if there is none.
+  void change_database(const std::string& name, const std::string& text) const {
+    sqlite3* database = nullptr;
+    sqlite3_open((folder_ / name).c_str(), &database);
+    EXPECT_EQ(sqlite3_exec(database, text.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+    sqlite3_close(database);
+  }
+
   const TestFolder folder_{"bag_file_test"};
 };
 
@@ -184,16 +193,10 @@ TEST_F(Bags, OtherKindsAreRefused) {
 
 // The table lists /a twice, and each entry has one message.
 TEST_F(Bags, ATopicThatSqliteListsTwiceIsOneTopic) {
-  const std::string file = (folder_ / "twice.db3").string();
-  write_db3(file, {{"/a", "std_msgs/msg/Float32", 2, "second"}});
-  sqlite3* database = nullptr;
-  sqlite3_open(file.c_str(), &database);
-  EXPECT_EQ(sqlite3_exec(database,
-                         "INSERT INTO topics VALUES (7, '/a', 'std_msgs/msg/Float32', 'cdr', '');"
-                         "INSERT INTO messages(topic_id, timestamp, data) VALUES (7, 1, x'6669727374')",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(database);
+  write_db3((folder_ / "twice.db3").string(), {{"/a", "std_msgs/msg/Float32", 2, "second"}});
+  change_database("twice.db3",
+                  "INSERT INTO topics VALUES (7, '/a', 'std_msgs/msg/Float32', 'cdr', '');"
+                  "INSERT INTO messages(topic_id, timestamp, data) VALUES (7, 1, x'6669727374')");
   const auto bag = open("twice.db3");
   ASSERT_EQ(bag->topics().size(), 1u);
   ASSERT_EQ(bag->places(0).size(), 2u);
@@ -216,13 +219,8 @@ TEST_F(Bags, ASplitBagReportsEveryDamagedPart) {
 // Tables that can run any computation, for any time.
 TEST_F(Bags, HostileDatabasesAreRefused) {
   const auto made = [&](const std::string& text) {
-    const std::string file = (folder_ / "h.db3").string();
-    std::filesystem::remove(file);
-    sqlite3* database = nullptr;
-    sqlite3_open(file.c_str(), &database);
-    EXPECT_EQ(sqlite3_exec(database, text.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
-        << sqlite3_errmsg(database);
-    sqlite3_close(database);
+    std::filesystem::remove(folder_ / "h.db3");
+    change_database("h.db3", text);
     return error("h.db3");
   };
   const std::string topics =

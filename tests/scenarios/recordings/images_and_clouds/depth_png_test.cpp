@@ -19,6 +19,18 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 class DepthPng : public ::testing::Test {
  protected:
+  static std::string error(const fs::path& file) {
+    return refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+  }
+  // Expects an image of one row, or of one column if it is upright, with these colours.
+  static void expect_colours(const fs::path& file, const std::vector<std::uint32_t>& expected,
+                             bool upright = false) {
+    int width = 0, height = 0;
+    EXPECT_EQ(read_colour_png(file, width, height), expected);
+    EXPECT_EQ(upright ? width : height, 1);
+    EXPECT_EQ(upright ? height : width, 2);
+  }
+
   const TestFolder folder_{"depth_png_test"};
 };
 
@@ -46,13 +58,13 @@ TEST_F(DepthPng, RefusesOtherPixelFormats) {
   const std::uint8_t grey[1] = {7}, rgb[3] = {1, 2, 3};
   const std::uint16_t rgb16[3] = {1, 2, 3};
   const fs::path grey_file = folder_.write_png("grey.png", 1, 1, PNG_FORMAT_GRAY, grey);
-  const std::string text = refusal([&] { read_depth_png(grey_file, 0.001, kNoLimit); });
+  const std::string text = error(grey_file);
   EXPECT_HAS(text, grey_file.string());
   EXPECT_HAS(text, "8-bit grey: expected 16-bit grey (one channel)");
   const fs::path rgb_file = folder_.write_png("rgb.png", 1, 1, PNG_FORMAT_RGB, rgb);
-  EXPECT_HAS(refusal([&] { read_depth_png(rgb_file, 0.001, kNoLimit); }), "8-bit RGB");
+  EXPECT_HAS(error(rgb_file), "8-bit RGB");
   const fs::path rgb16_file = folder_.write_png("rgb16.png", 1, 1, PNG_FORMAT_LINEAR_RGB, rgb16);
-  EXPECT_HAS(refusal([&] { read_depth_png(rgb16_file, 0.001, kNoLimit); }), "16-bit RGB");
+  EXPECT_HAS(error(rgb16_file), "16-bit RGB");
   int width = 0, height = 0;
   EXPECT_HAS(refusal([&] { read_colour_png(rgb16_file, width, height); }),
              "16-bit RGB: expected up to 8 bits");
@@ -64,8 +76,7 @@ TEST_F(DepthPng, RefusesEveryTruncation) {
   const std::string bytes = bytes_of(folder_.write_png("d.png", 8, 8, PNG_FORMAT_LINEAR_Y, samples));
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     const fs::path cut = folder_.write("cut.png", bytes.substr(0, length));
-    const std::string text = refusal([&] { read_depth_png(cut, 0.001, kNoLimit); });
-    EXPECT_HAS(text, cut.string() + ": is not a whole PNG file: ") << "cut to " << length;
+    EXPECT_HAS(error(cut), cut.string() + ": is not a whole PNG file: ") << "cut to " << length;
   }
 }
 
@@ -73,8 +84,7 @@ TEST_F(DepthPng, RefusesDamagedPixels) {
   std::uint16_t samples[64] = {1, 2, 3};
   std::string bytes = bytes_of(folder_.write_png("d.png", 8, 8, PNG_FORMAT_LINEAR_Y, samples));
   bytes[bytes.find("IDAT") + 8] ^= 0x55;
-  EXPECT_HAS(refusal([&] { read_depth_png(folder_.write("d.png", bytes), 0.001, kNoLimit); }),
-             "not a whole PNG");
+  EXPECT_HAS(error(folder_.write("d.png", bytes)), "not a whole PNG");
 }
 
 std::string big_endian(std::uint32_t value) {
@@ -102,8 +112,7 @@ std::string png_header(std::uint32_t width, std::uint32_t height) {
 TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
   const std::string rest = chunk("IDAT", "x") + chunk("IEND", "");
   const fs::path file = folder_.write("d.png", png_header(8000, 8000) + rest);
-  const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
-  EXPECT_HAS(text, file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
+  EXPECT_HAS(error(file), file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
 }
 
 // A deflate stream of 0.8 MB could expand to that many zeros, which would take 4 GB in memory.
@@ -112,7 +121,7 @@ TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
   for (const auto& [width, height] :
        {std::pair(20000u, 20000u), std::pair(100000u, 1000u), std::pair(1000u, 100000u)}) {
     const fs::path file = folder_.write("d.png", png_header(width, height) + rest);
-    const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+    const std::string text = error(file);
     EXPECT_HAS(text, file.string() + ": ");
     EXPECT_HAS(text, "expected up to");
   }
@@ -127,9 +136,8 @@ TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
       for (const std::uint32_t length : {0x7FFFFFFFu, 0xFFFFFFFFu, 1000u}) {
         const fs::path file =
             folder_.write("d.png", whole.substr(0, place) + big_endian(length) + type + whole.substr(place));
-        const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
-        EXPECT_HAS(text, std::string("is not a whole PNG file: ") + type + " claims " +
-                             std::to_string(length) + " bytes");
+        EXPECT_HAS(error(file), std::string("is not a whole PNG file: ") + type + " claims " +
+                                    std::to_string(length) + " bytes");
       }
 }
 
@@ -143,49 +151,34 @@ TEST_F(DepthPng, LeavesOutTexts) {
 
 TEST_F(DepthPng, RefusesMissingFilesAndFolders) {
   const fs::path missing = folder_ / "missing.png";
-  EXPECT_HAS(refusal([&] { read_depth_png(missing, 0.001, kNoLimit); }),
-             missing.string() + ": cannot be read");
-  EXPECT_HAS(refusal([&] { read_depth_png(folder_.path(), 0.001, kNoLimit); }),
-             folder_.path().string() + ": cannot be read");
+  EXPECT_HAS(error(missing), missing.string() + ": cannot be read");
+  EXPECT_HAS(error(folder_.path()), folder_.path().string() + ": cannot be read");
 }
 
 TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
-  int width = 0, height = 0;
   const std::vector<std::uint32_t> expected = {0x102030, 0xFFEE00};
   const std::uint8_t rgb[6] = {0x10, 0x20, 0x30, 0xFF, 0xEE, 0x00};
-  EXPECT_EQ(read_colour_png(folder_.write_png("rgb.png", 2, 1, PNG_FORMAT_RGB, rgb), width, height),
-            expected);
-  EXPECT_EQ(width, 2);
-  EXPECT_EQ(height, 1);
+  expect_colours(folder_.write_png("rgb.png", 2, 1, PNG_FORMAT_RGB, rgb), expected);
   const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x01, 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
-  EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
-            expected);
+  expect_colours(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), expected);
   const std::uint8_t grey[2] = {0x00, 0xA7};
-  const std::vector<std::uint32_t> expected_grey = {0x000000, 0xA7A7A7};
-  EXPECT_EQ(read_colour_png(folder_.write_png("grey.png", 1, 2, PNG_FORMAT_GRAY, grey), width, height),
-            expected_grey);
-  EXPECT_EQ(width, 1);
-  EXPECT_EQ(height, 2);
+  expect_colours(folder_.write_png("grey.png", 1, 2, PNG_FORMAT_GRAY, grey), {0x000000, 0xA7A7A7}, true);
   const std::uint8_t indices[2] = {1, 0};
   const std::uint8_t palette[6] = {0xFF, 0xEE, 0x00, 0x10, 0x20, 0x30};
-  const fs::path file = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, indices, palette, 2);
-  EXPECT_EQ(read_colour_png(file, width, height), expected);
+  expect_colours(folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, indices, palette, 2),
+                 expected);
 }
 
 // The formats that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
 TEST_F(DepthPng, ATransparentPixelHasNoColour) {
-  int width = 0, height = 0;
   const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF};
   const std::vector<std::uint32_t> expected = {kNoColour, 0xFFEE00};
-  EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
-            expected);
+  expect_colours(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), expected);
   const std::uint8_t grey[4] = {0x40, 0x00, 0xA7, 0xFF};
-  const std::vector<std::uint32_t> expected_grey = {kNoColour, 0xA7A7A7};
-  EXPECT_EQ(read_colour_png(folder_.write_png("grey.png", 2, 1, PNG_FORMAT_GA, grey), width, height),
-            expected_grey);
+  expect_colours(folder_.write_png("grey.png", 2, 1, PNG_FORMAT_GA, grey), {kNoColour, 0xA7A7A7});
   const std::uint8_t indices[2] = {0, 1};
-  const fs::path palette = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2);
-  EXPECT_EQ(read_colour_png(palette, width, height), expected);
+  expect_colours(folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2),
+                 expected);
 }
 
 }  // namespace

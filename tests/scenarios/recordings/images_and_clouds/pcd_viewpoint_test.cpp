@@ -21,12 +21,6 @@ std::string refusal_of(const std::string& bytes) {
   return refusal([&] { read_text(bytes); });
 }
 
-// Returns the same file with another line VIEWPOINT.
-std::string seen_from(std::string pcd, const std::string& viewpoint) {
-  const std::string at_origin = "VIEWPOINT 0 0 0 1 0 0 0";
-  return pcd.replace(pcd.find(at_origin), at_origin.size(), "VIEWPOINT " + viewpoint);
-}
-
 // Returns the point of pixel (u, v) in the camera's frame.
 Vec3 seen_by(int u, int v) {
   return {0.2 * (u - 1.5), 0.2 * (v - 1), 2 + 0.1 * u};

@@ -23,15 +23,8 @@ constexpr double kCellsPer_m = 250;
 constexpr double kInterpolated_m = 5e-5;
 constexpr double kTouched_m = 3e-4;  // distance below which points are searched
 
-// Points around the tool with normals in all directions; every seventh has none.
 PointCloud cloud_of(std::size_t count) {
-  PointCloud cloud = scenes::random_cloud(count, 0.012, 21);
-  const PointCloud directions = scenes::random_cloud(count, 1, 22);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : directions.point(i).normalized();
-    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
-  }
-  return cloud;
+  return scenes::cloud_with_normals(static_cast<int>(count), 0.012, 21);
 }
 
 struct Found {

@@ -117,10 +117,12 @@ TEST(MergedPoints, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
   EXPECT_TRUE(merged_points({}, kCube_m).empty());
 }
 
-TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
-  std::vector<CloudPoint> points = surface([](double, double) { return 5e-4; });
-  for (CloudPoint& point : points) point.spacing_m = 0;
-  EXPECT_TRUE(merged_points(points, kCube_m).empty());
+TEST(MergedPoints, PointsWithoutASpacingOrNormalsStandForThemselves) {
+  std::vector<CloudPoint> unspaced = surface([](double, double) { return 5e-4; }), bare = unspaced;
+  for (CloudPoint& point : unspaced) point.spacing_m = 0;
+  for (CloudPoint& point : bare) point.n_W = Vec3::Constant(std::nan(""));
+  EXPECT_TRUE(merged_points(unspaced, kCube_m).empty());
+  EXPECT_TRUE(merged_points(bare, kCube_m).empty());
 }
 
 // The disks of a cloud of points one step apart: a circle of `half` steps in one cube. Points around it,
@@ -158,12 +160,6 @@ TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
 // Wider squares could hide holes.
 TEST(MergedPoints, PointsThatNeedMoreSquaresStandForThemselves) {
   for (const int half : {25, 40, 64}) EXPECT_TRUE(disks_of_circle(half).empty()) << half;
-}
-
-TEST(MergedPoints, PointsWithoutNormalsStandForThemselves) {
-  std::vector<CloudPoint> points = surface([](double, double) { return 0; });
-  for (CloudPoint& point : points) point.n_W = Vec3::Constant(std::nan(""));
-  EXPECT_TRUE(merged_points(points, kCube_m).empty());
 }
 
 }  // namespace

@@ -20,15 +20,8 @@ const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
 constexpr double kReach_m = 0.005, kFraction = 0.75, kCell_m = 0.004;
 
-// Normals in all directions; every seventh point has none.
 PointCloud cloud_with_normals() {
-  PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
-  const PointCloud directions = scenes::random_cloud(20000, 1, 22);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : directions.point(i).normalized();
-    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
-  }
-  return cloud;
+  return scenes::cloud_with_normals(20000, 0.03, 21);
 }
 
 struct Query {

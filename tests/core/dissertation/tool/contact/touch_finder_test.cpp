@@ -47,9 +47,8 @@ std::vector<ToolPose> poses() {
 TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   const PointCloud cloud = scenes::random_cloud(40000, 0.1, 11);
   const auto tool = scenes::box_tool(kHalf_m);
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-    if (isa > best_isa()) continue;
-    TouchFinder finder(tool, kernels_for(isa));
+  for (const Kernels* kernels : supported_kernels()) {
+    TouchFinder finder(tool, *kernels);
     finder.on_frame(formatted<TiledCloud>(cloud));
     int max = 0;
     for (const ToolPose& pose : poses()) {
@@ -107,9 +106,8 @@ TEST(TouchFinder, FindsTheSameListOnEveryInstructionSet) {
   cloud.x[77] = std::nan(""), cloud.y[78] = 1e300;
   const auto tool = scenes::box_tool(kHalf_m);
   std::vector<std::vector<std::uint32_t>> lists;
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-    if (isa > best_isa()) continue;
-    TouchFinder finder(tool, kernels_for(isa));
+  for (const Kernels* kernels : supported_kernels()) {
+    TouchFinder finder(tool, *kernels);
     finder.on_frame(formatted<TiledCloud>(cloud));
     const auto list = finder.within(poses()[1], 0.003);
     lists.emplace_back(list.begin(), list.end());

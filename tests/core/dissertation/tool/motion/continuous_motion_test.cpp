@@ -6,7 +6,6 @@
 #include <random>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/dissertation/tool/shape/outer_field.h"
 #include "core/geometry/rotation.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
@@ -15,12 +14,6 @@ namespace remote_touch::continuous_motion_test {
 namespace {
 
 const Vec3 kHalf_m(0.015, 0.0025, 0.01);  // a plate of 5 mm
-
-std::shared_ptr<const VoxelTool> plate() {
-  VoxelTool tool = *scenes::box_tool(kHalf_m);
-  tool.distance_m = outer_field(tool.mesh, tool.grid, tool.distance_m);
-  return std::make_shared<const VoxelTool>(std::move(tool));
-}
 
 PointCloud sheet(double height_m, double facing = 1, double spacing_m = 0.0013) {
   PointCloud cloud;
@@ -31,7 +24,8 @@ PointCloud sheet(double height_m, double facing = 1, double spacing_m = 0.0013) 
 }
 
 struct Ride {
-  explicit Ride(ToolParameters p) : renderer(with_rule(p), plate(), scenes::kernels()) {}
+  explicit Ride(ToolParameters p)
+      : renderer(with_rule(p), scenes::outer_box_tool(kHalf_m), scenes::kernels()) {}
   static ToolParameters with_rule(ToolParameters p) {
     p.contact_rule = TouchRule::continuous;
     return p;
@@ -80,7 +74,7 @@ TEST(ContinuousMotion, IsCarriedInAnyDirection) {
         cloud.append(turn * level.point(i), turn * level.normal(i));
       return cloud;
     };
-    ToolRenderer renderer(Ride::with_rule({}), plate(), scenes::kernels());
+    ToolRenderer renderer(Ride::with_rule({}), scenes::outer_box_tool(kHalf_m), scenes::kernels());
     RenderOutput out;
     for (int frame = 0; frame < 12; ++frame) {
       renderer.on_frame(scenes::frame(turned(0.0067 * frame), frame));

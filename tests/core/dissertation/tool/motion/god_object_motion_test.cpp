@@ -7,8 +7,8 @@
 #include <random>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/dissertation/tool/shape/outer_field.h"
 #include "core/geometry/rotation.h"
+#include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
@@ -19,11 +19,7 @@ const Vec3 kHalf_m(0.02, 0.005, 0.01);
 constexpr double kGap_m = ContinuousContacts::kGap_m;
 
 ToolRenderer renderer(const ToolGodObjectParameters& p = {}) {
-  static const std::shared_ptr<const VoxelTool> tool = [] {
-    VoxelTool box = *scenes::box_tool(kHalf_m);
-    box.distance_m = outer_field(box.mesh, box.grid, box.distance_m);
-    return std::make_shared<const VoxelTool>(std::move(box));
-  }();
+  static const std::shared_ptr<const VoxelTool> tool = scenes::outer_box_tool(kHalf_m);
   return {tool_parameters(p), tool, scenes::kernels(), std::make_unique<GodObjectMotion>(p, *tool)};
 }
 
@@ -48,13 +44,7 @@ RenderOutput settled(ToolRenderer& r, const DeviceState& device, int ticks = 20)
 TEST(GodObjectMotion, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet()));
-  for (int i = 0; i < 100; ++i) {
-    const DeviceState d{{0.001 * i, 0.05, 0}, rotation({0.01 * i, 0.3, -0.2})};
-    const RenderOutput out = r.step(d, 0.001 * i);
-    EXPECT_EQ(out.proxy_W, d.position_W);
-    EXPECT_EQ(out.force_N, Vec3::Zero());
-    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
-  }
+  expect_free(r);
 }
 
 // A box over the plane y = 0, turned by theta about z, has its centre at a sin|theta| + b cos(theta) or

@@ -7,6 +7,7 @@
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/geometry/rotation.h"
+#include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
@@ -46,13 +47,7 @@ RenderOutput pressed(const PointCloud& cloud, double lower_side_m, const ToolPen
 TEST(PenaltyMotion, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer();
   r.on_frame(scenes::frame(sheet(40, 40)));
-  for (int i = 0; i < 100; ++i) {
-    const DeviceState d{{0.001 * i, 0.05, 0}, rotation({0.01 * i, 0.3, -0.2})};
-    const RenderOutput out = r.step(d, 0.001 * i);
-    EXPECT_EQ(out.proxy_W, d.position_W);
-    EXPECT_EQ(out.force_N, Vec3::Zero());
-    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
-  }
+  expect_free(r);
 }
 
 // Balance of the springs at the depth s: k (D - s) = min(N, 10) k_p s for N points and the device's depth D.

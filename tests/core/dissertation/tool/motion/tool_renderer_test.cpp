@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "core/dissertation/tool/shape/outer_field.h"
 #include "core/geometry/rotation.h"
+#include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
@@ -28,11 +29,9 @@ PointCloud sheet(int n = 60, double spacing_m = 0.002, const Vec3& normal = Vec3
 
 ToolRenderer renderer(TouchRule rule = TouchRule::look_ahead, ToolParameters p = {}) {
   p.contact_rule = rule;
-  const auto box = scenes::box_tool(kHalf_m);
-  if (rule != TouchRule::continuous) return ToolRenderer(p, box, scenes::kernels());
-  VoxelTool outer = *box;
-  outer.distance_m = outer_field(outer.mesh, outer.grid, outer.distance_m);
-  return ToolRenderer(p, std::make_shared<const VoxelTool>(std::move(outer)), scenes::kernels());
+  const bool is_outer = rule == TouchRule::continuous;
+  return ToolRenderer(p, is_outer ? scenes::outer_box_tool(kHalf_m) : scenes::box_tool(kHalf_m),
+                      scenes::kernels());
 }
 
 DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
@@ -40,32 +39,16 @@ DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
 }
 
 class EveryRule : public testing::TestWithParam<TouchRule> {};
-INSTANTIATE_TEST_SUITE_P(Tool, EveryRule,
-                         testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous),
-                         [](const auto& rule) {
-                           switch (rule.param) {
-                             case TouchRule::look_ahead:
-                               return "look_ahead";
-                             case TouchRule::voxels:
-                               return "voxels";
-                             default:
-                               return "continuous";
-                           }
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Tool, EveryRule, testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous),
+    [](const auto& rule) {
+      return (std::array{"look_ahead", "voxels", "continuous"}[static_cast<std::size_t>(rule.param)]);
+    });
 
 TEST_P(EveryRule, ToolIsTheDeviceInFreeSpace) {
   ToolRenderer r = renderer(GetParam());
   r.on_frame(scenes::frame(sheet()));
-  for (int i = 0; i < 100; ++i) {
-    const DeviceState d = device({0.001 * i, 0.05, 0}, {0.01 * i, 0.3, -0.2});
-    const RenderOutput out = r.step(d, 0.001 * i);
-    EXPECT_EQ(out.proxy_W, d.position_W);
-    EXPECT_EQ(out.tool->orientation_W.coeffs(), d.orientation_W.normalized().coeffs());
-    EXPECT_EQ(out.force_N, Vec3::Zero());
-    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
-    EXPECT_EQ(out.contact_count, 0);
-    EXPECT_TRUE(out.converged);
-  }
+  expect_free(r);
 }
 
 TEST_P(EveryRule, CloudsWithoutUsablePointsHoldNothing) {

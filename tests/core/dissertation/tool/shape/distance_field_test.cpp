@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "core/dissertation/tool/shape/voxelisation.h"
 #include "tests/support/meshes.h"
@@ -28,6 +29,7 @@ struct Field {
 // The error is at most the rounding of a float near the surface and a voxel elsewhere. The distance is never
 // too small.
 void expect_distances(const TriangleMesh& mesh, std::size_t step, double voxel_m = 5e-4) {
+  SCOPED_TRACE("a mesh of " + std::to_string(mesh.triangles.size()) + " triangles");
   const Field field(mesh, voxel_m);
   ASSERT_EQ(field.values.size(), field.grid.node_count());
   int near = 0, far = 0, inside = 0;
@@ -52,19 +54,11 @@ void expect_distances(const TriangleMesh& mesh, std::size_t step, double voxel_m
 }
 
 // The steps have no common factor with the rows, so the nodes are spread all over the grid.
-TEST(DistanceField, AgreesWithAllTrianglesOfABall) {
+TEST(DistanceField, AgreesWithAllTriangles) {
   expect_distances(meshes::any_body("ball"), 809);
-}
-TEST(DistanceField, HuskyAgainstAllTriangles) {
   expect_distances(meshes::any_body("husky"), 1009, 1e-3);
-}
-TEST(DistanceField, KeyAgainstAllTriangles) {
   expect_distances(find_generated_tool("key")->make(), 1511, 1e-3);
-}
-TEST(DistanceField, SlantedBoxAgainstAllTriangles) {
   expect_distances(meshes::moved(box_mesh({0.06, 0.02, 0.004}), meshes::rotated(), {0, 0, 0}), 97);
-}
-TEST(DistanceField, CoarseVoxelsAgainstAllTriangles) {
   expect_distances(meshes::any_body("fork"), 307, 2e-3);
 }
 
@@ -89,11 +83,6 @@ TEST(TriangleTree, FindsTheNearestFaceAndAllWithinADistance) {
   }
 }
 
-double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  return (p - a - std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm();
-}
-
 // Three corners on a line: rounding alone would decide whether a position is above their triangle.
 TEST(TriangleTree, ATriangleWithoutAreaIsAsFarAsItsEdges) {
   std::mt19937 random(4);
@@ -103,7 +92,8 @@ TEST(TriangleTree, ATriangleWithoutAreaIsAsFarAsItsEdges) {
     const Vec3 a = draw(), along = draw(), p = draw();
     const Vec3 b = a + 100 * within(random) * along, c = a + 100 * within(random) * along;
     const TriangleTree tree(TriangleMesh{{a, b, c}, {{0, 1, 2}}});
-    const double expected = std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
+    const double expected =
+        std::min({meshes::to_segment(p, a, b), meshes::to_segment(p, b, c), meshes::to_segment(p, c, a)});
     ASSERT_NEAR(std::sqrt(tree.squared_to(0, p)), expected, 1e-8) << i;
   }
 }

@@ -1,12 +1,12 @@
-#include "tests/fuzz/shared/mesh_target.h"
-
+// Mesh files of each kind, read in a child process with limits.
 #include "core/dissertation/tool/shape/mesh_corners.h"
 #include "runners/experiment/tool_files/mesh_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/lasting_child.h"
 #include "tests/fuzz/shared/scratch_file.h"
 
-namespace remote_touch::fuzz {
+namespace remote_touch::fuzz::meshes {
+namespace {
 
 void read_as_mesh(const std::string& name, std::string_view bytes) {
   const auto file = scratch_file(name, bytes);
@@ -16,4 +16,9 @@ void read_as_mesh(const std::string& name, std::string_view bytes) {
   });
 }
 
-}  // namespace remote_touch::fuzz
+const Registered of_obj("mesh_obj", [](std::string_view bytes) { read_as_mesh("mesh.obj", bytes); });
+const Registered of_ply("mesh_ply", [](std::string_view bytes) { read_as_mesh("mesh.ply", bytes); });
+const Registered of_stl("mesh_stl", [](std::string_view bytes) { read_as_mesh("mesh.stl", bytes); });
+
+}  // namespace
+}  // namespace remote_touch::fuzz::meshes

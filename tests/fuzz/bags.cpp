@@ -1,13 +1,14 @@
-#include "tests/fuzz/shared/bag_target.h"
-
+// Bags of each kind: a file is opened, and its content read as the program does.
 #include <algorithm>
 
 #include "scenarios/recordings/bag_frames.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 
-namespace remote_touch::fuzz {
+namespace remote_touch::fuzz::bags {
+namespace {
 
+// name: of the file, with the ending of its kind.
 void read_bag(const std::string& name, std::string_view bytes) {
   // Zeros compress to almost nothing. Such a message is read, but its cloud takes more than 1 s with
   // sanitizers.
@@ -40,4 +41,9 @@ void read_bag(const std::string& name, std::string_view bytes) {
   });
 }
 
-}  // namespace remote_touch::fuzz
+const Registered of_sqlite("db3", [](std::string_view bytes) { read_bag("bag.db3", bytes); });
+const Registered of_mcap("mcap", [](std::string_view bytes) { read_bag("bag.mcap", bytes); });
+const Registered of_ros1("ros1_bag", [](std::string_view bytes) { read_bag("bag.bag", bytes); });
+
+}  // namespace
+}  // namespace remote_touch::fuzz::bags
