@@ -28,7 +28,7 @@ class PartingTick {
   // Returns the situation at that tick, and one line with its reason.
   std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
-    if (!inputs.empty()) return {Cause::input, "different inputs of the renderers: " + joined(inputs, ", ")};
+    if (!inputs.empty()) return {Cause::input, joined(inputs, ", ")};
     if (differs("frame_index"))
       return {Cause::frame_update, "both received the same frames, but one did not use the newest"};
     if (new_frame(baseline_) || new_frame(candidate_))

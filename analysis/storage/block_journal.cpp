@@ -14,6 +14,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_digest.h"
+#include "analysis/storage/file_lock.h"
 #include "analysis/storage/sha256.h"
 #include "core/parameters/input_error.h"
 
@@ -121,7 +122,8 @@ void JournalWriter::create(const JournalBlock& first) {
   descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) refuse(errno);
   try {
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // fails on a file system without locks
+    const int error = lock_error(descriptor_, LOCK_EX | LOCK_NB);
+    if (error != 0 && !has_no_locks(error)) refuse(error);
     write(std::string(kJournalOpening) + bytes_of(first, next_number_++));
     sync();
     give_name(temporary);
@@ -194,7 +196,7 @@ JournalReader::JournalReader(const std::filesystem::path& file) : file_(file) {
     if (descriptor_ >= 0) ::close(descriptor_);
     refuse_reading(file, error);
   }
-  is_growing_ = ::flock(descriptor_, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  is_growing_ = lock_error(descriptor_, LOCK_SH | LOCK_NB) == EWOULDBLOCK;
   size_ = static_cast<std::uint64_t>(there.st_size);
   at_ = last_ = kJournalOpening.size();
 }

@@ -21,7 +21,22 @@ bool is_special(const std::filesystem::path& target) {
   return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
 }
 
+[[noreturn]] void refuse_lock(const std::filesystem::path& target, int error) {
+  throw InputError(target.string(), std::string("cannot be locked (") + std::strerror(error) +
+                                        "): expected a file system whose locks work, or one without locks");
+}
+
 }  // namespace
+
+int lock_error(int descriptor, int operation) {
+  while (::flock(descriptor, operation) != 0)
+    if (errno != EINTR) return errno;
+  return 0;
+}
+
+bool has_no_locks(int error) {
+  return error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == EINVAL;
+}
 
 FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target).string() + ".lock") {
   require_writable(target);
@@ -32,9 +47,11 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target)
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor_ < 0) refuse_writing(target, errno, "a file in a writable folder");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) continue;
-    if (errno != EWOULDBLOCK) return;
+    const int error = lock_error(descriptor_, LOCK_EX | LOCK_NB);
+    if (error == 0) continue;
+    if (has_no_locks(error)) return;
     ::close(descriptor_);
+    if (error != EWOULDBLOCK) refuse_lock(target, error);
     throw InputError(target.string(), "another process is writing this file: expected one at a time");
   } while (!is_name_of(lock_, descriptor_));
   try {
@@ -60,8 +77,11 @@ FileLock::~FileLock() {
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  if (descriptor_ < 0) return;
+  const int error = lock_error(descriptor_, LOCK_EX | LOCK_NB);
+  if (error == 0 || has_no_locks(error)) return;
   ::close(descriptor_);
+  if (error != EWOULDBLOCK) refuse_lock(folder, error);
   throw InputError(folder.string(), "another process is writing there: expected one at a time");
 }
 

@@ -67,7 +67,7 @@ struct Tally {
   int events = 0, runs = 0;
 };
 // The event happens if the measure is above the threshold. A run whose measure is NaN counts as a run without
-// the event.
+// the event; the note "outcome unknown" counts these runs.
 Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
             double above = 0.5);
 

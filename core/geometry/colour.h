@@ -7,6 +7,10 @@ namespace remote_touch {
 
 // The value in the colour column of a cloud for a point whose colour is unknown.
 inline constexpr std::uint32_t kNoColour = 0xFF000000;
+// Returns the colour, 0xRRGGBB, in which a point is shown: a grey if its colour is unknown.
+constexpr std::uint32_t shown_colour(std::uint32_t colour) {
+  return colour == kNoColour ? 0x808080 : colour;
+}
 
 // Converts the bits of a 32-bit float, in which files and messages of clouds store 0xAARRGGBB, to 0xRRGGBB.
 // The alpha value A is 0, or 255 where colours are opaque; many opaque colours are a NaN when they are read

@@ -11,7 +11,6 @@ namespace {
 constexpr double kMaxRadius_m = 0.5;
 // The factor covers rounding, by which squares of equal distances differ.
 constexpr double kSameDistance = 1 + 1e-9;
-constexpr std::size_t kMaxSample = 20000;
 constexpr int kNeighbours = 3;
 
 }  // namespace
@@ -65,9 +64,8 @@ double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, con
                       PointCloud& buffer) {
   constexpr double kUnit_m = 1e-9;
   const PointCloud& cloud = points.every_point(kernels, buffer);
-  const std::size_t stride = cloud.size() / kMaxSample + 1;
   std::int64_t sum = 0, terms = 0;
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
     const double farthest = nearest.find(points, cloud.point(i), kNeighbours + 1);
     if (!(farthest > 0)) continue;

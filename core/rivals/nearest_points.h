@@ -39,9 +39,8 @@ class NearestPoints {
 };
 
 // Returns the mean over all points of the mean distance to the three nearest other points: for a square grid
-// without noise this is its spacing. Only every n-th point is used in clouds larger than 20000 points.
-// Returns 0 if there are fewer than four points. The order of the points has no effect in smaller clouds.
-// buffer: for a search without a stored cloud.
+// without noise this is its spacing. Returns 0 if there are fewer than four points. The order of the points
+// has no effect. buffer: for a search without a stored cloud.
 double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
                       PointCloud& buffer);
 

@@ -118,7 +118,8 @@ void SurfelRenderer::release(const Vec3& hip_W) {
 }
 
 // Moves from the last HIP position to the current one, up to the first checked position behind the surface.
-// If no point is near, it skips the distance to the first point. It moves to the HIP after kMaxChecks checks.
+// If no point is near, it skips the distance to the first point. After kMaxChecks checks it stops; the next
+// tick continues from there.
 void SurfelRenderer::approach(const Vec3& hip_W) {
   const double R = radius_m_;
   for (int check = 1; check <= kMaxChecks; ++check) {
@@ -127,7 +128,7 @@ void SurfelRenderer::approach(const Vec3& hip_W) {
     double path_length = kCheckStride * R;
     if (path_length < distance && R > 0 && near_.within(proxy_W_, R).size() == 0)
       path_length += near_.first_hit(proxy_W_, u / distance, R, distance);
-    const bool is_last = !(path_length < distance) || R == 0 || check == kMaxChecks;
+    const bool is_last = !(path_length < distance) || R == 0;
     proxy_W_ = is_last ? hip_W : Vec3(proxy_W_ + path_length / distance * u);
     const SurfaceSample here = sample(proxy_W_);
     if (here.supported && here.value < 0) {

@@ -27,4 +27,28 @@ void refuse_notes(const SweepResult& result) {
   if (!all.empty()) throw InputError("--strict", all);
 }
 
+void NoteCounts::add_run(std::int32_t bits) {
+  const std::lock_guard lock(mutex_);
+  ++runs_;
+  for (std::size_t kind = 0; bits >> kind != 0; ++kind)
+    if ((bits >> kind & 1) != 0) ++of_kind_[kind];
+}
+
+void NoteCounts::add(const std::vector<Note>& notes) {
+  add_run(note_bits(notes));
+}
+
+void NoteCounts::add(const SweepResult& result) {
+  for (const std::size_t run : result.runs_in(RunState::done)) add_run(result.notes[run]);
+}
+
+std::vector<std::string> NoteCounts::lines() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> lines;
+  for (const auto& [kind, runs] : of_kind_)
+    lines.push_back(std::to_string(runs) + " of " + std::to_string(runs_) +
+                    " runs: " + text_of_kind(note_kinds()[kind].name));
+  return lines;
+}
+
 }  // namespace remote_touch

@@ -1,10 +1,14 @@
 // The notes on the runs of a sweep, as counts by kind.
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
+#include "scenarios/interface/note.h"
 
 namespace remote_touch {
 
@@ -18,5 +22,20 @@ std::vector<std::string> note_lines(const SweepResult& result);
 
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
+
+// The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
+class NoteCounts {
+ public:
+  void add(const std::vector<Note>& notes);  // of one run
+  void add(const SweepResult& result);       // of its finished runs; pre: run_sweep() has made it
+  // Returns a line for each kind: "12 of 210 runs: no contact: no point was touched and no force was felt".
+  std::vector<std::string> lines() const;
+
+ private:
+  void add_run(std::int32_t bits);
+  mutable std::mutex mutex_;
+  std::size_t runs_ = 0;
+  std::map<std::size_t, std::size_t> of_kind_;  // by the number of the kind
+};
 
 }  // namespace remote_touch

@@ -1,6 +1,7 @@
 #include "runners/sweep/sweep_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -25,6 +26,18 @@ std::string stored_error(const std::exception& error) {
   return text.substr(0, end);
 }
 
+// Adds a note if the scene has a true surface but a measure of the outcome is NaN: an event is then counted
+// as if it had not happened, see tally(). A scene without a true surface has no such measure in any run.
+void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes) {
+  const auto is_known = [](double distance_m) { return !std::isnan(distance_m); };
+  const auto is_unknown = [&](const Measure& measure) {
+    return is_outcome(measure.name) && applies(measure, trace) && std::isnan(measure.compute(trace));
+  };
+  if (std::any_of(trace.signed_distance_m.begin(), trace.signed_distance_m.end(), is_known) &&
+      std::any_of(measures.begin(), measures.end(), is_unknown))
+    notes.push_back({"outcome unknown", "it is not known whether the proxy or tool popped through"});
+}
+
 // Does one run and writes its values, or its error, into its own elements of the result. Throws
 // std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
 void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
@@ -38,6 +51,7 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
       std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);
+    add_unknown_outcome(sweep.measures(), trace, report.notes);
     result.notes[run] = note_bits(report.notes);
     result.state[run] = RunState::done;
   } catch (const std::bad_alloc&) {

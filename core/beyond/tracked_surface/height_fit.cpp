@@ -96,7 +96,7 @@ double HeightFit::noise() const {
   double covered = 0;
   for (int j = 1; j < kCells; j += 2)
     for (int i = 1; i < kCells; i += 2) covered += count(i, j, 1) > 0 ? 1 : 0;
-  if (covered == 0) return 0;
+  if (covered == 0) return std::numeric_limits<double>::quiet_NaN();
   const double density = below(kCells, kCells)[n] / covered;
   int half = 1;
   while (half < 4 && density * half * half < kEnough) ++half;
@@ -108,7 +108,7 @@ double HeightFit::noise() const {
       const PlaneFit fit = plane(window(i, j, half), 0, 0);
       if (fit.valid) variances[blocks++] = fit.residual / (fit.count - 3);
     }
-  if (blocks == 0) return 0;
+  if (blocks == 0) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(quantile_in_place(std::span(variances).first(blocks), kLow) / kOfMean);
 }
 

@@ -31,8 +31,8 @@ class HeightFit {
   // Returns the plane through the points of a square window around (u, v). half_side, in contact radii, is
   // rounded to whole cells.
   PlaneFit plane_around(double u, double v, double half_side) const;
-  // Returns the standard deviation of the heights about the planes of small blocks; 0 if no block has enough
-  // points. It is a low quantile over the blocks, so that blocks with edges have no effect.
+  // Returns the standard deviation of the heights about the planes of small blocks; NaN if no block has
+  // enough points. It is a low quantile over the blocks, so that blocks with edges have no effect.
   double noise() const;
   // Sets each node of the map to the plane of the widest window that differs from the narrower ones by no
   // more than noise of standard deviation sigma explains (Lepski's rule, by intersecting confidence

@@ -8,11 +8,27 @@
 
 namespace remote_touch {
 
+namespace {
+
+int nearest_index(double x) {
+  return static_cast<int>(
+      std::clamp((x + HeightMap::kHalf) / HeightMap::kNodePitch + 0.5, 0.0, HeightMap::kNodes - 1.0));
+}
+
+}  // namespace
+
 const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
-  const auto along = [](double x) {
-    return static_cast<int>(std::clamp((x + kHalf) / kNodePitch + 0.5, 0.0, kNodes - 1.0));
-  };
-  return node(along(u), along(v));
+  return node(nearest_index(u), nearest_index(v));
+}
+
+double HeightMap::error(double u, double v) const {
+  const int i = nearest_index(u), j = nearest_index(v);
+  if (node(i, j).known) return node(i, j).error;
+  double largest = -1;
+  for (int b = std::max(0, j - 1); b <= std::min(kNodes - 1, j + 1); ++b)
+    for (int a = std::max(0, i - 1); a <= std::min(kNodes - 1, i + 1); ++a)
+      if (node(a, b).known) largest = std::max(largest, node(a, b).error);
+  return largest >= 0 ? largest : std::numeric_limits<double>::infinity();
 }
 
 // The height at a corner is the mean of the planes of the known nodes next to it; NaN if there is none.

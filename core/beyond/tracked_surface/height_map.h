@@ -21,7 +21,7 @@ class HeightMap {
 
   struct Node {
     double height = 0, slope_u = 0, slope_v = 0;
-    double error = 0;      // standard error of the height
+    double error = 0;      // standard error of the height, if it has a plane
     bool known = false;    // true: the node has a plane
     bool covered = false;  // true: the sheet reaches this node; false: the plane only extends it
   };
@@ -29,6 +29,9 @@ class HeightMap {
   Node& node(int i, int j) { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
   const Node& node(int i, int j) const { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
   const Node& nearest_node(double u, double v) const;
+  // Returns the standard error of the height at a position: that of the nearest node. If it has no plane, the
+  // largest error of the nodes next to it that have one; infinite if there is none.
+  double error(double u, double v) const;
   // Computes the heights of the corners. Must be called after nodes were changed.
   void fill_cells();
 

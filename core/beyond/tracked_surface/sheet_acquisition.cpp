@@ -99,7 +99,7 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
     }
     buffers.fit.set_points(points);
     const PlaneFit plane = buffers.fit.plane_around(0, 0, radius);
-    found.sigma = buffers.fit.noise();
+    if (const double noise = buffers.fit.noise(); !std::isnan(noise)) found.sigma = noise;
     found.known = radius;
     if (!plane.valid) return {};
     const double steep = std::hypot(plane.slope_u, plane.slope_v);

@@ -209,7 +209,7 @@ ToolSurfaceMotion SheetPatches::carried(const ToolHold& hold) {
     if (!patch.in_use || patch.missing || !patch.tracker->tracks()) continue;
     const Vec3 p_W = world(hold.pose, hold.contacts[k].r_T);
     const double moved = patch.tracker->moved(p_W), error = patch.tracker->moved_error(p_W);
-    if (!std::isfinite(moved)) continue;
+    if (!std::isfinite(moved + error)) continue;
     positions.add({p_W, patch.tracker->region().frame.normal_W(), moved * unit_m_, error * unit_m_,
                    1.0 / patch.contacts});
     interval_s = std::max(interval_s, patch.interval_s);

@@ -168,10 +168,12 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
   return count;
 }
 
+// Keeps sigma_ if there are too few points to measure the noise.
 void SheetTracker::fit_map(double weight_of_new_noise) {
   fit_.set_points(points_, fit_trend(points_, std::max(sigma_, kUntouched)));
   fit_.fit(sigma_, map_);
-  sigma_ += weight_of_new_noise * (fit_.noise() - sigma_);
+  const double noise = fit_.noise();
+  if (!std::isnan(noise)) sigma_ += weight_of_new_noise * (noise - sigma_);
 }
 
 // Finds the sheet in the newest frame. Returns false if it is not found.
@@ -238,7 +240,7 @@ double SheetTracker::moved(const Vec3& p_W) const {
 
 double SheetTracker::moved_error(const Vec3& p_W) const {
   const PatchPlace p = patch().place(p_W);
-  return error_of_two(map_.nearest_node(p.u, p.v).error);
+  return error_of_two(map_.error(p.u, p.v));
 }
 
 ShownPoint SheetTracker::shown(const Vec3& p_W) const {
@@ -327,7 +329,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
   const PatchPlace p = patch().place(proxy_W);
   shift_before_ = age_ >= 1 ? shift_ : moved;
   shift_ = moved;
-  shift_error_ = error_of_two(map_.nearest_node(p.u, p.v).error);
+  shift_error_ = error_of_two(map_.error(p.u, p.v));
   interval_s_ = interval_s;
   ++age_;
   return shrunk(shift_, shift_error_) * unit_m_ / interval_s;

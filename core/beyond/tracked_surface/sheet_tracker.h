@@ -80,7 +80,7 @@ class SheetTracker {
   // it is below the resolution of positions. It is NaN if it is not known, for example because the sheet was
   // not seen in the previous frame.
   double moved(const Vec3& p_W) const;
-  // Returns the standard error of that motion.
+  // Returns the standard error of that motion; infinite if no plane is near.
   double moved_error(const Vec3& p_W) const;
   ShownPoint shown(const Vec3& p_W) const;
   // Returns the typical number of members in a square of one contact radius.

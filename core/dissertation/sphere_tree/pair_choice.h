@@ -26,9 +26,9 @@ struct ChosenPair {
 // if some deeper pair i has g_j - g_i >= |n_j - n_i| m, because then no motion up to the length m that obeys
 // i violates j.
 //
-// If the leaf is no deeper than half the look-ahead, m is half the look-ahead. A step is not longer (unless
-// max_step_m is larger), so no pair is lost that a step could run into. A looser rule would be wrong. An
-// example is the obtuse crease of two regions 1 mm apart: the pole of either region lies 9 um deep in the
+// If the leaf is no deeper than half the look-ahead, m is half the look-ahead. validate() of the renderer's
+// settings refuses longer steps, so no pair is lost that a step could run into. A looser rule would be wrong.
+// An example is the obtuse crease of two regions 1 mm apart: the pole of either region lies 9 um deep in the
 // other region and 0.8 mm aside, and a tool that is limited by one region at a time moves back and forth
 // between them.
 //

@@ -102,7 +102,11 @@ Trace FigureContext::simulated(const Experiment& experiment) const {
   SimulationOptions options;
   options.kernels = &kernels_;
   options.stop = stop_;
-  return simulate(experiment, options);
+  RunReport report;
+  options.report = &report;
+  Trace trace = simulate(experiment, options);
+  notes_.add(report.notes);
+  return trace;
 }
 
 Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) const {
@@ -118,6 +122,7 @@ SweepResult FigureContext::sweep(const Sweep& sweep) const {
   SweepResult result = run_sweep(sweep, {&kernels_, stop_, {}, runs_});
   const auto failed = result.runs_in(RunState::failed);
   if (!failed.empty()) throw InputError(sweep.title(), "a run failed: " + result.error[failed.front()]);
+  notes_.add(result);
   return result;
 }
 

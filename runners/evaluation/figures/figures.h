@@ -14,6 +14,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/side_by_side.h"
 #include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
@@ -68,6 +69,8 @@ class FigureContext {
   // Returns the hashes of the recordings that all of them read, see input_hashes.h.
   std::string inputs() const { return inputs_.text(); }
   void require_unchanged_inputs() const { inputs_.require_unchanged(); }
+  // Returns the counts of the notes on all runs, one line for each kind.
+  std::vector<std::string> note_lines() const { return notes_.lines(); }
 
  private:
   Trace simulated(const Experiment& experiment) const;
@@ -81,6 +84,7 @@ class FigureContext {
 
   mutable std::vector<std::string> configurations_;
   mutable InputHashes inputs_;
+  mutable NoteCounts notes_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
   int coarse_;

@@ -38,12 +38,15 @@ TextAttributes with_config(TextAttributes attributes, const std::string& config)
 }
 
 ResultComparison compare_run(const std::filesystem::path& folder, const Baseline& baseline,
-                             const Kernels& kernels, const std::atomic<bool>* stop) {
+                             const Kernels& kernels, const std::atomic<bool>* stop, NoteCounts* notes) {
   const StoredTrace stored(file_of(folder, baseline));
   const Experiment experiment = Experiment::load(subject_of(folder, baseline), baseline.overrides);
   SimulationOptions options;
   options.kernels = &kernels, options.stop = stop, options.hash_frames = true;
+  RunReport report;
+  options.report = &report;
   const ColumnsInMemory made(simulate(experiment, options).columns());
+  if (notes) notes->add(report.notes);
   const std::string config = present_form(attribute(stored.attributes(), "config"), [](const auto& text) {
     return Experiment::from_json(stored_configuration(text), "config").to_json();
   });
@@ -54,10 +57,12 @@ ResultComparison compare_run(const std::filesystem::path& folder, const Baseline
 }
 
 ResultComparison compare_sweep_again(const std::filesystem::path& folder, const Baseline& baseline,
-                                     const Kernels& kernels, const std::atomic<bool>* stop) {
+                                     const Kernels& kernels, const std::atomic<bool>* stop,
+                                     NoteCounts* notes) {
   const StoredSweep stored = read_sweep(file_of(folder, baseline));
   const Sweep sweep = Sweep::load(subject_of(folder, baseline), baseline.overrides);
   const SweepResult made = run_sweep(sweep, {&kernels, stop});
+  if (notes) notes->add(made);
   const std::string config = present_form(attribute(stored.attributes, "config"), [](const auto& text) {
     return Sweep::from_json(stored_configuration(text), "config").to_json();
   });
@@ -101,14 +106,14 @@ void note_parts(const std::filesystem::path& folder, const Baseline& baseline, s
 }  // namespace
 
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
-                             const Kernels& kernels, const std::atomic<bool>* stop) {
+                             const Kernels& kernels, const std::atomic<bool>* stop, NoteCounts* notes) {
   try {
     const std::filesystem::path file = file_of(folder, baseline);
     if (sha256_of_file(file) != baseline.sha256)
       throw InputError(file.string(), "was modified: its SHA-256 differs from the manifest");
     return concluded(baseline, baseline.command == "sweep"
-                                   ? compare_sweep_again(folder, baseline, kernels, stop)
-                                   : compare_run(folder, baseline, kernels, stop));
+                                   ? compare_sweep_again(folder, baseline, kernels, stop, notes)
+                                   : compare_run(folder, baseline, kernels, stop, notes));
   } catch (const MissingRecording& error) {
     return {baseline.name, State::not_run, error.what()};
   } catch (const InputError& error) {

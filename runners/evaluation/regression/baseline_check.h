@@ -6,6 +6,7 @@
 #include "runners/evaluation/regression/manifest.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
@@ -23,9 +24,11 @@ struct BaselineCheck {
   std::optional<ResultComparison> comparison = {};  // if one was made
 };
 
-// Never throws InputError: a problem of one baseline must not hide the others. Throws Interrupted.
+// Adds the notes on the runs to `notes`, unless it is null. Never throws InputError: a problem of one
+// baseline must not hide the others. Throws Interrupted.
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
-                             const Kernels& kernels, const std::atomic<bool>* stop);
+                             const Kernels& kernels, const std::atomic<bool>* stop,
+                             NoteCounts* notes = nullptr);
 
 // Returns an entry `missing` for each experiment, scenario, fixture rule, trajectory and renderer that no
 // baseline runs, except rules that read a file of the user, and parts named live-session. Returns none if the

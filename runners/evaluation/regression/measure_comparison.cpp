@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "analysis/measures/no_value.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
@@ -19,17 +20,22 @@ struct Measured {
   std::vector<std::optional<double>> values = {};  // none for a measure that does not apply
 };
 
-// Returns held_depth_m() of the configuration that a trace stores. 0 if the trace stores none, or if this
-// program cannot read it or does not have its renderer.
-double stored_held_depth_m(const TextAttributes& trace) {
+// Returns held_depth_m() of the configuration that a trace stores; 0 if the trace stores none. Returns none
+// if this program cannot read the configuration or does not have its renderer.
+std::optional<double> stored_held_depth_m(const TextAttributes& trace) {
   const std::string configuration = attribute(trace, "config");
   if (configuration.empty()) return 0;
   try {
     const std::string today = stored_configuration(configuration);
     return held_depth_m(Experiment::from_json(today, "configuration").rendered_contact());
   } catch (const InputError&) {
-    return 0;
+    return std::nullopt;
   }
+}
+
+// True for measures that depend on Trace::held_depth_m.
+bool needs_held_depth(const std::string& measure) {
+  return measure == "popped_through" || measure == "tool_popped_through" || measure == "wrong_side_fraction";
 }
 
 std::optional<Measured> measured(const ColumnSource& source, const TextAttributes& attributes) {
@@ -37,10 +43,15 @@ std::optional<Measured> measured(const ColumnSource& source, const TextAttribute
     return source.has(name) ? std::optional(source.column(name)) : std::nullopt;
   });
   if (!trace) return std::nullopt;
-  trace->held_depth_m = stored_held_depth_m(attributes);
+  const std::optional<double> held_depth_m = stored_held_depth_m(attributes);
+  trace->held_depth_m = held_depth_m.value_or(0);
   Measured result{trace->length()};
-  for (const Measure& measure : measures())
-    result.values.push_back(applies(measure, *trace) ? std::optional(measure.compute(*trace)) : std::nullopt);
+  for (const Measure& measure : measures()) {
+    const bool is_known = held_depth_m || !needs_held_depth(measure.name);
+    result.values.push_back(applies(measure, *trace)
+                                ? std::optional(is_known ? measure.compute(*trace) : kNoValue)
+                                : std::nullopt);
+  }
   return result;
 }
 

@@ -15,7 +15,8 @@ namespace remote_touch {
 // measures of settled contact, which need more than its columns. Returns none if one of the traces lacks a
 // column, or if they differ in length. If the outcomes of the runs differ, see is_outcome(), other measures
 // are only judged as changed. The attributes of each trace hold its configuration, which determines how far
-// its proxy may lie behind the surface. Holds one trace at a time.
+// its proxy may lie behind the surface. If this program cannot read it, the measures that depend on this are
+// NaN. Holds one trace at a time.
 std::optional<std::vector<ValueComparison>> compare_measures(const ColumnSource& baseline,
                                                              const TextAttributes& baseline_attributes,
                                                              const ColumnSource& candidate,

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "analysis/storage/file_lock.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -60,7 +61,7 @@ void remove_abandoned(const std::filesystem::path& place) {
     if (!std::string_view(name).starts_with(kScratchStem)) return;
     const int folder = open_folder(parent, name);
     if (folder < 0) return;
-    if (::flock(folder, LOCK_EX | LOCK_NB) == 0) remove_with_files(parent, name, folder);
+    if (lock_error(folder, LOCK_EX | LOCK_NB) == 0) remove_with_files(parent, name, folder);
     ::close(folder);
   });
   ::close(parent);
@@ -71,13 +72,15 @@ void remove_abandoned(const std::filesystem::path& place) {
                    std::string("cannot be made (") + std::strerror(error) + "): expected a writable folder");
 }
 
-// Waits for the lock, also if signals arrive meanwhile. Returns false if the place has no locks; then no
-// other program can lock the folder either, so none removes it.
-bool take_lock(int folder) {
-  int result = 0;
-  do result = ::flock(folder, LOCK_EX);
-  while (result != 0 && errno == EINTR);
-  return result == 0;
+// Waits for the lock. Returns false if the place has no locks; then no other program can lock the folder
+// either, so none removes it.
+bool take_lock(const std::string& path, int folder) {
+  const int error = lock_error(folder, LOCK_EX);
+  if (error == 0 || has_no_locks(error)) return error == 0;
+  ::rmdir(path.c_str());
+  ::close(folder);
+  throw InputError(path, std::string("cannot be locked (") + std::strerror(error) +
+                             "): expected a TMPDIR whose locks work, or one without locks");
 }
 
 bool has_links(int folder) {
@@ -102,7 +105,7 @@ ScratchFolder::ScratchFolder() {
       ::rmdir(path_.c_str());
       refuse_scratch(path_, error);
     }
-  } while (take_lock(descriptor_) && !has_links(descriptor_));
+  } while (take_lock(path_, descriptor_) && !has_links(descriptor_));
 }
 
 ScratchFolder::~ScratchFolder() {

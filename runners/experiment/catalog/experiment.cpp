@@ -95,8 +95,8 @@ FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitch
 
 namespace {
 
-// The default DepthReport: prints one line when an OpenCL device has failed. The CPU then computes the same
-// results.
+// The default DepthReport: prints one line when an OpenCL device has failed or cannot be used. The CPU then
+// computes the same results.
 void print_line(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }

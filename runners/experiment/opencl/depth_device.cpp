@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/parameters/input_error.h"
@@ -59,20 +60,35 @@ std::vector<OpenClDevice> devices_or_none(std::string& why_none) {
   }
 }
 
-// Returns the fastest device that gives the same bits as the CPU and is faster than the CPU; none if there is
-// no such device.
-std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
-  std::string why_none;
+// Returns the fastest device that gives the same bits as the CPU and is faster than the CPU. If there is no
+// such device, why_none is the reason.
+std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels,
+                                          std::string& why_none) {
   std::optional<OpenClDevice> best;
   double best_ms = std::numeric_limits<double>::infinity();
   for (const OpenClDevice& device : devices_or_none(why_none)) {
-    if (!device.inexact_because.empty()) continue;
-    const DepthTrial trial = trial_of(device, settings, kernels);
-    if (!trial.failure.empty() || !trial.same_bits || trial.device_ms >= std::min(trial.cpu_ms, best_ms))
-      continue;
-    best_ms = trial.device_ms, best = device;
+    DepthTrial trial;
+    if (device.inexact_because.empty()) trial = trial_of(device, settings, kernels);
+    std::string problem = trial.failure.empty() ? inexact_reason(device, trial) : trial.failure;
+    if (problem.empty() && trial.device_ms >= trial.cpu_ms) problem = "is not faster than the CPU";
+    if (!problem.empty())
+      why_none += (why_none.empty() ? "" : "; ") + device.full_name() + " " + problem;
+    else if (trial.device_ms < best_ms)
+      best_ms = trial.device_ms, best = device;
   }
   return best;
+}
+
+// Reports why the CPU processes the frames with device = auto, each reason once in a process.
+void report_cpu(const std::string& why, const DepthReport& report) {
+  static std::mutex mutex;
+  static std::set<std::string> reported;
+  if (!report) return;
+  {
+    const std::lock_guard lock(mutex);
+    if (!reported.insert(why).second) return;
+  }
+  report("depth_pipeline.device = auto: the CPU processes the frames: " + why);
 }
 
 OpenClDevice requested_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
@@ -151,13 +167,21 @@ std::string validate(const DepthDeviceSettings& s) {
 std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& settings,
                                                      const Kernels& kernels, const DepthReport& report) {
   std::optional<OpenClDevice> device;
-  if (settings.device == "auto" && is_for_devices(settings)) device = faster_device(settings, kernels);
+  std::string why_cpu;
+  if (settings.device == "auto") {
+    if (is_for_devices(settings))
+      device = faster_device(settings, kernels, why_cpu);
+    else
+      why_cpu = "no device has kernels for normal_step > 1 or normal_fit = inverse-depth";
+  }
   if (address_of(settings.device)) device = requested_device(settings, kernels);
   try {
     if (device) return open_pipeline(*device, settings, kernels, report);
   } catch (const OpenClError& error) {
-    if (settings.device != "auto") refuse(settings, device->full_name() + " " + error.what());
+    why_cpu = device->full_name() + " " + error.what();
+    if (settings.device != "auto") refuse(settings, why_cpu);
   }
+  if (settings.device == "auto") report_cpu(why_cpu, report);
   note_choice(settings, "");
   return std::make_unique<DepthPipeline>(settings, kernels);
 }

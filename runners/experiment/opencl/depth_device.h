@@ -13,7 +13,8 @@
 
 namespace remote_touch {
 
-// Called once, with one line, when the CPU takes over from a device that failed.
+// Called once, with one line, when the CPU takes over from a device that failed. Also called with the reason
+// why device = auto uses the CPU, once in a process for each reason.
 using DepthReport = std::function<void(const std::string& line)>;
 
 struct DepthDeviceSettings : DepthPipelineSettings {

@@ -43,6 +43,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"object not pressed", "image-press presses another thing than the nearest object"},
       {"hand jumped", "the pixel that image-press follows suddenly showed another place"},
       {"nothing selected", "a fixture rule selects no point, so that it has no effect"},
+      {"outcome unknown",
+       "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
   };
   return kinds;
 }

@@ -120,10 +120,11 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
   const std::vector<Baseline> list = chosen(manifest, request);
   std::vector<BaselineCheck> checks;
+  NoteCounts notes;
   Progress progress("baselines", line.quiet);
   for (const Baseline& baseline : list) {
     progress.update(checks.size(), list.size(), 0, "baselines");
-    checks.push_back(check_baseline(request.folder, baseline, *line.kernels, line.stop));
+    checks.push_back(check_baseline(request.folder, baseline, *line.kernels, line.stop, &notes));
     print(checks.back());
   }
   progress.clear();
@@ -132,6 +133,7 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   for (const BaselineCheck& check : missing) print(check);
   checks.insert(checks.end(), missing.begin(), missing.end());
   if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
+  for (const std::string& note : notes.lines()) std::printf("note: %s\n", note.c_str());
   print_summary(checks);
   if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
   if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));

@@ -14,7 +14,9 @@ void print_entry(const Entry& entry) {
   const Availability availability = entry.availability();
   std::printf("  %-28s %s\n  %-28s %s%s%s\n", entry.example, entry.summary, "",
               availability.compiled_in ? "" : "not compiled in: ",
-              availability.compiled_in && !availability.found ? "not found: " : "",
+              !availability.compiled_in || availability.found ? ""
+              : availability.was_searched                     ? "not found: "
+                                                              : "unknown: ",
               availability.detail.c_str());
 }
 

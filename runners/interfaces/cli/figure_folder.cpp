@@ -94,6 +94,7 @@ void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure 
     printed_[run] += line_of(claim);
     all_hold_ &= claim.verdict != Verdict::fail;
   }
+  for (const std::string& note : context.note_lines()) printed_[run] += "  note: " + note + "\n";
 }
 
 void FigureFolder::report(const FigureProgress& progress, Progress& shown) {

@@ -49,8 +49,8 @@ void check(const remote_touch_renderer& r, const std::string& file) {
   };
   if (!r.name || !r.summary) refuse("a renderer without name or summary");
   if (r.degrees_of_freedom != 3 && r.degrees_of_freedom != 6) refuse("degrees_of_freedom: expected 3 or 6");
-  if (r.contact_model < REMOTE_TOUCH_POINTS || r.contact_model > REMOTE_TOUCH_ORIENTED)
-    refuse("contact_model: expected REMOTE_TOUCH_POINTS to REMOTE_TOUCH_ORIENTED");
+  if (r.contact_model < REMOTE_TOUCH_POINTS || r.contact_model > REMOTE_TOUCH_RESTING_POINTS)
+    refuse("contact_model: expected REMOTE_TOUCH_POINTS to REMOTE_TOUCH_RESTING_POINTS");
   const auto require = [&](const char* name, bool is_there) {
     if (!is_there) refuse(std::string("lacks the function ") + name);
   };

@@ -14,6 +14,7 @@ namespace {
 
 static_assert(REMOTE_TOUCH_SHEET == static_cast<int>(ContactModel::sheet) &&
               REMOTE_TOUCH_ORIENTED == static_cast<int>(ContactModel::oriented) &&
+              REMOTE_TOUCH_RESTING_POINTS == static_cast<int>(ContactModel::resting_points) &&
               REMOTE_TOUCH_ENTRENCHED == static_cast<int>(ContactState::entrenched) &&
               REMOTE_TOUCH_DEVICE_NOT_FINITE == static_cast<int>(RenderStatus::device_not_finite));
 

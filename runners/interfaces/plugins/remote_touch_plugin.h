@@ -85,12 +85,13 @@ typedef struct {
 
 /* The things that constrain the proxy. Tests and comparisons depend on this choice. */
 enum {
-  REMOTE_TOUCH_POINTS = 0,  /* all points of a cloud */
-  REMOTE_TOUCH_REGIONS = 1, /* only forbidden regions around points */
-  REMOTE_TOUCH_MESH = 2,    /* triangles between neighbours in an organised frame */
-  REMOTE_TOUCH_SHEET = 3,   /* a surface fitted along the world's axes */
-  REMOTE_TOUCH_NOTHING = 4, /* points only push: a HIP that is pressed deeper passes them */
-  REMOTE_TOUCH_ORIENTED = 5 /* points, and the direction to the sensor */
+  REMOTE_TOUCH_POINTS = 0,        /* all points of a cloud */
+  REMOTE_TOUCH_REGIONS = 1,       /* only forbidden regions around points */
+  REMOTE_TOUCH_MESH = 2,          /* triangles between neighbours in an organised frame */
+  REMOTE_TOUCH_SHEET = 3,         /* a surface fitted along the world's axes */
+  REMOTE_TOUCH_NOTHING = 4,       /* points only push: a HIP that is pressed deeper passes them */
+  REMOTE_TOUCH_ORIENTED = 5,      /* points, and the direction to the sensor */
+  REMOTE_TOUCH_RESTING_POINTS = 6 /* points; but those that a new frame puts into the tool stay there */
 };
 
 /* One renderer. `values`: the values of its settings, in the order of `settings`. */

@@ -58,9 +58,10 @@ Choice choice_of(const std::string& given, std::initializer_list<const char*> na
 void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all) {
   const int freedom = type.attr("degrees_of_freedom").cast<int>();
   if (freedom != 3 && freedom != 6) throw InputError(entry.name + ": degrees_of_freedom", "expected 3 or 6");
-  const auto model = choice_of<ContactModel>(type.attr("contact_model").cast<std::string>(),
-                                             {"points", "regions", "mesh", "sheet", "nothing", "oriented"},
-                                             entry.name + ": contact_model");
+  const auto model =
+      choice_of<ContactModel>(type.attr("contact_model").cast<std::string>(),
+                              {"points", "regions", "mesh", "sheet", "nothing", "oriented", "resting_points"},
+                              entry.name + ": contact_model");
   std::vector<FrameNeed> needs;
   for (const py::handle need : type.attr("needs"))
     needs.push_back(choice_of<FrameNeed>(

@@ -11,6 +11,7 @@ struct Availability {
   bool compiled_in = true;
   bool found = false;  // a device that can be opened is present now
   std::string detail;  // the device found, or the reason why there is none and what would help; one line
+  bool was_searched = true;  // false: only opening tells whether there is a device; found is then false
 };
 
 inline Availability always(const char* what) {

@@ -21,6 +21,7 @@ constexpr double kStateLasts_s = 20e-3;  // if the last command is older, the st
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
 
+constexpr DeviceFault kLate{"the Haply service answers too late"};
 constexpr DeviceFault kNoState{"the Haply service sent a message that is not a state"};
 constexpr DeviceFault kDeviceGone{"the Inverse3 is no longer in the states of the service"};
 constexpr DeviceFault kHandleGone{"the handle is no longer in the states of the service"};
@@ -195,6 +196,7 @@ DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
   const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
   if (const DeviceFault fault = receive_due_answer(text, deadline_s)) return fault;
   if (!is_old) return {};
+  if (clock().now_s() > deadline_s) return kLate;  // the rest of a message may take 1 ms more, but only once
   if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
   return receive_due_answer(text, deadline_s);
 }

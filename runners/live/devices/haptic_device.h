@@ -45,7 +45,7 @@ struct DeviceTraits {
   double continuous_force_N = 0;
   double max_torque_Nm = 0;
   double max_stiffness_N_per_m = 0;
-  double tick_rate_hz = 1000;  // rate of the device's own loop
+  double tick_rate_hz = 1000;  // rate of the ticks; the device's own loop may have another
 };
 
 // One cycle of the haptic loop: reads the device, renders and writes the force.

@@ -36,8 +36,8 @@ template <class Functions>
 Availability availability_of_library() {
   return availability_of([] {
     return Availability{
-        .found = true,
-        .detail = Functions().library.file() + ": a device is detected only when one is opened"};
+        .detail = Functions().library.file() + ": a device is detected only when one is opened",
+        .was_searched = false};
   });
 }
 

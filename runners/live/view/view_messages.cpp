@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/geometry/bounding_box.h"
+#include "core/geometry/colour.h"
 
 namespace remote_touch {
 
@@ -125,7 +126,8 @@ std::string frame_message(const PointCloud& cloud, std::int32_t index, std::size
   append_positions(bytes, cloud, points, corner_W, step_m);
   if (colours)
     for (const std::uint32_t i : points)
-      for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<char>(cloud.colour[i] >> shift));
+      for (const int shift : {16, 8, 0})
+        bytes.push_back(static_cast<char>(shown_colour(cloud.colour[i]) >> shift));
   pad(bytes);
   if (radii)
     for (const std::uint32_t i : points) append(bytes, static_cast<float>(cloud.fixture_radius_m[i]));

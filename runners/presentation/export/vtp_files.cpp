@@ -1,9 +1,11 @@
 #include "runners/presentation/export/vtp_files.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/geometry/colour.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/little_endian.h"
 #include "runners/presentation/export/result_tables.h"
@@ -59,9 +61,15 @@ VtkPolyData cloud_of(const ExportedFrame& frame, double time_s) {
   for (std::size_t i = 0; i < cloud.size(); ++i) data.points.push_back(cloud.point(i));
   if (!cloud.colour.empty()) {
     VtkArray colour{"colour", "UInt8", 3, {}};
-    for (const std::uint32_t c : cloud.colour)
-      for (const int shift : {16, 8, 0}) put(colour.bytes, static_cast<std::uint8_t>(c >> shift));
+    std::vector<std::uint8_t> has_colour;
+    for (const std::uint32_t c : cloud.colour) {
+      has_colour.push_back(c != kNoColour);
+      for (const int shift : {16, 8, 0})
+        put(colour.bytes, static_cast<std::uint8_t>(shown_colour(c) >> shift));
+    }
     data.of_points.push_back(std::move(colour));
+    if (std::find(has_colour.begin(), has_colour.end(), 0) != has_colour.end())
+      data.of_points.push_back(numbers_of("has_colour", "UInt8", has_colour));
   }
   if (cloud.has_normals()) {
     VtkArray normals{"normal", "Float64", 3, {}};

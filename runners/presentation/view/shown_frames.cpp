@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/colour.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/view/frames_again.h"
 
@@ -30,8 +31,14 @@ std::vector<std::uint8_t> colours_of(const PointCloud& cloud, const std::vector<
   if (cloud.colour.empty()) return colours;
   colours.reserve(3 * points.size());
   for (const std::uint32_t i : points)
-    for (const int shift : {16, 8, 0}) colours.push_back(static_cast<std::uint8_t>(cloud.colour[i] >> shift));
+    for (const int shift : {16, 8, 0})
+      colours.push_back(static_cast<std::uint8_t>(shown_colour(cloud.colour[i]) >> shift));
   return colours;
+}
+
+bool lacks_colours(const PointCloud& cloud, const std::vector<std::uint32_t>& points) {
+  return !cloud.colour.empty() && std::any_of(points.begin(), points.end(),
+                                              [&](std::uint32_t i) { return cloud.colour[i] == kNoColour; });
 }
 
 std::vector<float> radii_of(const PointCloud& cloud, const std::vector<std::uint32_t>& points) {
@@ -76,6 +83,7 @@ class FrameViewer {
     now.rank = std::move(points.rank);
     now.positions = numbers_of(cloud, points.indices, scale_);
     now.colours = colours_of(cloud, points.indices);
+    now.lacks_colours = lacks_colours(cloud, points.indices);
     now.fixture_radius_m = radii_of(cloud, points.indices);
     for (const auto& of_tick : touching) {
       for (const std::uint32_t i : of_tick)
@@ -115,6 +123,7 @@ ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others) {
   ShownFrame some;
   some.index = frame.index, some.captured_s = frame.captured_s;
   some.measured = frame.measured, some.in_box = frame.in_box, some.others = frame.others;
+  some.lacks_colours = frame.lacks_colours;
   const std::uint32_t limit = rank_limit(frame.others, wanted_others);
   std::vector<std::uint32_t> place(frame.rank.size());
   for (std::size_t i = 0; i < frame.rank.size(); ++i) {

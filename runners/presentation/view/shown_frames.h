@@ -37,6 +37,7 @@ struct ShownFrame {
   std::vector<std::uint32_t> rank;
   std::vector<std::uint16_t> positions;
   std::vector<std::uint8_t> colours;    // red, green and blue of each point; empty: no colour
+  bool lacks_colours = false;           // points of unknown colour are grey
   std::vector<float> fixture_radius_m;  // r_f of each point; empty: no fixture
   // The points that touch the proxy or tool, as indices in the list of shown points, tick after tick from the
   // first tick that used the frame. touching_end: for each tick, the index behind the last of its points.

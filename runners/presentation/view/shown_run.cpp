@@ -81,13 +81,17 @@ Json frame_json(const ShownFrame& frame, PackedArrays& numbers) {
 
 std::string text_of(const std::vector<ShownFrame>& frames) {
   std::size_t measured = 0, in_box = 0, shown = 0;
-  for (const ShownFrame& frame : frames)
+  bool lacks_colours = false;
+  for (const ShownFrame& frame : frames) {
     measured += frame.measured, in_box += frame.in_box, shown += frame.positions.size() / 3;
+    lacks_colours |= frame.lacks_colours;
+  }
   const std::size_t count = std::max<std::size_t>(frames.size(), 1);
   return std::to_string(frames.size()) + (frames.size() == 1 ? " frame with " : " frames with ") +
          std::to_string(measured / count) + (frames.size() == 1 ? " points; " : " points each on average; ") +
          std::to_string(in_box / count) + " of them are around the action, " + std::to_string(shown / count) +
-         " are shown" + (shown == in_box ? "" : ": all points near the proxy and some of the others");
+         " are shown" + (shown == in_box ? "" : ": all points near the proxy and some of the others") +
+         (lacks_colours ? "; grey points have no known colour" : "");
 }
 
 }  // namespace

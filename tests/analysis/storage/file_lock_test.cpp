@@ -2,7 +2,9 @@
 #include "analysis/storage/file_lock.h"
 
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
+#include <cerrno>
 #include <filesystem>
 
 #include "analysis/storage/atomic_file.h"
@@ -41,6 +43,13 @@ TEST(FolderLock, OneHolderAtATime) {
   }
   EXPECT_NO_THROW(FolderLock{folder.path()});
   EXPECT_NO_THROW(FolderLock{folder / "nowhere"});
+}
+
+// A file system without locks is no fault; other errors of flock() are reported.
+TEST(LockError, DistinguishesFaultsFromAbsentLocks) {
+  EXPECT_EQ(lock_error(-1, LOCK_EX | LOCK_NB), EBADF);
+  for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) EXPECT_TRUE(has_no_locks(error)) << error;
+  for (const int error : {EBADF, EWOULDBLOCK, EIO, EINTR}) EXPECT_FALSE(has_no_locks(error)) << error;
 }
 
 }  // namespace

@@ -40,6 +40,11 @@ TEST(Colour, AFloatHoldsAColourOrNone) {
     EXPECT_EQ(colour_of_float(none), kNoColour) << std::hex << none;
 }
 
+TEST(Colour, UnknownIsShownAsGreyAndNotAsBlack) {
+  EXPECT_EQ(shown_colour(kNoColour), 0x808080u);
+  for (const std::uint32_t rgb : {0x000000u, 0xC00000u, 0xFFFFFFu}) EXPECT_EQ(shown_colour(rgb), rgb);
+}
+
 // Worked out by hand.
 TEST(Colour, MixedColoursAreKnown) {
   expect_colour(0x7F7F7F, 0, 0, 127 / 255.0);

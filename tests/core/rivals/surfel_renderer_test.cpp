@@ -62,6 +62,17 @@ TEST(SurfelRenderer, LosesAHipThatIsFartherBehindThanTheRadius) {
   EXPECT_TRUE(rest(r, Vec3::Zero()).force_N.isZero(0));
 }
 
+// A tick checks at most 64 positions, R / 8 apart. The hand moves 0.2 m along the plane, and then through it.
+TEST(SurfelRenderer, ALongPathIsCheckedToItsEndInLaterTicks) {
+  const Vec3 from_m(-0.1, 0.009, 0),
+      to_m(0.1, -0.011, 0);  // the HIP is too deep to be found behind the plane
+  SurfelRenderer r = over(scenes::flat_grid(200), without_friction());
+  r.step({from_m}, 0);
+  const RenderOutput first = r.step({to_m}, 0.001);
+  EXPECT_NE(first.proxy_W, to_m);
+  EXPECT_GT(rest(r, to_m).force_N.y(), 1);
+}
+
 // The front is the side of the sensor, not that from which the HIP comes. The HIP is therefore drawn to the
 // front.
 TEST(SurfelRenderer, TheBackOfASheetPullsTheHandThrough) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runners/experiment/simulation/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_notes_test {
@@ -47,6 +48,19 @@ TEST(SweepNotes, AResultWithoutNotesHasNoLines) {
   SweepResult result = two_by_three(1);
   result.note_kinds.clear(), result.notes.clear();
   EXPECT_EQ(note_lines(result), Lines{});
+}
+
+TEST(NoteCounts, CountSingleRunsAndSweepsTogether) {
+  NoteCounts notes;
+  EXPECT_EQ(notes.lines(), Lines{});
+  notes.add({{"no contact", "a"}, {"no contact", "b"}});
+  notes.add(std::vector<Note>{});
+  SweepResult result = two_by_three(1);
+  result.note_kinds = note_kind_names();
+  result.notes = {0, 1 << 3, 0, 0, 1 << 3 | 1 << 4, 0};
+  notes.add(result);
+  EXPECT_EQ(notes.lines(), (Lines{"3 of 7 runs: no contact: no point was touched and no force was felt",
+                                  "1 of 7 runs: no frame: no frame arrived before the run ended"}));
 }
 
 }  // namespace

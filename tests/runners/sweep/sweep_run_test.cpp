@@ -75,6 +75,20 @@ TEST(SweepRuns, StoreTheNotesOfSingleRuns) {
   }
 }
 
+// With the second value of the axis the hand presses beside the grid, where a position below the plane has no
+// side.
+TEST(SweepRuns, HaveANoteIfTheirOutcomeIsUnknown) {
+  const std::int32_t bit = note_bits({{"outcome unknown", ""}});
+  const std::string axis = R"(axes=[{"parameter": "trajectory.start_m.0", "values": [0, 1]}])";
+  const SweepResult result = run_sweep(quick({"replicates=1", axis}), {});
+  EXPECT_FALSE(std::isnan(result.measure("popped_through")[0]));
+  EXPECT_TRUE(std::isnan(result.measure("popped_through")[1]));
+  EXPECT_EQ(result.notes[0] & bit, 0);
+  EXPECT_EQ(result.notes[1] & bit, bit);
+  const SweepResult other = run_sweep(quick({"replicates=1", axis, R"(measures=["max_penetration"])"}), {});
+  EXPECT_EQ(other.notes[1] & bit, 0) << "the outcome is not measured";
+}
+
 TEST(SweepRuns, DoNotDependOnThreads) {
   for (const Sweep& sweep : {quick(), refined()}) {
     omp_set_num_threads(1);

@@ -36,7 +36,8 @@ class Renderer(_Base):
     """
 
     degrees_of_freedom = 3  # or 6: outputs have torque_Nm and tool_orientation
-    contact_model = "points"  # or regions, mesh, sheet, nothing, oriented: see runners/experiment/catalog/factory.h
+    # contact_model: or regions, mesh, sheet, nothing, oriented, resting_points, see runners/experiment/catalog/factory.h
+    contact_model = "points"
     needs = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
     haptic_rate_hz = 1000.0  # set before __init__ too
 

@@ -104,6 +104,17 @@ TEST(HeightFit, DistinguishesNoiseFromEdges) {
   EXPECT_LT(clean.noise(), 1e-3);
 }
 
+TEST(HeightFit, TooFewPointsHaveNoMeasuredNoise) {
+  HeightFit fit;
+  fit.set_points(PatchPoints(scenes::kernels()));
+  EXPECT_TRUE(std::isnan(fit.noise()));
+  PatchPoints few(scenes::kernels());
+  few.reserve(3);
+  for (const double u : {-6.0, 0.0, 6.0}) few.add({u, 0, 0.3 * u}, true);
+  fit.set_points(few);
+  EXPECT_TRUE(std::isnan(fit.noise()));
+}
+
 // All sums are exact, so the order of the terms does not change them.
 TEST(HeightFit, TheOrderOfThePointsDoesNotMatter) {
   const PatchPoints points = sampled(ball, 1, 5);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace remote_touch::height_map_test {
 namespace {
 
@@ -36,6 +38,19 @@ TEST(HeightMap, SteadyLeavesNodesThatOneOfTheMapsDoesNotCover) {
   map.shrink_change_since(earlier);
   EXPECT_EQ(map.node(8, 8).height, 2);
   EXPECT_NE(map.node(8, 9).height, 2);
+}
+
+// A node without a plane takes the largest error around it: it must not seem the most certain one.
+TEST(HeightMap, ErrorOfANodeWithoutAPlaneIsThatOfItsNeighbours) {
+  HeightMap map = plane(0, 0, 0.1);
+  map.node(8, 8) = {};
+  map.node(9, 9).error = 0.2;
+  EXPECT_EQ(map.error(0.1, -0.1), 0.2);
+  EXPECT_EQ(map.error(-1, 0), 0.1);
+  for (int j = 7; j <= 9; ++j)
+    for (int i = 7; i <= 9; ++i) map.node(i, j) = {};
+  EXPECT_TRUE(std::isinf(map.error(0, 0)));
+  EXPECT_EQ(map.error(1, 1), 0.1);
 }
 
 }  // namespace

@@ -115,6 +115,17 @@ TEST_F(CompareMeasuresOfTraces, SurfelsThatRestOnTheSurfaceDidNotPopThrough) {
   }
 }
 
+TEST_F(CompareMeasuresOfTraces, AnUnreadableConfigurationLeavesPopThroughUnknown) {
+  Trace lost = run();
+  lost.signed_distance_m.back() = -0.01;
+  write_trace(folder_ / "newer.h5", lost, {{"config", R"({"renderer": {"name": "of another program"}})"}},
+              {});
+  const ResultComparison other = compare("held.h5", "newer.h5");
+  EXPECT_EQ(measure_in(other, "popped_through")["judgement"], "changed");
+  EXPECT_TRUE(measure_in(other, "popped_through")["candidate"].is_null());
+  EXPECT_EQ(other.not_judged, "popped_through is unknown in one run: the other measures are not judged");
+}
+
 // Traces that are the same have the same measures, so these are not computed.
 TEST_F(CompareMeasuresOfTraces, AreNotReportedIfEveryColumnIsWithinItsTolerance) {
   ComparisonRules rules;

@@ -98,10 +98,10 @@ constexpr const char* kPure =
     "gamma max_missed_frames max_exit_steps xi phase_x phase_z steps_per_tick columns rows "
     "first_frame last_frame width height row first_column last_column column seed cell replicate "
     "normal strength min_saturation min_lightness max_lightness filter_window normal_window "
-    "normal_step device_scale detections_per_tick disk_radius_ratio colour_noise approach_axis "
+    "normal_step device_scale detections_per_tick colour_noise approach_axis "
     "max_tool_leaves max_patches min_points button fraction sheets view_direction threshold "
     "normal_neighbours friction fused_frames view alpha persistence_hits persistence_frames "
-    "mean_frames radius_ratio rotational_stiffness_ratio stiffness_ratio neighbours";
+    "mean_frames neighbours";
 
 // True for pure numbers, counts and pixels, which have no unit, and for names that end in their unit or in
 // the kind of fraction that they are.

@@ -247,6 +247,18 @@ TEST_F(OpenClDoubleTest, NormalsThatOnlyTheCpuComputesAreRefusedForADevice) {
   }
 }
 
+TEST_F(OpenClDoubleTest, AutoReportsOnceWhyTheCpuIsUsed) {
+  std::vector<std::string> lines;
+  DepthDeviceSettings settings;
+  settings.device = "auto";
+  library().is_wrong = true;
+  for (int i = 0; i < 2; ++i)
+    make_depth_processor(settings, best(), [&](const std::string& line) { lines.push_back(line); });
+  EXPECT_EQ(lines, std::vector<std::string>{
+                       "depth_pipeline.device = auto: the CPU processes the frames: opencl:0:0 (double, "
+                       "double) gave other bits than the CPU in a trial frame"});
+}
+
 TEST_F(OpenClDoubleTest, ADeviceWithOtherBitsIsRefusedUnlessItIsAllowed) {
   library().is_imprecise = true;
   EXPECT_HAS(refusal("opencl:0:0"), "flushes subnormal numbers to zero in single precision");
