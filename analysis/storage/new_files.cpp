@@ -70,7 +70,8 @@ void NewFiles::finish() {
     if (const int error = rename_by_rule(file.temporary, file.target); error == EEXIST)
       throw InputError(file.target.string(),
                        "was written by another program meanwhile, and is unchanged: expected "
-                       "another file, or --force");
+                       "another file, or --force" +
+                           put_back());
     else if (error != 0)
       refuse(file, error, put_back());
     file.is_new = true;

@@ -4,9 +4,8 @@
 // points and n of their normals within R. So f < 0 is behind the surface, from whichever side the proxy came.
 //
 //   free      the proxy is the HIP, or follows it if its path needs more checks than a tick makes. Contact
-//   begins if f < 0 at a checked position (every R/8) on the path of
-//             the HIP since the last tick, its end included; so also if a new frame puts the surface in front
-//             of the HIP
+//             begins if f < 0 at a checked position (every R/8) on the path of the HIP since the last tick,
+//             its end included; so also if a new frame puts the surface in front of the HIP
 //   contact   per tick one step in the tangent plane towards the HIP, less what friction holds back, and one
 //             projection onto f = 0 of at most R/2
 //   released  when the HIP is outside of the tangent plane, or nothing is within R of the proxy

@@ -1,5 +1,9 @@
 #include "runners/sweep/sweep_notes.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/cell_text.h"
@@ -25,6 +29,16 @@ void refuse_notes(const SweepResult& result) {
   std::string all;
   for (const std::string& line : note_lines(result)) all += (all.empty() ? "" : "; ") + line;
   if (!all.empty()) throw InputError("--strict", all);
+}
+
+void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes) {
+  const auto is_known = [](double distance_m) { return !std::isnan(distance_m); };
+  const auto is_unknown = [&](const Measure& measure) {
+    return is_outcome(measure.name) && applies(measure, trace) && std::isnan(measure.compute(trace));
+  };
+  if (std::any_of(trace.signed_distance_m.begin(), trace.signed_distance_m.end(), is_known) &&
+      std::any_of(measures.begin(), measures.end(), is_unknown))
+    notes.push_back({"outcome unknown", "it is not known whether the proxy or tool popped through"});
 }
 
 void NoteCounts::add_run(std::int32_t bits) {

@@ -7,10 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "scenarios/interface/note.h"
 
 namespace remote_touch {
+
+struct Trace;
 
 // The options of `replay` for a run: "--cell 0,3", and "--replicate 2" if there are several replicates.
 std::string option_of_run(const SweepResult& result, std::size_t run);
@@ -22,6 +25,10 @@ std::vector<std::string> note_lines(const SweepResult& result);
 
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
+
+// Adds the note "outcome unknown" if the distance to the true surface is known in some tick but a measure of
+// the outcome is NaN: an event is then counted as if it had not happened, see tally().
+void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes);
 
 // The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
 class NoteCounts {

@@ -40,6 +40,7 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   options.report = &replay.report;
   replay.trace = simulate(replay.experiment, options);
   require_unchanged(replay.experiment.inputs(), inputs);
+  add_unknown_outcome(sweep.measures(), replay.trace, replay.report.notes);
   if (strict == Strict::yes) refuse_notes(replay.report);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
   replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);

@@ -1,7 +1,6 @@
 #include "runners/sweep/sweep_run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -11,6 +10,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
@@ -24,18 +24,6 @@ std::string stored_error(const std::exception& error) {
   std::size_t end = std::min(text.size(), kMaxError);
   while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return text.substr(0, end);
-}
-
-// Adds a note if the scene has a true surface but a measure of the outcome is NaN: an event is then counted
-// as if it had not happened, see tally(). A scene without a true surface has no such measure in any run.
-void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes) {
-  const auto is_known = [](double distance_m) { return !std::isnan(distance_m); };
-  const auto is_unknown = [&](const Measure& measure) {
-    return is_outcome(measure.name) && applies(measure, trace) && std::isnan(measure.compute(trace));
-  };
-  if (std::any_of(trace.signed_distance_m.begin(), trace.signed_distance_m.end(), is_known) &&
-      std::any_of(measures.begin(), measures.end(), is_unknown))
-    notes.push_back({"outcome unknown", "it is not known whether the proxy or tool popped through"});
 }
 
 // Does one run and writes its values, or its error, into its own elements of the result. Throws

@@ -81,9 +81,8 @@ std::string listed(const BagFile& bag, const std::vector<std::size_t>& topics) {
   for (std::size_t i = 0; i < topics.size() && i < kMaxShown; ++i) {
     const BagTopic& topic = bag.topics()[topics[i]];
     const std::string encoding = is_readable(topic) ? encoding_of(bag, topics[i]) : topic.encoding;
-    list += (i > 0 ? ", " : "") + topic.name + " (" + topic.type +
-            (encoding.empty() ? "" : " " + encoding.substr(0, 32)) + ", " + std::to_string(topic.messages) +
-            " messages)";
+    list += (i > 0 ? ", " : "") + topic.name + " (" + topic.type + (encoding.empty() ? "" : " ");
+    list += encoding.substr(0, 32) + ", " + std::to_string(topic.messages) + " messages)";
   }
   if (topics.size() > kMaxShown) list += ", and " + std::to_string(topics.size() - kMaxShown) + " more";
   return list.empty() ? "none" : list;

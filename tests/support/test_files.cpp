@@ -84,12 +84,12 @@ std::string xyz_header(const std::string& points, const std::string& data) {
   return pcd_header("x y z", "4 4 4", "F F F", "1 1 1", points, "1", points, data);
 }
 
-// A run has at most 32 bytes, after a byte that holds its length - 1.
 std::string seen_from(std::string pcd, const std::string& viewpoint) {
   const std::string at_origin = "VIEWPOINT 0 0 0 1 0 0 0";
   return pcd.replace(pcd.find(at_origin), at_origin.size(), "VIEWPOINT " + viewpoint);
 }
 
+// A run has at most 32 bytes, after a byte that holds its length - 1.
 std::string lzf_literals(const std::string& bytes) {
   std::string block;
   for (std::size_t i = 0; i < bytes.size(); i += 32) {

@@ -89,7 +89,8 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
     HeightProfile profile;
     const double radius = profile_of_column(points, reach, profile);
     if (!(radius > 0)) return {};
-    const HeightProfile smooth = profile.smoothed(round == 0 ? 0.3 : std::max(0.2, 0.5 * found.sigma));
+    const HeightProfile smooth =
+        profile.smoothed(round == 0 ? 0.3 : std::max(0.2, 0.5 * found.sigma.value_or(0)));
     const double mode = nearest_mode(smooth, found.frame.place(proxy_W).h);
     if (!std::isfinite(mode)) return {};
     const double top = mode + smooth.valley_from(mode, 1), bottom = mode - smooth.valley_from(mode, -1);

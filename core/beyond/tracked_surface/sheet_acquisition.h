@@ -12,9 +12,9 @@
 namespace remote_touch {
 
 struct FoundSheet {
-  PatchFrame frame;  // its origin lies on the sheet, its normal points to the proxy's side
-  double sigma = 0;  // standard deviation of the noise, contact radii
-  double known = 0;  // radius around the origin in which the sheet was seen, contact radii
+  PatchFrame frame;             // its origin lies on the sheet, its normal points to the proxy's side
+  std::optional<double> sigma;  // standard deviation of the noise, contact radii; none: too few points
+  double known = 0;             // radius around the origin in which the sheet was seen, contact radii
 };
 
 // Work buffers of a search.

@@ -82,7 +82,7 @@ void SheetTracker::restart(const Vec3& proxy_W) {
   const auto found = find_sheet(*newest_, proxy_W, unit_m_, kernels_, {*gathered_, points_, fit_});
   tracks_ = found.has_value();
   if (!tracks_) return;
-  sigma_ = found->sigma;
+  if (found->sigma) sigma_ = *found->sigma;
   grow(found->frame, found->known, proxy_W);
 }
 

@@ -47,7 +47,7 @@ Table picture_table(const std::string& name, const std::string& title, const Poi
 
 Panel picture_panel(const std::string& title, int row, int column, const std::string& table,
                     const PictureCrop& crop) {
-  // TableRows count downwards.
+  // Rows count downwards.
   return plot(
       title, "", "", {{table, "column", "row", CurveStyle::image, "", 0, "colour"}},
       {{{row, column}}, {{crop.left - 0.5, crop.right - 0.5}}, {{crop.bottom - 0.5, crop.top - 0.5}}, true});

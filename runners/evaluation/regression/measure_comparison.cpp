@@ -18,6 +18,7 @@ namespace {
 struct Measured {
   std::size_t ticks = 0;
   std::vector<std::optional<double>> values = {};  // none for a measure that does not apply
+  bool lacks_outcome = false;                      // an outcome depends on a held depth that is not known
 };
 
 // Returns held_depth_m() of the configuration that a trace stores; 0 if the trace stores none. Returns none
@@ -47,10 +48,14 @@ std::optional<Measured> measured(const ColumnSource& source, const TextAttribute
   trace->held_depth_m = held_depth_m.value_or(0);
   Measured result{trace->length()};
   for (const Measure& measure : measures()) {
+    if (!applies(measure, *trace)) {
+      result.values.emplace_back();
+      continue;
+    }
     const bool is_known = held_depth_m || !needs_held_depth(measure.name);
-    result.values.push_back(applies(measure, *trace)
-                                ? std::optional(is_known ? measure.compute(*trace) : kNoValue)
-                                : std::nullopt);
+    const double value = measure.compute(*trace);
+    result.lacks_outcome |= !is_known && is_outcome(measure.name) && !std::isnan(value);
+    result.values.emplace_back(is_known ? value : kNoValue);
   }
   return result;
 }
@@ -71,8 +76,9 @@ std::optional<std::vector<ValueComparison>> compare_measures(const ColumnSource&
     const std::optional<double>&b = before->values[i], &c = now->values[i];
     if (!b || !c) continue;
     const Tolerance tolerance = tolerance_of(tolerances, measure.name);
+    const bool is_unknown = needs_held_depth(measure.name) && (before->lacks_outcome || now->lacks_outcome);
     all.push_back({measure.name, measure.unit, measure.better, tolerance, *b, *c,
-                   judge_value(*b, *c, measure.better, tolerance)});
+                   is_unknown ? Judgement::changed : judge_value(*b, *c, measure.better, tolerance)});
   }
   const bool same_outcome = std::none_of(all.begin(), all.end(), [](const ValueComparison& measure) {
     return is_outcome(measure.name) && measure.judgement != Judgement::equal;
@@ -96,6 +102,8 @@ std::optional<double> tick_s(const ColumnSource& trace, std::size_t& ticks) {
 }
 
 std::string text_of_outcome(const ValueComparison& measure) {
+  if (!std::isfinite(measure.baseline) && !std::isfinite(measure.candidate))
+    return measure.name + " is unknown in both runs";
   if (!std::isfinite(measure.baseline) || !std::isfinite(measure.candidate))
     return measure.name + " is unknown in one run";
   if (measure.name == "popped_through") return "one run popped through";

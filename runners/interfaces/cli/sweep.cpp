@@ -64,7 +64,8 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
     const std::size_t run = runs[(7 * done % kSamples) * runs.size() / kSamples];
     try {
-      simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
+      const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
+      add_unknown_outcome(sweep.measures(), trace, report.notes);
       sample.tried.notes[run] = note_bits(report.notes), sample.tried.state[run] = RunState::done;
     } catch (const std::exception&) {
       ++sample.failed;  // the sweep would record it

@@ -134,6 +134,8 @@ TEST(DepthCamera, HolesAreOnlyNearEdgesAndKeepTheirColour) {
   DepthCameraSettings blind = small();
   blind.edge_jump_m = kBlockTop_m + 1e-9;
   for (const char hole : made(blind).view(table_and_block(0), false).hole) EXPECT_EQ(hole, 0);
+  EXPECT_EQ(DepthCameraSettings{}.edge_jump_m, 0.02);
+  EXPECT_EQ(DepthCameraSettings{}.hole_px, 2);
 }
 
 TEST(DepthCamera, DepthsAreWholeDisparities) {

@@ -124,6 +124,13 @@ TEST_F(CompareMeasuresOfTraces, AnUnreadableConfigurationLeavesPopThroughUnknown
   EXPECT_EQ(measure_in(other, "popped_through")["judgement"], "changed");
   EXPECT_TRUE(measure_in(other, "popped_through")["candidate"].is_null());
   EXPECT_EQ(other.not_judged, "popped_through is unknown in one run: the other measures are not judged");
+
+  lost.signed_distance_m.back() = 0.005;
+  write_trace(folder_ / "other.h5", lost, {{"config", R"({"renderer": {"name": "of another program"}})"}},
+              {});
+  const ResultComparison both = compare("other.h5", "newer.h5");
+  EXPECT_EQ(measure_in(both, "popped_through")["judgement"], "changed");
+  EXPECT_EQ(both.not_judged, "popped_through is unknown in both runs: the other measures are not judged");
 }
 
 // Traces that are the same have the same measures, so these are not computed.

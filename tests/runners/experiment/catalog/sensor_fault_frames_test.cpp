@@ -285,8 +285,14 @@ TEST(SensorFaultFrames, AReplayedLiveSessionHasNoFaults) {
   EXPECT_EQ(worse->leaves_sensor_s(0), 0);
 }
 
-TEST(SensorFaultFrames, AViewWithoutADirectionIsRefused) {
-  EXPECT_HAS(refusal([] { Experiment::load("fig4.12", {"faults.view_direction=[0,0,0]"}); }),
+TEST(SensorFaultFrames, SettingsOutsideTheirRangesAreRefused) {
+  const auto why = [](const std::string& assignment) {
+    return refusal([&] { Experiment::load("fig4.12", {assignment}); });
+  };
+  EXPECT_EQ(why("faults.dropout_probability=1.5"), "faults.dropout_probability = 1.5: expected 0 to 1");
+  EXPECT_EQ(why("faults.quantisation_m=-0.001"), "faults.quantisation_m = -0.001: expected 0 to 1");
+  EXPECT_EQ(why("faults.hole_radius_m=0"), "faults.hole_radius_m = 0: expected 0.0001 to 10");
+  EXPECT_HAS(why("faults.view_direction=[0,0,0]"),
              "faults.view_direction: expected a vector of length 0.001 or more");
   SensorFaults blind;
   blind.view_direction.setZero();

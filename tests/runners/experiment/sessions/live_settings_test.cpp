@@ -16,10 +16,14 @@ TEST(LiveSettings, ParametersReachTheSettings) {
   for (const Parameter& p : parameters(s)) {
     names.push_back(p.name);
     const auto number = static_cast<double>(names.size());
-    if (const auto* vector = std::get_if<Vec3*>(&p.value))
+    if (const auto* vector = std::get_if<Vec3*>(&p.value)) {
+      EXPECT_LT(p.low, 0) << p.name;
+      EXPECT_GT(p.high, 0) << p.name;
       **vector = Vec3::Constant(number);
-    else
+    } else {
+      EXPECT_GT(p.low, 0) << p.name;
       *std::get<double*>(p.value) = number;
+    }
   }
   EXPECT_EQ(names, (std::vector<std::string>{"device_position_m", "device_rotation_deg", "device_scale",
                                              "camera_position_m", "camera_rotation_deg"}));

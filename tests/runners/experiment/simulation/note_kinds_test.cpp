@@ -19,7 +19,7 @@ TEST(NoteKinds, KeepTheirBits) {
   const std::vector<std::string> names = note_kind_names();
   std::string joined;
   for (const std::string& name : names) joined += (joined.empty() ? "" : ",") + name;
-  EXPECT_EQ(joined.substr(0, stored.size()), stored);
+  EXPECT_EQ((joined + ",").substr(0, stored.size() + 1), stored + ",");
   EXPECT_LE(names.size(), 31u) << "bits of a number without its sign";
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   for (const std::string& name : names) EXPECT_EQ(name.find(','), std::string::npos) << "it separates names";
