@@ -43,7 +43,8 @@ Json parse_camera_file(const fs::path& file) {
                              "frame_rate_hz", "colour_registered"};
   Json json = parse_json(read_text_file(file, "expected an object of plain values"), file.string());
   if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& item : json.items()) {
+    const std::string& key = item.key();
     const auto is_key = [&key](const Json& name) { return name.get_ref<const std::string&>() == key; };
     if (std::any_of(kKeys.begin(), kKeys.end(), is_key)) continue;
     refuse(file, "key ", shown(key), ": expected ", kKeys.dump());
