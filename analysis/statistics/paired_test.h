@@ -41,7 +41,7 @@ struct MeanDifference {
   std::int64_t pairs = 0;
   double mean = 0, low = 0, high = 0;
 };
-// From the sum of the differences, and half the width of the interval; NaN: there is no interval.
+// Uses the sum of the differences and half the width of the interval; NaN: there is no interval.
 MeanDifference mean_of_sum(double sum, std::int64_t pairs,
                            double half_width = std::numeric_limits<double>::quiet_NaN());
 // NaN differences are skipped and not counted as pairs.

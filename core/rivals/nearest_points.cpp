@@ -1,6 +1,7 @@
 #include "core/rivals/nearest_points.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -12,6 +13,16 @@ constexpr double kMaxRadius_m = 0.5;
 // The factor covers rounding, by which squares of equal distances differ.
 constexpr double kSameDistance = 1 + 1e-9;
 constexpr int kNeighbours = 3;
+constexpr std::size_t kMaxSample = 20000;  // more points would delay the tick in which a frame arrives
+
+// Returns true for about one of `stride` points. The choice depends on the position alone, so that the order
+// of the points has no effect.
+bool is_sampled(const Vec3& p, std::size_t stride) {
+  constexpr std::uint64_t kMix = 0xbf58476d1ce4e5b9;  // the multiplier of splitmix64
+  std::uint64_t bits = 0;
+  for (const double x : p) bits = (bits ^ std::bit_cast<std::uint64_t>(x)) * kMix, bits ^= bits >> 31;
+  return bits % stride == 0;
+}
 
 }  // namespace
 
@@ -64,9 +75,10 @@ double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, con
                       PointCloud& buffer) {
   constexpr double kUnit_m = 1e-9;
   const PointCloud& cloud = points.every_point(kernels, buffer);
+  const std::size_t stride = cloud.size() / kMaxSample + 1;
   std::int64_t sum = 0, terms = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.is_measured(i)) continue;
+    if (!cloud.is_measured(i) || !is_sampled(cloud.point(i), stride)) continue;
     const double farthest = nearest.find(points, cloud.point(i), kNeighbours + 1);
     if (!(farthest > 0)) continue;
     double distances = 0;

@@ -38,9 +38,9 @@ class NearestPoints {
   double radius_m_ = 0.004;  // radius of the first ball, from the last search
 };
 
-// Returns the mean over all points of the mean distance to the three nearest other points: for a square grid
-// without noise this is its spacing. Returns 0 if there are fewer than four points. The order of the points
-// has no effect. buffer: for a search without a stored cloud.
+// Returns the mean over the points of the mean distance to the three nearest other points: for a square grid
+// without noise this is its spacing. A cloud of 20000 points or more is sampled. Returns 0 if there are fewer
+// than four points. The order of the points has no effect. buffer: for a search without a stored cloud.
 double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
                       PointCloud& buffer);
 

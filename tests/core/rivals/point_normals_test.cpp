@@ -76,6 +76,18 @@ TEST(MeanSpacing, IsThatOfASquareGridExceptForTheCorners) {
   EXPECT_EQ(mean_spacing_m(*make_search(three), nearest, scenes::kernels(), buffer), 0);
 }
 
+// A cloud of that many points is sampled.
+TEST(MeanSpacing, DoesNotDependOnTheOrderOfThePoints) {
+  const PointCloud cloud = scenes::random_cloud(50000, 0.1, 4);
+  PointCloud reversed;
+  for (std::size_t i = cloud.size(); i-- > 0;) reversed.append(cloud.point(i));
+  NearestPoints nearest(scenes::kernels());
+  PointCloud buffer;
+  const double spacing_m = mean_spacing_m(*make_search(cloud), nearest, scenes::kernels(), buffer);
+  EXPECT_GT(spacing_m, 0);
+  EXPECT_EQ(mean_spacing_m(*make_search(reversed), nearest, scenes::kernels(), buffer), spacing_m);
+}
+
 TEST(PointNormals, AreThoseOfAnEigenvalueSolverTurnedToTheSensor) {
   const PointCloud cloud = scenes::random_cloud(400, 0.02, 9);
   const BruteForceSearch search(cloud);

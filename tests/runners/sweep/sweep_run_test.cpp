@@ -75,7 +75,7 @@ TEST(SweepRuns, StoreTheNotesOfSingleRuns) {
   }
 }
 
-// With the second value of the axis the hand presses beside the grid, where a position below the plane has no
+// The hand presses beside the grid with the second value of the axis, where a position below the plane has no
 // side.
 TEST(SweepRuns, HaveANoteIfTheirOutcomeIsUnknown) {
   const std::int32_t bit = note_bits({{"outcome unknown", ""}});

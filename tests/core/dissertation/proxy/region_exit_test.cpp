@@ -39,7 +39,7 @@ TEST(StraightExit, LeavesTwoBallsInThePlaneBetweenThem) {
   }
 }
 
-// In a row along the normal: the shortest line out leads to the side.
+// The centres lie in a row along the normal, so the shortest line out leads to the side.
 PointCloud three_balls() {
   PointCloud cloud = scenes::cloud_of({{0, 0, 0}, {0, 0.03, 0}, {0, 0.06, 0}});
   cloud.fixture_radius_m = {0.02, 0.02, 0.02};
