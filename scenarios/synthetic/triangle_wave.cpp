@@ -41,10 +41,15 @@ double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
   const double start = grid_.x(0), end = grid_.x(grid_.columns - 1);
   const double half = 0.5 * settings_.period_m;
   const int corners = static_cast<int>(std::ceil((end - start) / half)) + 1;
+  const double height_m = surface_height(p_W.x(), 0, time_s);
+  // A flank beyond this along x is farther away than the surface at the point's x, or at the end beside it.
+  const double reach_m =
+      std::abs(p_W.y() - height_m) + std::max({start - p_W.x(), p_W.x() - end, 0.0}) + half;
   double nearest = std::numeric_limits<double>::infinity();
   bool is_at_end = false;
   for (int k = 0; k + 1 < corners; ++k) {
     const double x0 = start + k * half, x1 = std::min(x0 + half, end);
+    if (x0 - p_W.x() > reach_m || p_W.x() - x1 > reach_m) continue;
     const double y0 = surface_height(x0, 0, time_s), y1 = surface_height(x1, 0, time_s);
     const double ex = x1 - x0, ey = y1 - y0, px = p_W.x() - x0, py = p_W.y() - y0;
     const double t = std::clamp((px * ex + py * ey) / (ex * ex + ey * ey), 0.0, 1.0);
@@ -54,7 +59,7 @@ double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
     const double foot_x = x0 + t * ex;
     nearest = distance, is_at_end = foot_x <= start + kAtEnd_m || foot_x >= end - kAtEnd_m;
   }
-  if (p_W.y() >= surface_height(p_W.x(), 0, time_s)) return nearest;
+  if (p_W.y() >= height_m) return nearest;
   // Beyond the ends of the grid in x the foot may still be on a flank.
   const double x_m = is_at_end ? p_W.x() : grid_.x(0);
   return grid_.covers(x_m, p_W.z()) ? -nearest : std::numeric_limits<double>::quiet_NaN();
