@@ -145,7 +145,7 @@ Table behind_table(const Scorecard& card) {
   add("units", "unit of the measure", &Row::units);
   add("other", "the best of the methods that are ahead", &Row::other);
   add("ahead", "number of methods that are ahead", &Row::ahead);
-  add("shown", "1 if the difference is significant, else 0",
+  add("significant", "1 if the difference is significant, else 0",
       [](const Row& one) { return static_cast<std::int32_t>(one.is_significant); });
   add("own_mean", "mean of the own method, in the measure's unit", &Row::own_mean);
   add("other_mean", "mean of the other", &Row::other_mean);

@@ -136,16 +136,17 @@ void Hdf5Reader::damaged(const std::string& how) const {
 
 void Hdf5Reader::require_kind(const std::string& kind, const std::string& made_by) const {
   const std::string found = attribute(attributes_, "schema");
-  if (found == schema_name(kind)) return;
+  if (is_schema_of(found, kind)) return;
   throw InputError(file_, (found.empty() ? "has no attribute schema" : "is of schema " + found) +
                               ": expected " + schema_name(kind) + ", " + made_by);
 }
 
-// Columns and keys have other names in other versions: nothing of such a file can be used.
+// Other versions have other names of columns and keys. Those of the version before this one are translated,
+// so its files are read; other versions are refused.
 void Hdf5Reader::require_version() const {
   const std::string schema = attribute(attributes_, "schema");
   const std::string current = std::string(1, '/') + std::to_string(kSchemaVersion);
-  if (!schema.starts_with(kSchemaPrefix) || schema.ends_with(current)) return;
+  if (!schema.starts_with(kSchemaPrefix) || schema.ends_with(current) || is_earlier_schema(schema)) return;
   const std::string readable = schema.substr(0, schema.rfind('/')) + current;
   if (schema.ends_with("/1"))
     throw InputError(file_, "written by version 0.1 (schema " + schema + "); this version reads " + readable +

@@ -32,6 +32,7 @@ constexpr Unit kUnits[] = {
     {"_fraction", "1", {}},
     {"_ratio", "1", {}},
     {"_probability", "1", {}},
+    {"_direction", "1", {}},
 };
 
 }  // namespace

@@ -35,7 +35,7 @@ struct ToolOutput {
   double tool_penetration_m = 0;  // depth of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
   bool budget_exhausted = false;  // the tick ended before the tool had converged
-  int disabled_points = 0;  // points of the newest frame without a normal; TouchRule::voxels ignores them
+  int disabled_points = 0;  // points of the newest frame without a normal; ContactRule::voxels ignores them
 };
 
 // The additional output of guidance, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and

@@ -25,13 +25,13 @@ Parameters parameters(FrameAverageSettings& s) {
       {"persistence_frames", &s.persistence_frames, 0, 16,
        "exponential: number of last frames that persistence_hits counts; 0: a missing point is never shown"},
       {"mean_frames", &s.mean_frames, 1, 16, "mean: number of last frames that are averaged"},
-      {"view", &s.view_direction, -1, 1,
+      {"view_direction", &s.view_direction, -1, 1,
        "viewing direction of the sensor; for images the ray of each pixel is used instead"},
   };
 }
 
 std::string validate(const FrameAverageSettings& s) {
-  if (s.view_direction.norm() < 0.001) return "view: expected a vector of length 0.001 or more";
+  if (s.view_direction.norm() < 0.001) return "view_direction: expected a vector of length 0.001 or more";
   if (s.persistence_frames > 0 && s.persistence_hits > s.persistence_frames)
     return "persistence_hits = " + std::to_string(s.persistence_hits) +
            ": expected at most persistence_frames = " + std::to_string(s.persistence_frames);

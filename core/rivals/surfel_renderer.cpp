@@ -48,14 +48,14 @@ Parameters parameters(SurfelParameters& p) {
        "coefficient of friction: the proxy slides by the tangential distance of the HIP minus this coefficient times "
        "the depth of the HIP"},
       {"fused_frames", &p.fused_frames, 1, 4, "number of newest frames that are joined to one cloud"},
-      {"view", &p.view_direction, -1, 1,
+      {"view_direction", &p.view_direction, -1, 1,
        "viewing direction of the sensor, to which normals are turned; for images the ray of each pixel is used instead"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy", kLive},
   };
 }
 
 std::string validate(const SurfelParameters& p) {
-  return p.view_direction.norm() < 0.001 ? "view: expected a vector of length 0.001 or more" : "";
+  return p.view_direction.norm() < 0.001 ? "view_direction: expected a vector of length 0.001 or more" : "";
 }
 
 SurfelRenderer::SurfelRenderer(const SurfelParameters& parameters, double, const Kernels& kernels)

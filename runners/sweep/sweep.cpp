@@ -132,7 +132,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
     const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
     if (measure == measures().end()) {
       const auto renamed = new_name(name.is_string() ? name.get<std::string>() : "", names);
-      refuse(name.dump() + " is unknown" + (renamed ? ", did you mean " + *renamed : ""));
+      refuse(name.dump() + " is unknown" + (renamed ? "; it is now " + *renamed : ""));
     }
     if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " appears twice");
     chosen.push_back(*measure);

@@ -59,7 +59,7 @@ void BagFrames::refuse_image_settings(const BagChoice& choice) const {
   if (!choice.camera_info.empty())
     refuse(path_, topic().name, " holds clouds: expected scenario.camera_info = \"\"");
   if (choice.images != BagChoice::Images::by_name)
-    refuse(path_, topic().name, " holds clouds: expected scenario.images = by_name");
+    refuse(path_, topic().name, " holds clouds: expected scenario.images = by-name");
 }
 
 std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) const {

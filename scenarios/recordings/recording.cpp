@@ -200,7 +200,7 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
     if (!value.empty()) refuse(path, "is not a ROS bag: expected scenario.", name, " = \"\"");
   if (choice.depth_unit_m != 0) refuse(path, "is not a ROS bag: expected scenario.depth_unit_m = 0");
   if (choice.images != BagChoice::Images::by_name)
-    refuse(path, "is not a ROS bag: expected scenario.images = by_name");
+    refuse(path, "is not a ROS bag: expected scenario.images = by-name");
   if (fs::is_regular_file(path) && has_ending(path, ".pcd")) return index_pcd({path}, {});
   if (!fs::is_directory(path))
     refuse(path, fs::exists(path) ? "is of another kind" : "does not exist",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scenarios/interface/scenario.h"
+#include "scenarios/interface/surface_time.h"
 #include "scenarios/synthetic/grid.h"
 
 namespace remote_touch {

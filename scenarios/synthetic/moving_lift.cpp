@@ -12,13 +12,13 @@ Parameters parameters(MovingLift::Settings& s) {
                  "standard deviation of the noise on x, y and z, redrawn per frame", kLive}});
   list = appended(std::move(list), parameters(s.lift));
   list.push_back(
-      {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
-       "true surface: newest_frame: the plane at the last capture; moving: the plane as it moves between frames"});
+      {"truth", choice(s.truth, {"newest-frame", "moving"}), 0, 0,
+       "true surface: newest-frame: the plane at the last capture; moving: the plane as it moves between frames"});
   return list;
 }
 
 MovingLift::MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : GridScene(settings, key, kernels, settings.truth == Truth::moving), lift_(settings.lift) {}
+    : GridScene(settings, key, kernels, settings.truth == SurfaceTime::moving), lift_(settings.lift) {}
 
 double MovingLift::signed_distance(const Vec3& p_W, double time_s) const {
   return grid_.signed_distance(p_W,

@@ -12,7 +12,6 @@ namespace remote_touch {
 
 class MovingLift final : public GridScene {
  public:
-  enum class Truth { newest_frame, moving };
   struct Settings {
     Grid grid{200, 200, 0.0015, 0, 0};
     double frame_rate_hz = 30;
@@ -22,7 +21,7 @@ class MovingLift final : public GridScene {
                               .rise_s = 0.5,
                               .acceleration_m_per_s2 = 3,
                               .acceleration_s = 1.0 / 3};
-    Truth truth = Truth::newest_frame;
+    SurfaceTime truth = SurfaceTime::newest_frame;
   };
 
   MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -32,8 +31,8 @@ class MovingLift final : public GridScene {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane of the newest frame, because pop-through is judged against what the camera has
-  // seen. With Truth::moving it is the height over the plane as it moves. NaN for a position that is below
-  // the plane and beyond the grid.
+  // seen. With SurfaceTime::moving it is the height over the plane as it moves. NaN for a position that
+  // is below the plane and beyond the grid.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Height of the plane as it moves, also between frames.
   double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }

@@ -39,16 +39,16 @@ Parameters parameters(MovingShape::Settings& s) {
   list.push_back({"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"});
   list = appended(appended(std::move(list), parameters(s.shape)), parameters(s.motion));
   const Parameters more = {
-      {"sheets", &s.sheets, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
-      {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
+      {"layers", &s.layers, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
+      {"layer_spacing_m", &s.layer_spacing_m, 1e-4, 1, "from one layer to the next, along y of the shape"},
       {"normals", &s.normals, 0, 0, "the points have the normals of the true surface, as tools need them"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
       {"redraw_noise", &s.redraw_noise, 0, 1, "true: new noise in every frame; false: the same noise in all"},
       {"vanish_at_s", &s.vanish_at_s, -1, 10000, "frames from this time on have no points; negative: never"},
       {"empty_frame_at_s", &s.empty_frame_at_s, -1, 10000,
        "the first frame from this time on has no points; negative: none"},
-      {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
-       "true surface: newest_frame: as at the last capture; moving: as it moves between frames"},
+      {"truth", choice(s.truth, {"newest-frame", "moving"}), 0, 0,
+       "true surface: newest-frame: as at the last capture; moving: as it moves between frames"},
   };
   return appended(std::move(list), more);
 }
@@ -62,7 +62,7 @@ std::string validate(const MovingShape::Settings& s) {
 }
 
 MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-    : GridScene(settings, key, kernels, settings.truth == Truth::moving),
+    : GridScene(settings, key, kernels, settings.truth == SurfaceTime::moving),
       settings_(settings),
       shape_(settings.shape, settings.grid),
       motion_(settings.motion, settings.frame_rate_hz),
@@ -89,7 +89,7 @@ std::vector<Phase> MovingShape::phases() const {
 }
 
 bool MovingShape::is_a_level_grid() const {
-  return settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 &&
+  return settings_.shape.kind == Shape::Kind::flat && settings_.layers == 1 &&
          motion_.moves_vertically_only() && !settings_.normals;
 }
 
@@ -104,10 +104,10 @@ PointCloud MovingShape::cloud(int frame) const {
   PointCloud cloud;
   if (is_empty(frame)) return cloud;
   const ShapePose pose = motion_.of_frame(frame);
-  const std::size_t size = nodes_S_.size() * static_cast<std::size_t>(settings_.sheets);
+  const std::size_t size = nodes_S_.size() * static_cast<std::size_t>(settings_.layers);
   cloud.x.reserve(size), cloud.y.reserve(size), cloud.z.reserve(size);
-  for (int sheet = 0; sheet < settings_.sheets; ++sheet) {
-    const Vec3 below(0, sheet * settings_.sheet_spacing_m, 0);
+  for (int layer = 0; layer < settings_.layers; ++layer) {
+    const Vec3 below(0, layer * settings_.layer_spacing_m, 0);
     for (std::size_t i = 0; i < nodes_S_.size(); ++i) {
       const Vec3 p_W = pose.to_W(nodes_S_[i] - below);
       if (settings_.normals)
@@ -116,7 +116,7 @@ PointCloud MovingShape::cloud(int frame) const {
         cloud.append(p_W);
     }
   }
-  cloud.grid_columns = grid_.columns;  // sheet after sheet, each whole rows
+  cloud.grid_columns = grid_.columns;  // layer after layer, each whole rows
   return with_noise(std::move(cloud), noise_frame(frame));
 }
 

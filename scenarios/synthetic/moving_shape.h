@@ -11,25 +11,24 @@
 
 namespace remote_touch {
 
-// The points are the grid's nodes on the shape, row by row and sheet by sheet, moved by the motion. Noise is
+// The points are the grid's nodes on the shape, row by row and layer by layer, moved by the motion. Noise is
 // added in the world frame, to the points and not to their normals. A small grid makes a patch, whose border
 // is an edge to slide over. A flat lift has the same bits as a moving-lift of the same settings.
 class MovingShape final : public GridScene {
  public:
-  enum class Truth { newest_frame, moving };
   struct Settings {
     Grid grid{80, 80, 0.0015, 0, 0};
     double frame_rate_hz = 30;
     Shape::Settings shape;
     ShapeMotion::Settings motion;
-    int sheets = 1;
-    double sheet_spacing_m = 0.015;
+    int layers = 1;
+    double layer_spacing_m = 0.015;
     bool normals = false;
     double noise_sigma_m = 0;
     bool redraw_noise = true;
     double vanish_at_s = -1;
     double empty_frame_at_s = -1;
-    Truth truth = Truth::newest_frame;
+    SurfaceTime truth = SurfaceTime::newest_frame;
   };
 
   MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -43,14 +42,15 @@ class MovingShape final : public GridScene {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Empty if the frame is empty.
   PointCloud cloud(int frame) const override;
-  // Distance to the first sheet, positive above it, see Shape::signed_distance(). The sheet is where the
-  // newest frame shows it. If that frame is empty, the sheet is where the frame would have shown it. With
-  // Truth::moving the sheet is where it is at time_s, also between frames. NaN once the sheet has vanished.
+  // Distance to the first layer, positive above it, see Shape::signed_distance(). The layer is where the
+  // newest frame shows it. If that frame is empty, the layer is where the frame would have shown it. With
+  // SurfaceTime::moving the layer is where it is at time_s, also between frames. NaN once the layer has
+  // vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // Returns the normal of the flat shape until it vanishes. Empty for other shapes.
   std::optional<Vec3> plane_normal(double time_s) const override;
-  // Height of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a
-  // surface to press. After the sheet has vanished, it is the height at that time.
+  // Height of the first layer as it moves, continued beyond its border, so that a scripted hand always has a
+  // surface to press. After the layer has vanished, it is the height at that time.
   double surface_height(double x, double z, double time_s) const override;
 
  private:
@@ -64,7 +64,7 @@ class MovingShape final : public GridScene {
   const Shape shape_;
   const ShapeMotion motion_;
   const int vanish_frame_, empty_frame_;   // -1: none
-  std::vector<Vec3> nodes_S_, normals_S_;  // one entry for each node of the first sheet
+  std::vector<Vec3> nodes_S_, normals_S_;  // one entry for each node of the first layer
 };
 
 Parameters parameters(MovingShape::Settings& s);

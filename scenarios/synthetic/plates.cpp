@@ -28,8 +28,8 @@ Parameters parameters(Plates::Settings& s) {
       {"max_height_m", &s.max_height_m, -1000, 1000,
        "a plate higher than this is too near to the camera: it gives no points, but hides what is below"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
-      {"true_motion", &s.true_motion, 0, 1,
-       "true surface: true: as it moves between frames; false: as at the last capture"},
+      {"truth", choice(s.truth, {"newest-frame", "moving"}), 0, 0,
+       "true surface: newest-frame: as at the last capture; moving: as it moves between frames"},
   };
   return appended(parameters(s.grid), more);
 }

@@ -24,12 +24,12 @@ class Plates final : public GridScene {
     std::vector<double> plates{0, 0, 0, 0.2, 0.2, 0, 0, 0, 0};
     double max_height_m = 10;
     double noise_sigma_m = 0;
-    bool true_motion = false;
+    SurfaceTime truth = SurfaceTime::newest_frame;
   };
   static constexpr std::size_t kColumns = 9;
 
   Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
-      : GridScene(settings, key, kernels, settings.true_motion), settings_(settings) {}
+      : GridScene(settings, key, kernels, settings.truth == SurfaceTime::moving), settings_(settings) {}
 
   int frame_count() const override;
   // Returns the motion of each plate that moves, in the order of their end times.

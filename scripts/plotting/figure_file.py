@@ -1,4 +1,4 @@
-"""Reads a figure file: HDF5 of the schema remote-touch-figure/2, which analysis/figures/result_file.cpp writes."""
+"""Reads a figure file: HDF5 of the schema remote-touch-figure/3, which analysis/figures/result_file.cpp writes."""
 import dataclasses
 import math
 import re
@@ -8,7 +8,8 @@ import numpy as np
 
 from plotting.plot_error import PlotError
 
-SCHEMA = "remote-touch-figure/2"
+SCHEMA = "remote-touch-figure/3"
+SCHEMAS = (SCHEMA, "remote-touch-figure/2")  # the second is of an earlier version, and is still read
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image", "surface", "letters")
 NEED_Z = ("map", "band", "image", "surface", "letters")
 FRACTION = re.compile(r"(fraction|share|probability) of |1 when ")

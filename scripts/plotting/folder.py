@@ -6,7 +6,7 @@ import signal
 import sys
 
 from plotting.claims import is_set_up, read_claims, verdict
-from plotting.figure_file import SCHEMA, schema_of
+from plotting.figure_file import SCHEMA, SCHEMAS, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
 from plotting.plot_error import PlotError
@@ -24,9 +24,9 @@ def sort_key(path):
 def is_figure(path):
     """A note about every file that is none."""
     schema = schema_of(path)
-    if schema != SCHEMA:
+    if schema not in SCHEMAS:
         print(f"plot: {path} skipped: schema {schema!r}, expected {SCHEMA!r}", file=sys.stderr)
-    return schema == SCHEMA
+    return schema in SCHEMAS
 
 
 def plot_file(path, png, titled=False):

@@ -8,7 +8,7 @@ import warnings
 import h5py
 import numpy as np
 
-from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, enum_names, open_file, read_figure, text
+from plotting.figure_file import SCHEMAS, Column, Curve, Figure, Panel, enum_names, open_file, read_figure, text
 from plotting.plot_error import PlotError
 
 MAX_PANELS = 8
@@ -147,18 +147,19 @@ def left_out(file):
     return "".join(f"; {each}" for each in words)
 
 
-VERSION = SCHEMA.split("/")[1]
-TRACE, SWEEP = f"remote-touch-trace/{VERSION}", f"remote-touch-sweep/{VERSION}"
+VERSIONS = [schema.split("/")[1] for schema in SCHEMAS]
+TRACES = [f"remote-touch-trace/{version}" for version in VERSIONS]
+SWEEPS = [f"remote-touch-sweep/{version}" for version in VERSIONS]
 
 
 def read_drawable(path):
     """A figure, or a trace or a sweep as one."""
     with open_file(path) as file:
         schema = text(file.attrs, "schema")
-        if schema in (TRACE, SWEEP):
-            panels = sweep_panels(file) if schema == SWEEP else trace_panels(file)
-            heading = (text(file.attrs, "command") or path.name) + (left_out(file) if schema == SWEEP else "")
+        if schema in TRACES + SWEEPS:
+            panels = sweep_panels(file) if schema in SWEEPS else trace_panels(file)
+            heading = (text(file.attrs, "command") or path.name) + (left_out(file) if schema in SWEEPS else "")
             return Figure(path.stem, {"heading": heading}, panels)
-    if schema != SCHEMA:
+    if schema not in SCHEMAS:
         raise PlotError(f"{path}: schema {schema!r}: expected a figure, a trace or a sweep of this program")
     return read_figure(path)

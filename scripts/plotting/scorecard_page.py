@@ -12,7 +12,8 @@ from plotting.scorecard_plots import colours_css, level_text, noise_plot
 from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
                                        level_tables, measure_table, overview_table, success_table)
 
-SCHEMA = "remote-touch-scorecard/3"
+SCHEMA = "remote-touch-scorecard/4"
+EARLIER_SCHEMA = "remote-touch-scorecard/3"  # its weaknesses have the key "shown" in place of "significant"
 OWN_CSS = """
 body { font-size: 15px; max-width: 78rem; }
 h2#reading ~ p { max-width: 60rem; }
@@ -32,8 +33,8 @@ def behind_section(card):
     if not behind:
         return ""
     method = esc(behind["method"])
-    shown = [one for one in behind["list"] if one["shown"]]
-    others = [one for one in behind["list"] if not one["shown"]]
+    shown = [one for one in behind["list"] if one["significant"]]
+    others = [one for one in behind["list"] if not one["significant"]]
     parts = [f'<h2 id="behind">Where {method} is not the best</h2>']
     if shown:
         parts.append(f"<p>Another method is better by more than chance in {len(shown):d} comparison(s):</p>"
@@ -152,6 +153,16 @@ def is_scorecard(directory):
     return any((directory / name).exists() for name in ("scorecard.json", "scorecard.h5"))
 
 
+def with_present_names(card):
+    """A card of the earlier schema, with the key of this one. A damaged card is returned as it is."""
+    try:
+        listed = [{"significant" if key == "shown" else key: value for key, value in one.items()}
+                  for one in card["behind"]["list"]]
+        return card | {"behind": card["behind"] | {"list": listed}}
+    except (AttributeError, KeyError, TypeError):
+        return card
+
+
 def read_scorecard(path):
     try:
         card = json.loads(path.read_text(encoding="utf-8"))
@@ -160,9 +171,9 @@ def read_scorecard(path):
     except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: damaged: {error}") from None
     schema = card.get("schema") if isinstance(card, dict) else None
-    if schema != SCHEMA:
+    if schema not in (SCHEMA, EARLIER_SCHEMA):
         raise PlotError(f"{path}: schema {schema!r}: expected {SCHEMA!r}")
-    return card
+    return card if schema == SCHEMA else with_present_names(card)
 
 
 def plot_scorecard(directory, out):

@@ -20,18 +20,18 @@
 namespace remote_touch::benchmarks {
 namespace {
 
-ToolParameters settings(TouchRule rule) {
+ToolParameters settings(ContactRule rule) {
   ToolParameters p;
   p.contact_rule = rule;
   return p;
 }
-const char* name_of(TouchRule rule) {
+const char* name_of(ContactRule rule) {
   switch (rule) {
-    case TouchRule::voxels:
+    case ContactRule::voxels:
       return "voxels";
-    case TouchRule::continuous:
+    case ContactRule::continuous:
       return "continuous";
-    case TouchRule::look_ahead:
+    case ContactRule::look_ahead:
       break;
   }
   return "look-ahead";
@@ -75,10 +75,10 @@ struct Stepper {
   ContactList contacts;
   LookAheadProgram look_ahead;
   MotionProgram program;
-  TouchRule rule;
+  ContactRule rule;
   double reach_m;
 
-  Stepper(const ToolScene& scene, TouchRule rule_, const Kernels& kernels)
+  Stepper(const ToolScene& scene, ContactRule rule_, const Kernels& kernels)
       : contacts(scene.tool, settings(rule_), kernels),
         look_ahead(settings(rule_), *scene.tool, scene.tool->reach_m),
         program(settings(rule_), *scene.tool),
@@ -96,7 +96,7 @@ struct Stepper {
 
  private:
   Vector6 motion(const ToolPose& pose, const Vector6& desired, std::size_t& listed) {
-    if (rule == TouchRule::look_ahead) {
+    if (rule == ContactRule::look_ahead) {
       const LookAheadProgram::Detection detection = look_ahead.detect(pose, desired, contacts, 0);
       listed = detection.near.contacts.size();
       return detection.a_g;
@@ -107,7 +107,7 @@ struct Stepper {
   }
 };
 
-void add_step(const ToolScene& scene, TouchRule rule) {
+void add_step(const ToolScene& scene, ContactRule rule) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto stepper = std::make_shared<Stepper>(scene, rule, *kernels);
     add(
@@ -188,7 +188,7 @@ void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParame
   least.count_slowest(state);
 }
 
-void add_ride(const ToolScene& scene, TouchRule rule) {
+void add_ride(const ToolScene& scene, ContactRule rule) {
   const ToolParameters parameters = settings(rule);
   for (const Kernels* kernels : supported_kernels())
     add(
@@ -214,19 +214,19 @@ int main(int argc, char** argv) {
   for (const ToolScene& scene : scenes) {
     add_list(scene, "contact", scene.in_contact);
     add_list(scene, "separated", scene.separated);
-    for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::voxels}) {
+    for (const ContactRule rule : {ContactRule::look_ahead, ContactRule::voxels}) {
       add_step(scene, rule);
       add_ride(scene, rule);
     }
-    add_landing(scene, settings(TouchRule::look_ahead), name_of(TouchRule::look_ahead));
+    add_landing(scene, settings(ContactRule::look_ahead), name_of(ContactRule::look_ahead));
   }
   const auto outer = generated_tool("husky", true);
   const std::vector<ToolScene> outer_scenes = {tool_scene("2500", outer, 50, 2e-3),
                                                tool_scene("40000", outer, 200, 1e-3),
                                                tool_scene("111556_dense", outer, 334, 3e-4)};
   for (const ToolScene& scene : outer_scenes) {
-    add_ride(scene, TouchRule::continuous);
-    add_landing(scene, settings(TouchRule::continuous), name_of(TouchRule::continuous));
+    add_ride(scene, ContactRule::continuous);
+    add_landing(scene, settings(ContactRule::continuous), name_of(ContactRule::continuous));
   }
   return run_benchmarks(argc, argv);
 }

@@ -25,7 +25,7 @@ inline MovingShape::Settings rising_plane() {
   MovingShape::Settings s;
   s.grid = {60, 50, 0.002, 0, 0};
   s.motion.lift.start_velocity_m_per_s = 0.3, s.motion.lift.rise_s = 40 / 30.0;
-  s.truth = MovingShape::Truth::moving;
+  s.truth = SurfaceTime::moving;
   return s;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
+#include "core/rendering/output_rules.h"
 
 namespace remote_touch {
 
@@ -11,12 +12,10 @@ enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed
 enum class FreeRoot { ahead, smallest_magnitude };  // root of (4.9); the second is the printed text
 // Motion in contact. tangent_plane: (4.6), (5.16). regions: each touching region limits the motion by itself.
 // creases: as regions in a crease, as tangent_plane elsewhere.
-enum class ContactRule { tangent_plane, regions, creases };
+enum class ContactMotion { tangent_plane, regions, creases };
 enum class ExitRule { towards_hip, out_of_contact };  // step in contact with the HIP outside: (4.7) or (5.17)
-enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
 enum class DampingSign { plus, minus };  // sign of the k_d term in the bracket of (4.16); minus is printed
 enum class ForceGate { latest_contact, contact_now };  // condition for sending (4.16); the second is printed
-enum class SlaveCommand { proxy, hip };  // a hard constraint on the slave robot, or a soft one, 5.2
 
 struct ProxyParameters {
   double r1_m = 0.00499;
@@ -35,12 +34,12 @@ struct ProxyParameters {
   StepRule step_rule = StepRule::variable;
   double fixed_step_m = 1e-4;
   FreeRoot free_root = FreeRoot::ahead;
-  ContactRule contact_rule = ContactRule::tangent_plane;
+  ContactMotion contact_motion = ContactMotion::tangent_plane;
   ExitRule exit_rule = ExitRule::towards_hip;
   VelocityForce velocity_force = VelocityForce::minus;
   DampingSign damping_sign = DampingSign::plus;
   ForceGate force_gate = ForceGate::latest_contact;
-  SlaveCommand slave_command = SlaveCommand::proxy;
+  SlaveCommand slave_command = SlaveCommand::rendered;
   bool slave_prediction = false;  // not in the dissertation
 
   // The contact point lies in the middle of the contact region, 4.2.1.

@@ -193,7 +193,7 @@ int ProxyRenderer::leave_regions(const Vec3& hip_W) {
 // in_crease_. The angle at which a crease begins is larger than the angle at which it ends, because the two
 // rules would alternate otherwise.
 bool ProxyRenderer::update_region_rule(const LocalQuery& here) {
-  if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
+  if (p_.contact_motion != ContactMotion::creases) return p_.contact_motion == ContactMotion::regions;
   constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
   in_crease_ = is_in_crease(here.points, proxy_W_, unit_normal(here.query, normal_W_), p_.r2_m,
                             in_crease_ ? kLeaves : kMeets);

@@ -84,7 +84,7 @@ class ProxyRenderer final : public Renderer {
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy was placed at the first HIP
   bool in_contact_ = false;                // stays true until a free tick, or until free at the HIP
-  bool in_crease_ = false;                 // last result of update_region_rule() under ContactRule::creases
+  bool in_crease_ = false;                 // last result of update_region_rule() under ContactMotion::creases
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // k_s before the newest change

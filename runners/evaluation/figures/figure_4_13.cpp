@@ -23,8 +23,8 @@ Table with_second_implementation(Table regions) {
   for (std::size_t i = 0; i < second.size(); ++i)
     apart.push_back((survived.at(i) - second[i]) /
                     SharedLifts{second[i], variance[i], nodes[i], 1}.standard_error(1));
-  regions.add("second", "1", "the same by the second implementation", second);
-  regions.add("apart", "1", "difference in units of its standard error", apart);
+  regions.add("second_implementation", "1", "the same by the second implementation", second);
+  regions.add("difference_in_standard_errors", "1", "difference in units of its standard error", apart);
   return regions;
 }
 
@@ -70,12 +70,13 @@ Table second_table(const Table& contour) {
     rows.push_back(
         {noise[i], second[i], acceleration, (acceleration - second[i]) / std::hypot(error[i], our_error[i])});
   }
-  return table_of("contour_second", "the contour by the second implementation, six noise strengths",
-                  {kNoiseColumn,
-                   {"second", "r_c/s^2", "half of the lifts survive in the second implementation"},
-                   {"acceleration", "r_c/s^2", "half of the lifts survive here"},
-                   {"apart", "1", "difference in units of its standard error"}},
-                  rows);
+  return table_of(
+      "contour_second", "the contour by the second implementation, six noise strengths",
+      {kNoiseColumn,
+       {"second_implementation", "r_c/s^2", "half of the lifts survive in the second implementation"},
+       {"acceleration", "r_c/s^2", "half of the lifts survive here"},
+       {"difference_in_standard_errors", "1", "difference in units of its standard error"}},
+      rows);
 }
 
 Panel probability_panel(const std::string& title, const std::string& map, const std::string& contour) {

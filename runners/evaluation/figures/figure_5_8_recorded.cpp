@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kContactShell_m = 1e-5;  // r_2 - r_c: a proxy in contact may rest anywhere in this shell
 const char* const kTrackedSheet =
-    R"(renderer={"name": "tracked-sheet", "exit_rule": "out_of_contact", "xi": 0.3333333333333333, "theta_deg": 1})";
+    R"(renderer={"name": "tracked-sheet", "exit_rule": "out-of-contact", "xi": 0.3333333333333333, "theta_deg": 1})";
 constexpr double kRecordedGrown_s = 10, kRecordedSteady_s = 0.1;
 
 struct RecordedRun {

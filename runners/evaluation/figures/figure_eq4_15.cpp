@@ -13,7 +13,7 @@ Experiment steady_rise(const std::string& sign) {
     "title": "a noise-free plane rises at 0.1 m/s under a HIP that keeps its depth",
     "scenario": {"name": "moving-lift", "noise_sigma_m": 0, "rise_s": 2, "acceleration_s": 0},
     "renderer": {"name": "proxy"},
-    "trajectory": {"name": "press", "press_at_s": 0.5, "depth_m": 0.03, "per_frame": false},
+    "trajectory": {"name": "press", "press_at_s": 0.5, "depth_m": 0.03, "surface": "moving"},
     "duration_s": 1.9})",
                                "eq4.15", {"renderer.velocity_force=" + sign});
 }
@@ -26,7 +26,7 @@ Experiment steady_fall() {
                  "start_velocity_m_per_s": -0.1, "rise_s": 2, "acceleration_s": 0},
     "renderer": {"name": "proxy"},
     "trajectory": {"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.03,
-                   "per_frame": false},
+                   "surface": "moving"},
     "duration_s": 1.9})",
                                "eq4.15");
 }

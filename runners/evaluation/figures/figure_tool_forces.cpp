@@ -197,7 +197,7 @@ Table deviation_table(const std::string& name, const std::string& title, const s
               {column + "_force_direction", "deg", "mean angle to the exact force, where there is one"},
               {column + "_torque", "1", "mean deviation of |torque|, fraction; NaN where none is exact"},
               {column + "_torque_direction", "deg", "mean angle to the exact torque, where there is one"},
-              {column + "_stray_torque", "N m", "mean of |torque - exact torque|"}},
+              {column + "_torque_error", "N m", "mean of |torque - exact torque|"}},
              rows);
   }
   return table;

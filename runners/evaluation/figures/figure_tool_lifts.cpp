@@ -46,7 +46,7 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
     const std::string column = carrier.column;
     add_rows(table,
              {{column + "_carried", units, "all runs are carried up to this"},
-              {column + "_lost", units, "the next value: a run is lost"},
+              {column + "_first_lost", units, "the next value: a run is lost"},
               {column + "_bound", units, "derived limit"}},
              rows);
   }
@@ -97,7 +97,7 @@ void claim_bounded(const Claims& claims, const Table& table, Carrier rule, Carri
                    const std::string& claim) {
   const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
   claims.at_most(claim + ": number of settings where not",
-                 count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
+                 count_rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_first_lost",
                                   column_of(rule) + "_bound", column_of(upper) + "_bound"),
                  0, "1", paper);
 }

@@ -104,11 +104,11 @@ Table family_table(const Family& family, const CarrySweep& sweep, Pool* pool) {
     const std::string column = carrier.column, &units = scale.units;
     add_rows(table,
              {{column + "_carried", units, "all runs are carried up to this"},
-              {column + "_lost", units, "the next value: a run is lost"},
+              {column + "_first_lost", units, "the next value: a run is lost"},
               {column + "_all_lost", units, "from here on all runs are lost"},
-              {column + "_least", units, "derived limit, at least"},
+              {column + "_bound_low", units, "derived limit, at least"},
               {column + "_bound", units, "derived limit"},
-              {column + "_most", units, "derived limit, at most"}},
+              {column + "_bound_high", units, "derived limit, at most"}},
              rows);
   }
   return table;
@@ -206,8 +206,8 @@ void claim_bounded(const Claims& claims, const std::vector<Table>& tables, Carri
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
-    apart +=
-        count_rows_apart(table, column + "_carried", column + "_lost", column + "_least", column + "_most");
+    apart += count_rows_apart(table, column + "_carried", column + "_first_lost", column + "_bound_low",
+                              column + "_bound_high");
   claims.at_most(claim + ": number of settings where not", apart, 0, "1", paper);
 }
 
@@ -219,8 +219,8 @@ void claim_bounded_noise(const Claims& claims, const std::vector<Table>& tables,
   const std::string column = column_of(rule);
   double apart = 0;
   for (const Table& table : tables)
-    apart += count_rows_apart(table, column + "_carried", column + "_all_lost", column + "_least",
-                              column + "_most");
+    apart += count_rows_apart(table, column + "_carried", column + "_all_lost", column + "_bound_low",
+                              column + "_bound_high");
   claims.at_most("noise, " + label + ": half are lost at the derived speed: settings of 12 where not", apart,
                  2, "1");
 }

@@ -92,7 +92,7 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
                    {"precision_low", "1", "95 % interval, lower end"},
                    {"precision_high", "1", "95 % interval, upper end"},
                    {"depth_fraction", "1", "share of its pixels that have a depth"},
-                   {"right", "1", "its pixels that are picked, a frame"},
+                   {"found", "1", "its pixels that are picked, a frame"},
                    {"missed", "1", "its pixels with depth that are not picked, a frame"},
                    {"wrong", "1", "other pixels that are picked, a frame"},
                    {"without_depth", "1", "its pixels without depth, a frame"}},

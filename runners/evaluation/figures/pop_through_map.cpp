@@ -87,7 +87,7 @@ void claim_agrees(const Claims& claims, const std::string& claim, double measure
 }
 
 double max_apart(const Table& table) {
-  const std::vector<double>& values = numbers(table, "apart");
+  const std::vector<double>& values = numbers(table, "difference_in_standard_errors");
   double max = values.empty() ? std::nan("") : 0;  // nothing that was compared is no agreement
   for (const double apart : values) max = max_or_nan(max, std::abs(apart));
   return max;

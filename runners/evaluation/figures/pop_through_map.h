@@ -53,8 +53,8 @@ inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1
 // Claims that a share differs from the other implementation's by no more than chance allows.
 void claim_agrees(const Claims& claims, const std::string& claim, double measured, const SharedLifts& other,
                   double our_lifts_a_node, const std::string& paper = "-");
-// Returns the largest magnitude in the column `apart`, in standard errors. NaN if a value is NaN, or if there
-// is none.
+// Returns the largest magnitude in the column `difference_in_standard_errors`. NaN if a value is NaN, or if
+// there is none.
 double max_apart(const Table& table);
 // Returns a share of lifts in the second implementation, which made one lift at each node. place:
 // "/map/whole", or "/map/coarse" (every third noise and second acceleration).

@@ -20,7 +20,7 @@ struct FrameOutcome {
 };
 
 // The first frame has no frame before it: its motions are NaN. pre: the experiment plays a part of a
-// recording forwards and backwards (ping_pong), and every frame arrives.
+// recording forwards and backwards (ping-pong), and every frame arrives.
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
 
 // A tick in which the proxy changed to the wrong side of the true surface.

@@ -25,6 +25,7 @@
 #include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/settings/configuration_difference.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {
@@ -132,7 +133,9 @@ std::vector<Column> old_columns(const std::filesystem::path& file, const Baselin
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return {};
   try {
-    if (!configuration_differences(attribute_of(file, "config"), attribute_of(made, "config")).empty())
+    if (!configuration_differences(stored_configuration(attribute_of(file, "config")),
+                                   attribute_of(made, "config"))
+             .empty())
       return {};
     return judged_columns(file, baseline.command);
   } catch (const InputError&) {

@@ -11,6 +11,7 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/recordings/recorded_scene.h"
 
@@ -59,7 +60,7 @@ ResultComparison compare_run(const std::filesystem::path& folder, const Baseline
 ResultComparison compare_sweep_again(const std::filesystem::path& folder, const Baseline& baseline,
                                      const Kernels& kernels, const std::atomic<bool>* stop,
                                      NoteCounts* notes) {
-  const StoredSweep stored = read_sweep(file_of(folder, baseline));
+  const StoredSweep stored = read_stored_sweep(file_of(folder, baseline));
   const Sweep sweep = Sweep::load(subject_of(folder, baseline), baseline.overrides);
   const SweepResult made = run_sweep(sweep, {&kernels, stop});
   if (notes) notes->add(made);

@@ -7,12 +7,16 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
+#include "analysis/trace/renamed_columns.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/measure_comparison.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -23,7 +27,7 @@ ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
   ResultComparison result{"baseline", "candidate", kind};
   const auto configuration = [](const TextAttributes& of) {
     const std::string text = attribute(of, "config");
-    return text.empty() ? std::string("null") : text;
+    return text.empty() ? std::string("null") : stored_configuration(text);
   };
   result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
   for (const char* name : {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler",
@@ -98,6 +102,15 @@ void judge_columns(ResultComparison& result) {
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
+// Returns the end of a refusal of a column or measure that was renamed; nothing for other names.
+std::string rename_hint(const std::string& name, const std::vector<std::string>& known) {
+  if (const std::optional<std::string> renamed = new_name(name, known))
+    return "; " + name + " is now " + *renamed;
+  const std::string column = present_column(name);
+  const bool is_renamed = column != name && std::find(known.begin(), known.end(), column) != known.end();
+  return is_renamed ? "; " + name + " is now " + column : "";
+}
+
 // Throws InputError for a tolerance that is of no column or measure: a misspelt one would leave its column
 // exact without a message.
 void check_names(const Tolerances& tolerances, const std::vector<std::string>& names,
@@ -105,8 +118,11 @@ void check_names(const Tolerances& tolerances, const std::vector<std::string>& n
   for (const auto& [name, tolerance] : tolerances) {
     if (name == "*" || measures.contains(name) || std::find(names.begin(), names.end(), name) != names.end())
       continue;
+    std::vector<std::string> known = names;
+    for (const auto& measure : measures) known.push_back(measure.first);
     throw InputError("tolerance of " + name, "there is no such column: expected " + joined(names, ", ") +
-                                                 (measures.empty() ? "" : ", or a measure"));
+                                                 (measures.empty() ? "" : ", or a measure") +
+                                                 rename_hint(name, known));
   }
 }
 
@@ -165,7 +181,7 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
     const StoredTrace first(first_file), second(second_file);
     return compare_trace(first, first.attributes(), second, second.attributes(), rules);
   }
-  const StoredSweep first = read_sweep(first_file), second = read_sweep(second_file);
+  const StoredSweep first = read_stored_sweep(first_file), second = read_stored_sweep(second_file);
   return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
 }
 

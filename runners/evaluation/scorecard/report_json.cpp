@@ -142,7 +142,7 @@ Json behind_json(const Scorecard& card) {
                     {"own_mean", number_or_null(one.own_mean)},
                     {"other_mean", number_or_null(one.other_mean)},
                     {"p", number_or_null(one.p)},
-                    {"shown", one.is_significant}});
+                    {"significant", one.is_significant}});
   return {{"method", kOwnMethod}, {"list", list}};
 }
 

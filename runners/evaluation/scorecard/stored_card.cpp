@@ -10,6 +10,8 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/overview.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
+#include "analysis/trace/renamed_columns.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
@@ -24,10 +26,14 @@ constexpr const char* kMadeBy = "a card that `remote-touch scorecard store` wrot
 Table table_in(const Hdf5Reader& file, const std::string& name) {
   Table table{name, {}};
   const std::string folder = "/tables/" + name + "/";
+  const bool is_earlier = is_earlier_schema(attribute(file.attributes(), "schema"));
+  const auto present_name = [&](const std::string& column) {
+    return is_earlier ? present_column(column) : column;
+  };
   for (const std::string& path : file.datasets()) {
     if (!path.starts_with(folder)) continue;
     table.columns.push_back(file.column(path));
-    table.columns.back().name = path.substr(folder.size());
+    table.columns.back().name = present_name(path.substr(folder.size()));
   }
   if (table.columns.empty()) file.damaged("has no table " + name);
   return table;
@@ -54,10 +60,10 @@ std::string with_unit(double value, const std::string& units) {
   return digits(is_length ? 1e3 * value : value) + (units == "1" ? "" : is_length ? " mm" : " " + units);
 }
 
-std::string behind_text(const Table& behind, bool shown) {
+std::string behind_text(const Table& behind, bool is_significant) {
   std::string rows;
   for (std::size_t i = 0; i < values_of<std::vector<std::string>>(behind, "scene").size(); ++i) {
-    if ((values_of<std::vector<std::int32_t>>(behind, "shown")[i] != 0) != shown) continue;
+    if ((values_of<std::vector<std::int32_t>>(behind, "significant")[i] != 0) != is_significant) continue;
     const auto text = [&](const char* name) { return values_of<std::vector<std::string>>(behind, name)[i]; };
     const auto number = [&](const char* name) { return values_of<std::vector<double>>(behind, name)[i]; };
     rows += "| " + text("scene") + " | " + text("what") + " | " +

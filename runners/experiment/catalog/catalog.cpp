@@ -21,7 +21,7 @@
 #include "runners/experiment/hand/image_scan.h"
 #include "runners/experiment/hand/poses.h"
 #include "runners/experiment/hand/press.h"
-#include "runners/experiment/hand/random_walk.h"
+#include "runners/experiment/hand/random_motion.h"
 #include "runners/experiment/hand/waypoints.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/tool_files/loaded_spheres.h"
@@ -38,7 +38,7 @@
 #include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/open_box.h"
 #include "scenarios/synthetic/plates.h"
-#include "scenarios/synthetic/sheet.h"
+#include "scenarios/synthetic/single_panel.h"
 #include "scenarios/synthetic/slot.h"
 #include "scenarios/synthetic/triangle_wave.h"
 #include "scenarios/synthetic/wedge.h"
@@ -71,7 +71,7 @@ std::vector<ScenarioEntry> built_in_scenarios() {
       scenario_entry<Wedge>("wedge", "two inclined walls that close on a tool and open again"),
       scenario_entry<MovingPlane>("moving-plane",
                                   "a flat cloud with normals that waits, then rises and lifts a tool"),
-      scenario_entry<Sheet>("sheet", "one flat panel with normals that can be touched from both sides"),
+      scenario_entry<SinglePanel>("panel", "one flat panel with normals that can be touched from both sides"),
       scenario_entry<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
       scenario_entry<SessionScene>(
           "live-session",
@@ -98,7 +98,7 @@ std::vector<TrajectoryEntry> built_in_trajectories() {
           "poses", "a list of poses (position and orientation), each with the duration of the motion to it"),
       trajectory_entry<SessionHand>("live-session",
                                     "the motion of the hand in a recorded live session, tick by tick", true),
-      trajectory_entry<RandomWalk>("random-walk", "a smooth random motion with six degrees of freedom"),
+      trajectory_entry<RandomMotion>("random-motion", "a smooth random motion with six degrees of freedom"),
       trajectory_entry<Press>("press", "waits, then presses to a given depth below the surface, 4.3.2"),
       trajectory_entry<FollowSurface>("follow-surface",
                                       "moves along a line at a given depth below the true surface"),
@@ -190,6 +190,9 @@ void Catalog::require_name(const std::string& kind, const std::string& name, boo
   if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") != std::string::npos)
     throw InputError(kind + " \"" + name + "\"", "expected a name of lower case letters, digits, - and _");
   if (is_taken) throw InputError(kind + " \"" + name + "\"", "is in the catalog already");
+  if (const auto renamed = renamed_entry(kind, name))
+    throw InputError(kind + " \"" + name + "\"",
+                     "is the name of " + *renamed + " in results of version 0.2: expected another name");
 }
 
 Catalog& Catalog::add(Measure measure) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "analysis/measures/measures.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/factory.h"
+#include "runners/experiment/settings/renamed_names.h"
 
 namespace remote_touch {
 
@@ -73,12 +75,16 @@ Directions directions();  // the better direction of each measure
 // Returns the entry of that name. Throws InputError with the known names if there is none.
 template <class Entry>
 const Entry& find_entry(std::span<const Entry> entries, const std::string& name, const std::string& path) {
+  std::vector<std::string> names;
   std::string known;
   for (const Entry& entry : entries) {
     if (name == entry.name) return entry;
+    names.push_back(entry.name);
     known += (known.empty() ? "" : ", ") + entry.name;
   }
-  throw InputError(path + " = \"" + name + "\"", "expected " + known);
+  const std::optional<std::string> renamed = new_value(path, name, names);
+  throw InputError(path + " = \"" + name + "\"",
+                   "expected " + known + (renamed ? "; " + name + " is now " + *renamed : ""));
 }
 
 }  // namespace remote_touch

@@ -125,15 +125,15 @@ void check_plane(const ExperimentConfiguration& configuration, const Scenario& s
 
 Vec3 default_view(const ExperimentConfiguration& configuration) {
   const auto defaults = entry_of(configuration).make();
-  return *setting<Vec3>(*defaults, "view");
+  return *setting<Vec3>(*defaults, "view_direction");
 }
 
 // Checks the settings that replace the information of an image layout.
 void check_without_image(const ExperimentConfiguration& configuration, const std::vector<FrameNeed>& needs,
                          const Scenario& scenario) {
   if (contains(needs, FrameNeed::view))
-    if (const Vec3* const view = setting<Vec3>(*configuration.renderer.factory, "view"))
-      check_view("renderer.view", *view, default_view(configuration), scenario);
+    if (const Vec3* const view = setting<Vec3>(*configuration.renderer.factory, "view_direction"))
+      check_view("renderer.view_direction", *view, default_view(configuration), scenario);
   if (configuration.faults && use_view_direction(*configuration.faults))
     check_view("faults.view_direction", configuration.faults->view_direction, SensorFaults{}.view_direction,
                scenario);

@@ -11,8 +11,8 @@ Parameters parameters(Press::Settings& s) {
       {"start_m", &s.start_m, -100, 100, "where the device waits"},
       {"press_at_s", &s.press_at_s, 0, 1e6, "time at which the press starts"},
       {"depth_m", &s.depth_m, -1, 1, "depth below the true surface"},
-      {"per_frame", &s.per_frame, 0, 1,
-       "true: follow the surface of the newest frame; false: follow it as it moves between frames"},
+      {"surface", choice(s.surface, {"newest-frame", "moving"}), 0, 0,
+       "surface that the HIP follows: newest-frame: as at the last capture; moving: as it moves between frames"},
   };
 }
 
@@ -25,7 +25,8 @@ Press::Press(const Settings& settings, const Scenario& scenario) : settings_(set
 DeviceState Press::at(double time_s) const {
   if (time_s < settings_.press_at_s) return {settings_.start_m};
   double surface_time_s = time_s;
-  if (settings_.per_frame) surface_time_s = scenario_.captured_s(scenario_.newest_frame(time_s));
+  if (settings_.surface == SurfaceTime::newest_frame)
+    surface_time_s = scenario_.captured_s(scenario_.newest_frame(time_s));
   const double y = scenario_.surface_height(settings_.start_m.x(), settings_.start_m.z(), surface_time_s);
   return {Vec3(settings_.start_m.x(), y - settings_.depth_m, settings_.start_m.z())};
 }

@@ -6,6 +6,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
+#include "scenarios/interface/surface_time.h"
 
 namespace remote_touch {
 
@@ -15,7 +16,7 @@ class Press final : public Trajectory {
     Vec3 start_m{0, 0, 0};
     double press_at_s = 0.5;
     double depth_m = 0.03;
-    bool per_frame = true;
+    SurfaceTime surface = SurfaceTime::newest_frame;
   };
 
   // The scenario must outlive the trajectory. Throws InputError when it is not a height field.

@@ -165,19 +165,27 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
   return keys;
 }
 
-// Returns the present name of a key that was renamed, otherwise the known key with the most similar spelling.
-// pre: there is a known key.
-std::string intended_key(const std::string& key, const std::vector<std::string>& known) {
-  return new_name(key, known).value_or(*std::ranges::min_element(known, [&](const auto& a, const auto& b) {
-    return edit_distance(key, a) < edit_distance(key, b);
-  }));
+// Returns the known key with the most similar spelling. pre: there is a known key.
+const std::string& nearest_key(const std::string& key, const std::vector<std::string>& known) {
+  return *std::ranges::min_element(
+      known, [&](const auto& a, const auto& b) { return edit_distance(key, a) < edit_distance(key, b); });
 }
 
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
                              const std::string& prefix) {
-  throw InputError(prefix + key, known.empty()
-                                     ? "unknown; no parameters here"
-                                     : "unknown; did you mean " + prefix + intended_key(key, known));
+  if (known.empty()) throw InputError(prefix + key, "unknown; no parameters here");
+  const std::optional<std::string> renamed = new_name(key, known);
+  throw InputError(prefix + key, renamed ? "unknown; it is now " + prefix + *renamed
+                                         : "unknown; did you mean " + prefix + nearest_key(key, known));
+}
+
+// Returns the end of a refusal of a value that was renamed; nothing for other values.
+std::string rename_hint(const Parameter& p, const Json& value) {
+  const auto* const choice = std::get_if<Choice>(&p.value);
+  if (!choice) return {};
+  const std::string old_value = value.is_string() ? value.get<std::string>() : shown(value);
+  const std::optional<std::string> renamed = new_value(p.name, old_value, choice->names);
+  return renamed ? "; " + old_value + " is now " + *renamed : "";
 }
 
 }  // namespace
@@ -200,7 +208,8 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
     const auto found = std::ranges::find_if(parameters, [&](const auto& p) { return p.name == key; });
     if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix);
     if (!std::visit(Reader{value, *found}, found->value))
-      throw InputError(prefix + key + " = " + shown(value), "expected " + allowed(*found));
+      throw InputError(prefix + key + " = " + shown(value),
+                       "expected " + allowed(*found) + rename_hint(*found, value));
   }
 }
 

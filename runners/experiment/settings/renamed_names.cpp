@@ -1,10 +1,14 @@
 #include "runners/experiment/settings/renamed_names.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace remote_touch {
 
 namespace {
+
+constexpr const char* kProxies = "proxy tracked-sheet averaged-proxy density-proxy oracle-proxy";
+constexpr const char* kViewed = "surfels averaged-proxy";
 
 constexpr RenamedName kRenamed[] = {
     {"above", "threshold"},
@@ -16,6 +20,7 @@ constexpr RenamedName kRenamed[] = {
     {"closed_at_s", "close_end_s"},
     {"closing_at_s", "close_start_s"},
     {"closing_steps", "max_exit_steps"},
+    {"contact_rule", "contact_motion", kProxies},
     {"device_m", "device_position_m"},
     {"device_turn_deg", "device_rotation_deg"},
     {"disk_share", "disk_radius_ratio"},
@@ -61,16 +66,20 @@ constexpr RenamedName kRenamed[] = {
     {"outlier_reach_m", "max_outlier_distance_m"},
     {"outlier_share", "outlier_probability"},
     {"penetration", "tool_penetration"},
+    {"per_frame", "surface", "press"},
     {"reopening_at_s", "open_start_s"},
     {"repeat_share", "repeat_probability"},
     {"right_m", "right_valve_position_m"},
     {"rise_frames", "rise_s"},
     {"rise_m", "rise_height_m"},
     {"shear_s", "rolling_shutter_s"},
+    {"sheet_spacing_m", "layer_spacing_m", "moving-shape"},
+    {"sheets", "layers", "moving-shape"},
     {"stale_s", "max_command_age_s"},
     {"start_m", "start_height_m"},
     {"target_m", "target_position_m"},
     {"tool_leaves", "max_tool_leaves"},
+    {"true_motion", "truth", "plates"},
     {"turn_damping_Nms_per_rad", "rotational_damping_Nms_per_rad"},
     {"turn_deg", "max_rotation_deg"},
     {"turn_deg", "rotation_deg"},
@@ -80,11 +89,43 @@ constexpr RenamedName kRenamed[] = {
     {"turns_z", "torque_z"},
     {"unconverged_share", "unconverged_fraction"},
     {"vanish_at_frame", "vanish_at_s"},
-    {"view", "view_direction"},
+    {"view", "view_direction", kViewed},
     {"wait_frames", "wait_s"},
     {"widest_gate_m", "max_gate_m"},
     {"within_m", "inner_radius_m"},
 };
+
+constexpr RenamedValue kRenamedValues[] = {
+    {"contact_motion", "tangent_plane", "tangent-plane", kProxies},
+    {"exit_rule", "out_of_contact", "out-of-contact", kProxies},
+    {"exit_rule", "towards_hip", "towards-hip", kProxies},
+    {"force_gate", "contact_now", "contact-now", kProxies},
+    {"force_gate", "latest_contact", "latest-contact", kProxies},
+    {"free_root", "smallest_magnitude", "smallest-magnitude", kProxies},
+    {"images", "by_name", "by-name", "recording"},
+    {"playback", "ping_pong", "ping-pong", "recording"},
+    {"scenario.name", "sheet", "panel", "sheet"},
+    {"surface", "false", "moving", "press"},
+    {"surface", "true", "newest-frame", "press"},
+    {"trajectory.name", "random-walk", "random-motion", "random-walk"},
+    {"truth", "false", "newest-frame", "plates"},
+    {"truth", "newest_frame", "newest-frame", "moving-lift moving-shape"},
+    {"truth", "true", "moving", "plates"},
+};
+
+bool is_known(const std::vector<std::string>& known, const char* name) {
+  return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+// True if the entry is one of the names in the text.
+bool is_owner(std::string_view owners, const std::string& entry) {
+  while (!owners.empty()) {
+    const std::size_t end = std::min(owners.find(' '), owners.size());
+    if (owners.substr(0, end) == entry) return true;
+    owners.remove_prefix(std::min(end + 1, owners.size()));
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -92,10 +133,39 @@ std::span<const RenamedName> renamed_names() {
   return kRenamed;
 }
 
+std::span<const RenamedValue> renamed_values() {
+  return kRenamedValues;
+}
+
 std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known) {
   for (const RenamedName& name : kRenamed)
-    if (old_name == name.old_name && std::find(known.begin(), known.end(), name.new_name) != known.end())
-      return name.new_name;
+    if (old_name == name.old_name && is_known(known, name.new_name)) return name.new_name;
+  return {};
+}
+
+std::optional<std::string> new_value(const std::string& setting, const std::string& old_value,
+                                     const std::vector<std::string>& known) {
+  for (const RenamedValue& value : kRenamedValues)
+    if (setting == value.setting && old_value == value.old_value && is_known(known, value.new_value))
+      return value.new_value;
+  return {};
+}
+
+std::optional<std::string> renamed_entry(const std::string& section, const std::string& name) {
+  return stored_value(name, section + ".name", name);
+}
+
+std::string stored_name(const std::string& entry, const std::string& name) {
+  for (const RenamedName& renamed : kRenamed)
+    if (name == renamed.old_name && is_owner(renamed.owners, entry)) return renamed.new_name;
+  return name;
+}
+
+std::optional<std::string> stored_value(const std::string& entry, const std::string& setting,
+                                        const std::string& value) {
+  for (const RenamedValue& renamed : kRenamedValues)
+    if (setting == renamed.setting && value == renamed.old_value && is_owner(renamed.owners, entry))
+      return renamed.new_value;
   return {};
 }
 

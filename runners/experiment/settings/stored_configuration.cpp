@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
+#include "runners/experiment/settings/renamed_names.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -70,6 +71,84 @@ void convert_to_seconds(Json& value) {
   if (is_moving_scene(value)) value = in_seconds(value);
 }
 
+// --- names of schema /2 ---
+
+std::string name_of(const Json& entry) {
+  if (!entry.is_object()) return {};
+  const auto name = entry.find("name");
+  return name != entry.end() && name->is_string() ? name->get<std::string>() : std::string();
+}
+
+// setting: its present name, which is not "name".
+Json present_value(const std::string& entry, const std::string& setting, const Json& value) {
+  if (value.is_structured()) return value;
+  const auto renamed =
+      stored_value(entry, setting, value.is_string() ? value.get<std::string>() : value.dump());
+  return renamed ? Json(*renamed) : value;
+}
+
+// Keeps the order of the keys. section: the key of the entry, such as "scenario".
+Json with_present_names(const std::string& section, const Json& entry) {
+  const std::string name = name_of(entry);
+  Json renamed = Json::object();
+  for (const auto& [key, value] : entry.items()) {
+    const std::string setting = stored_name(name, key);
+    renamed[setting] = present_value(name, setting, value);
+  }
+  renamed["name"] = renamed_entry(section, name).value_or(name);
+  return renamed;
+}
+
+Json present_axis_value(const std::string& section, const std::string& entry, const std::string& setting,
+                        const Json& value) {
+  if (setting != "name" || !value.is_string()) return present_value(entry, setting, value);
+  const std::string name = value.get<std::string>();
+  return renamed_entry(section, name).value_or(name);
+}
+
+// Renames the setting of an axis such as renderer.contact_rule, and its values. experiment: that of the
+// sweep, with the names of schema /2. The values of an axis over a whole section are entries.
+void rename_axis(const Json& experiment, Json& axis) {
+  if (!axis.is_object() || !axis.contains("parameter") || !axis["parameter"].is_string()) return;
+  const std::string path = axis["parameter"].get<std::string>();
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  const std::string section = path.substr(0, dot);
+  const auto values = axis.find("values");
+  const bool is_list = values != axis.end() && values->is_array();
+  if (dot == path.size()) {
+    if (!is_list) return;
+    for (Json& value : *values)
+      if (!name_of(value).empty()) value = with_present_names(section, value);
+    return;
+  }
+  const auto owner = experiment.find(section);
+  if (owner == experiment.end()) return;
+  const std::string entry = name_of(*owner);
+  const std::size_t end = std::min(path.find('.', dot + 1), path.size());
+  const std::string setting = stored_name(entry, path.substr(dot + 1, end - dot - 1));
+  if (is_list)
+    for (Json& value : *values) value = present_axis_value(section, entry, setting, value);
+  axis["parameter"] = path.substr(0, dot + 1) + setting + path.substr(end);
+}
+
+void rename_axes(Json& sweep) {
+  if (!sweep.is_object() || !sweep.contains("experiment") || !sweep.contains("axes")) return;
+  if (!sweep["experiment"].is_object() || !sweep["axes"].is_array()) return;
+  for (Json& axis : sweep["axes"]) rename_axis(sweep["experiment"], axis);
+}
+
+// key: that of the value in its object; empty for an element of a list. An entry on an axis is visited twice;
+// the second time changes nothing, because no present name is an old one of the same entry.
+void use_present_names(const std::string& key, Json& value) {
+  if (!value.is_structured()) return;
+  rename_axes(value);
+  if (value.is_array())
+    for (Json& part : value) use_present_names("", part);
+  else
+    for (auto part = value.begin(); part != value.end(); ++part) use_present_names(part.key(), part.value());
+  if (!name_of(value).empty()) value = with_present_names(key, value);
+}
+
 }  // namespace
 
 std::string stored_configuration(const std::string& text) {
@@ -81,6 +160,7 @@ std::string stored_configuration(const std::string& text) {
   }
   const Json before = configuration;
   convert_to_seconds(configuration);
+  use_present_names("", configuration);
   return configuration == before ? text : configuration.dump();
 }
 

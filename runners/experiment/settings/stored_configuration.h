@@ -7,7 +7,8 @@ namespace remote_touch {
 
 // Returns the same configuration with the parameters of this version. Before version 0.3 the motion of
 // moving-lift and moving-shape was given in frames (rise_frames and others). Such a count becomes a time at
-// the configuration's frame rate, and the motion keeps its bits. Any other text is returned as it is.
+// the configuration's frame rate, and the motion keeps its bits. Settings and values that schema /2 had under
+// other names (renamed_names.h) have their present names, also on axes. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
 
 }  // namespace remote_touch

@@ -32,7 +32,7 @@ std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion,
 
 ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
   ToolSettings tool = settings;
-  tool.outer_field = motion.contact_rule == TouchRule::continuous;
+  tool.outer_field = motion.contact_rule == ContactRule::continuous;
   return tool;
 }
 ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters& motion) {

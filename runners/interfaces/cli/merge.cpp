@@ -12,6 +12,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shard.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -24,7 +25,7 @@ struct ShardFile {
 };
 
 ShardFile read_part(const std::string& file) {
-  ShardFile part{file, {}, read_sweep(file)};
+  ShardFile part{file, {}, read_stored_sweep(file)};
   auto& attributes = part.stored.attributes;
   const auto shard =
       std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });

@@ -11,6 +11,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
@@ -50,7 +51,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
-  const StoredSweep stored = read_sweep(request.map);
+  const StoredSweep stored = read_stored_sweep(request.map);
   const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
     return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
                             request.map + " config");

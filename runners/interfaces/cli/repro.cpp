@@ -21,6 +21,7 @@
 #include "runners/interfaces/cli/figure_runs.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -206,7 +207,7 @@ class Repro {
                           {made, ours(experiment.to_json(), input_hashes(experiment.inputs()))});
   }
   ResultComparison sweep_again() const {
-    const StoredSweep stored = read_sweep(file_);
+    const StoredSweep stored = read_stored_sweep(file_);
     if (!of("shard").empty() || stored.in_progress)
       throw InputError(file_, "is a part of a sweep: expected a finished one, whole or merged");
     const Sweep sweep = stored_sweep();

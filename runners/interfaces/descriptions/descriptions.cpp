@@ -12,6 +12,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/tool_files/loaded_spheres.h"
 #include "runners/experiment/tool_files/mesh_file.h"
 #include "runners/sweep/sweep.h"
@@ -182,7 +183,11 @@ void describe(const std::string& name, std::FILE* out) {
   for (const Measure& measure : measures())
     if (name == measure.name)
       found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;
-  if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
+  if (found) return;
+  for (const char* section : {"scenario", "trajectory"})
+    if (const auto renamed = renamed_entry(section, name))
+      throw InputError(name, "unknown; it is now " + *renamed);
+  throw InputError(name, "unknown: expected a name from `remote-touch list`");
 }
 
 }  // namespace remote_touch

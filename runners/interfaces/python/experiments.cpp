@@ -22,6 +22,7 @@
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/outputs.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
@@ -115,7 +116,7 @@ py::dict run_experiment(const std::string& subject, const std::optional<std::str
 
 StoredSweep stored_sweep(const std::string& file) {
   const FileTurn turn;
-  return read_sweep(file);
+  return read_stored_sweep(file);
 }
 
 // Returns a sweep that was run in this process. Only its attributes are known, so none of its runs is stored.

@@ -13,11 +13,13 @@
 #include "runners/evaluation/regression/comparison_text.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/sweep_arrays.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -42,6 +44,14 @@ py::dict as_dict(const char* kind, std::vector<Column> columns, const TextAttrib
   return all;
 }
 
+// Names of settings in a trace of an earlier schema become present ones, as those of a sweep do.
+TextAttributes with_present_configuration(TextAttributes attributes) {
+  if (!is_earlier_schema(attribute(attributes, "schema"))) return attributes;
+  for (auto& one : attributes)
+    if (one.first == "config") one.second = stored_configuration(one.second);
+  return attributes;
+}
+
 py::dict open_result(const std::string& file) {
   std::string kind;
   std::vector<Column> columns;
@@ -52,8 +62,8 @@ py::dict open_result(const std::string& file) {
     const FileTurn turn;
     const Hdf5Reader reader(file);
     kind = kind_of(reader);
-    attributes = reader.attributes();
-    if (kind == "sweep") sweep = read_sweep(reader);
+    attributes = with_present_configuration(reader.attributes());
+    if (kind == "sweep") sweep = read_stored_sweep(reader);
     if (kind == "trace") columns = all_columns(StoredTrace(reader));
     if (kind == "figure") columns = all_columns(StoredFigure(reader));
   }

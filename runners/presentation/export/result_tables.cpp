@@ -6,6 +6,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -47,7 +48,7 @@ std::vector<std::string> notes_of(const SweepResult& result) {
 }
 
 Table table_of_sweep(const Hdf5Reader& file) {
-  const SweepResult result = read_sweep(file).result;
+  const SweepResult result = read_stored_sweep(file).result;
   const std::size_t runs = result.run_count();
   Table table{"sweep", "one row for each run"};
   for (std::size_t axis = 0; axis < result.axes.size(); ++axis)

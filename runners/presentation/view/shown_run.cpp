@@ -11,6 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/view/frames_again.h"
 #include "runners/presentation/view/shown_frames.h"
 #include "runners/presentation/view/shown_sensor.h"
@@ -101,7 +102,7 @@ struct ShownRun::State {
       : source(std::move(run)),
         kernels(best),
         stop(when),
-        configuration(parse_json(of("config"), source.name)),
+        configuration(parse_json(stored_configuration(of("config")), source.name)),
         experiment(experiment_of_run(source.attributes, source.name)),
         r2_m(length_m(configuration["renderer"], "r2_m")),
         contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
@@ -263,7 +264,8 @@ std::size_t ShownRun::frame_count() const {
 void ShownRun::mark_divergence_from(const ShownRun& other) {
   const TraceComparison comparison =
       compare_traces(*state_->source.columns, *other.state_->source.columns, {},
-                     configuration_differences(state_->of("config"), other.state_->of("config")));
+                     configuration_differences(stored_configuration(state_->of("config")),
+                                               stored_configuration(other.state_->of("config"))));
   if (comparison.divergence)
     state_->divergence = {comparison.divergence->tick, "divergence",
                           "The first difference: " + comparison.divergence->quantity + ". " +

@@ -14,6 +14,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/sweep_cells.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_notes.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 // Reads a sweep. Throws InputError if it is not finished.
 StoredSweep finished_sweep(const std::filesystem::path& file) {
-  StoredSweep stored = read_sweep(file);
+  StoredSweep stored = read_stored_sweep(file);
   if (stored.in_progress)
     throw InputError(file.string(), "is not finished: run the same `remote-touch sweep` again until it ends");
   return stored;

@@ -117,10 +117,10 @@ TEST_F(TickHashFile, ReadsBackWhatWasWritten) {
 
 TEST_F(TickHashFile, OtherFilesAreRefused) {
   const fs::path trace = stored(folder, "trace.h5", walk(100));
-  EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/2");
+  EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/3");
   write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(trace), 1), {});
   EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(folder / "h.h5"), 1); }),
-             "is of schema remote-touch-hashes/2");
+             "is of schema remote-touch-hashes/3");
 }
 
 fs::path with_columns(const TestFolder& folder, const std::vector<Column>& columns) {

@@ -49,7 +49,7 @@ TEST_F(FigureFile, TablesSurvive) {
   const Hdf5Content content = read_hdf5(folder / "fig9.9.h5");
   EXPECT_EQ(sum, digest(figure.tables));
   EXPECT_EQ(attribute(content, "digest"), sum);
-  EXPECT_EQ(attribute(content, "schema"), "remote-touch-figure/2");
+  EXPECT_EQ(attribute(content, "schema"), "remote-touch-figure/3");
   EXPECT_EQ(attribute(content, "figure"), "9.9");
   EXPECT_EQ(attribute(content, "title"), "A title");
   EXPECT_EQ(attribute(content, "caption"), "A caption.");

@@ -33,7 +33,7 @@ void expect_round_trip(int ticks) {
 
   EXPECT_EQ(sum, digest(trace.columns()));
   EXPECT_EQ(attribute(content, "digest"), sum);
-  EXPECT_EQ(attribute(content, "schema"), "remote-touch-trace/2");
+  EXPECT_EQ(attribute(content, "schema"), "remote-touch-trace/3");
   EXPECT_EQ(attribute(content, "default"), "trace");
   for (const auto& [name, value] : kProvenance) EXPECT_EQ(attribute(content, name), value);
 

@@ -79,7 +79,7 @@ TEST(ScorecardFigure, ColumnsOfTheOverviewAreExplained) {
   EXPECT_EQ(values_of<Texts>(behind, "what"), Texts{"success"});
   EXPECT_EQ(values_of<Texts>(behind, "other"), Texts{"penalty"});
   EXPECT_EQ(values_of<Counts>(behind, "ahead"), Counts{2});
-  EXPECT_EQ(values_of<Counts>(behind, "shown"), Counts{1});
+  EXPECT_EQ(values_of<Counts>(behind, "significant"), Counts{1});
   EXPECT_EQ(values_of<Numbers>(behind, "own_mean"), Numbers{0});
   EXPECT_EQ(values_of<Numbers>(behind, "other_mean"), Numbers{1});
 }

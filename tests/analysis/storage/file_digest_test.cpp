@@ -83,7 +83,7 @@ TEST_F(FileDigest, OtherHdf5FilesHaveNone) {
     hdf5.attribute("/", "schema", schema);
     hdf5.save(folder / name);
   };
-  write("of-another/1", "other.h5"), write("remote-touch-trace/2", "ours.h5");
+  write("of-another/1", "other.h5"), write("remote-touch-trace/3", "ours.h5");
   EXPECT_EQ(seal_state_of(folder / "other.h5"), SealState::absent);
   const Hdf5Reader reader(folder / "other.h5");
   EXPECT_HAS(refusal([&] { reader.require_kind("trace", "what I write"); }), "of-another/1");

@@ -312,7 +312,7 @@ TEST_F(SweepFile, DamageIsRefused) {
 
   why(sound.substr(0, sound.size() / 2)), why(sound.substr(0, 100)), why(""), why("text");
   write_trace(folder / "trace.h5", awkward_trace(20), kProvenance, {});
-  EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/2");
+  EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/3");
 }
 
 // A program changes a value and seals the file again.
@@ -333,7 +333,7 @@ TEST_F(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
 std::string refusal_of(const TestFolder& folder, const std::string& axes, const std::vector<Column>& columns,
                        Hdf5Writer::Finished finished = Hdf5Writer::Finished::yes) {
   Hdf5Writer hdf5(finished);
-  hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", axes}, {"measures", "m"}});
+  hdf5.attributes("/", {{"schema", "remote-touch-sweep/3"}, {"axes", axes}, {"measures", "m"}});
   hdf5.group("/sweep");
   hdf5.columns("/sweep", columns, "");
   hdf5.save(folder / "x.h5");

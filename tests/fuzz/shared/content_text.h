@@ -1,7 +1,7 @@
 // The content of a result file as lines of text, so that the fuzzer changes numbers and names instead of
 // HDF5's own structures:
 //
-//   schema remote-touch-hashes/2             an attribute of the root
+//   schema remote-touch-hashes/3             an attribute of the root
 //   /hashes/tick i32 1 0 10 20               a dataset: type (f64, i32, u64, text), width, values
 //   /trace/state i32:free,contact 1 0 1 1    the same with names of its values
 //

@@ -11,7 +11,7 @@
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/moving_shape.h"
-#include "scenarios/synthetic/sheet.h"
+#include "scenarios/synthetic/single_panel.h"
 #include "scenarios/synthetic/slot.h"
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
@@ -114,7 +114,7 @@ TEST(TrueNormal, OnlyAFlatSceneHasAPlaneNormal) {
     EXPECT_FALSE(shape(kind).plane_normal(0));
   EXPECT_FALSE(made<TriangleWave>().plane_normal(0));
   EXPECT_FALSE(made<Slot>().plane_normal(0));
-  EXPECT_EQ(made<Sheet>().plane_normal(0), Vec3(Vec3::UnitZ()));
+  EXPECT_EQ(made<SinglePanel>().plane_normal(0), Vec3(Vec3::UnitZ()));
 }
 
 TEST(TrueNormal, IsNotKnownOfASurfaceThatHasVanished) {

@@ -210,13 +210,13 @@ TEST_F(Frames, SettingsForBagsAreRefusedForOtherRecordings) {
   BagChoice images;
   images.images = BagChoice::Images::rectified;
   EXPECT_HAS(refusal([&] { index_recording(folder_ / "x.pcd", images); }),
-             "is not a ROS bag: expected scenario.images = by_name");
+             "is not a ROS bag: expected scenario.images = by-name");
 }
 
 TEST_F(Frames, CloudsRefuseAChosenCamera) {
   BagChoice images;
   images.images = BagChoice::Images::measured;
-  EXPECT_HAS(error({cloud(0, 0)}, images), "/points holds clouds: expected scenario.images = by_name");
+  EXPECT_HAS(error({cloud(0, 0)}, images), "/points holds clouds: expected scenario.images = by-name");
   EXPECT_HAS(error({cloud(0, 0), camera("/x/camera_info")}, {"", "/x/camera_info", {}, ""}),
              "/points holds clouds: expected scenario.camera_info = \"\"");
 }

@@ -51,7 +51,7 @@ TEST(LiftMotion, IsTheClosedFormAtAnyTime) {
 // Checks the frames of a scene at each rate, and the surface between the frames.
 template <class Made>
 void expect_the_same_motion(typename Made::Settings settings, const LiftMotion::Settings& expected) {
-  settings.noise_sigma_m = 0, settings.truth = Made::Truth::moving;
+  settings.noise_sigma_m = 0, settings.truth = SurfaceTime::moving;
   settings.grid = {3, 3, 0.01, 0, 0};
   for (const double rate_hz : kRates_hz) {
     settings.frame_rate_hz = rate_hz;

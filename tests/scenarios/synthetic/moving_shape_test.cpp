@@ -39,7 +39,7 @@ MovingShape::Settings busy(Kind kind) {
   s.grid = {41, 31, 0.0015, 0.25, -0.5};
   s.shape.kind = kind, s.shape.slope_deg = 25, s.shape.radius_m = 0.025;
   s.motion = {8, {0, 0.02, 0.1, 4 / 30.0, -1, 4 / 30.0}, 0.05, 0.004, 3, 6, 1.5, 0.1};
-  s.truth = MovingShape::Truth::moving;
+  s.truth = SurfaceTime::moving;
   return s;
 }
 
@@ -51,7 +51,7 @@ TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
   shape.grid = lift.grid, shape.noise_sigma_m = lift.noise_sigma_m;
   shape.motion.lift = lift.lift;
   for (const bool moving : {false, true}) {
-    if (moving) lift.truth = MovingLift::Truth::moving, shape.truth = MovingShape::Truth::moving;
+    if (moving) lift.truth = SurfaceTime::moving, shape.truth = SurfaceTime::moving;
     const MovingLift one(lift, kKey, scenes::kernels());
     const MovingShape other = made(shape);
     ASSERT_EQ(other.frame_count(), one.frame_count());
@@ -99,7 +99,7 @@ TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
   MovingShape::Settings s;
   s.motion.slide_velocity_m_per_s = -0.2, s.motion.shake_amplitude_m = 0.003, s.motion.shake_hz = 4;
   s.motion.rock_deg = 7, s.motion.rock_hz = 0.8, s.motion.tilt_deg = -3, s.motion.motion_from_s = 0.25;
-  s.truth = MovingShape::Truth::moving;
+  s.truth = SurfaceTime::moving;
   const MovingShape shape = made(s);
   EXPECT_EQ(shape.frame_count(), std::numeric_limits<int>::max());
   for (int frame = 0; frame < 40; frame += 3) {
@@ -148,7 +148,7 @@ TEST(MovingShape, NoiseFreePointsLieOnTheTrueSurfaceAtEveryFrame) {
 TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
   MovingShape::Settings s = busy(Kind::ridge);
   const MovingShape moving = made(s);
-  s.truth = MovingShape::Truth::newest_frame;
+  s.truth = SurfaceTime::newest_frame;
   const MovingShape newest = made(s);
   const Vec3 p(0.004, 0.03, 0.002);
   for (int frame = 3; frame < 12; ++frame) {
@@ -162,11 +162,11 @@ TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
 
 // --- points ---
 
-TEST(MovingShape, SheetsFollowEachOtherBelow) {
+TEST(MovingShape, LayersFollowEachOtherBelow) {
   MovingShape::Settings s = busy(Kind::valley);
-  s.sheets = 3, s.sheet_spacing_m = 0.012;
+  s.layers = 3, s.layer_spacing_m = 0.012;
   const MovingShape shape = made(s);
-  s.sheets = 1;
+  s.layers = 1;
   const PointCloud all = shape.cloud(7), first = made(s).cloud(7);
   const double rotation_deg = 8 + 6 * std::sin(2 * kPi * 1.5 * (7 / 30.0 - 0.1));
   ASSERT_EQ(all.size(), 3 * first.size());
@@ -175,7 +175,7 @@ TEST(MovingShape, SheetsFollowEachOtherBelow) {
     const Vec3 expected = first.point(i % first.size()) - below * turned(Vec3::UnitY(), rotation_deg);
     ASSERT_LT((all.point(i) - expected).norm(), 1e-15);
   }
-  for (const double y : {-0.05, 0.0, 0.05})  // the true surface is the first sheet
+  for (const double y : {-0.05, 0.0, 0.05})  // the true surface is the first layer
     EXPECT_EQ(shape.signed_distance({0, y, 0}, 0.2), made(s).signed_distance({0, y, 0}, 0.2));
 }
 
@@ -290,7 +290,7 @@ TEST(MovingShape, AHandCanPressEveryShape) {
       s.vanish_at_s = 40 / 30.0;
       const MovingShape shape = made(s);
       Press::Settings press;
-      press.press_at_s = 0, press.per_frame = false;
+      press.press_at_s = 0, press.surface = SurfaceTime::moving;
       const Press hand(press, shape);
       for (int tick = 0; tick < 3000; tick += 11) ASSERT_TRUE(hand.at(0.001 * tick).position_W.allFinite());
       EXPECT_LT(shape.signed_distance(hand.at(0.5).position_W, 0.5), 0);

@@ -7,7 +7,7 @@
 
 #include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/open_box.h"
-#include "scenarios/synthetic/sheet.h"
+#include "scenarios/synthetic/single_panel.h"
 #include "scenarios/synthetic/slot.h"
 #include "scenarios/synthetic/wedge.h"
 #include "tests/support/scenes.h"
@@ -146,18 +146,18 @@ TEST(Wedge, JumpsIfTheScheduleHasNoDuration) {
   EXPECT_EQ(wedge.gap_m(2), 0.05);
 }
 
-TEST(Sheet, FacesItsNormal) {
-  Sheet::Settings s;
+TEST(SinglePanel, FacesItsNormal) {
+  SinglePanel::Settings s;
   s.centre_m = {0.1, 0.2, 0.3};
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(-0.5, 0.25, 1)}) {
     s.normal = normal;
-    const Sheet sheet = made<Sheet>(s);
-    expect_on_surface(sheet, 0);
+    const SinglePanel scene = made<SinglePanel>(s);
+    expect_on_surface(scene, 0);
     const Vec3 n = normal.normalized();
-    EXPECT_NEAR(sheet.signed_distance(s.centre_m + 0.02 * n, 0), 0.02, 1e-15);
-    EXPECT_NEAR(sheet.signed_distance(s.centre_m - 0.02 * n, 0), -0.02, 1e-15);
-    EXPECT_EQ(sheet.cloud(0).size(), 75u * 75u);
-    const FlatPanel panel = sheet.panels(0)[0];
+    EXPECT_NEAR(scene.signed_distance(s.centre_m + 0.02 * n, 0), 0.02, 1e-15);
+    EXPECT_NEAR(scene.signed_distance(s.centre_m - 0.02 * n, 0), -0.02, 1e-15);
+    EXPECT_EQ(scene.cloud(0).size(), 75u * 75u);
+    const FlatPanel panel = scene.panels(0)[0];
     EXPECT_NEAR(panel.u.dot(n), 0, 1e-16);
     EXPECT_NEAR(panel.u.norm(), 1, 1e-15);
   }

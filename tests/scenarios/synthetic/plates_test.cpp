@@ -72,7 +72,7 @@ TEST(Plates, TheFirstPlateIsTheTruth) {
   EXPECT_NEAR(made(s).signed_distance(p, 0), 0.03, 1e-15);
   EXPECT_NEAR(made(s).signed_distance(p, 0.09), 0.03 - 0.3 * 2 / 30, 1e-15) << "the frame of 1/15 s";
   EXPECT_NEAR(made(s).surface_height(0, 0, 0.09), 0.01 + 0.3 * 0.09, 1e-15);
-  s.true_motion = true;
+  s.truth = SurfaceTime::moving;
   EXPECT_NEAR(made(s).signed_distance(p, 0.09), 0.03 - 0.3 * 0.09, 1e-15);
   EXPECT_NEAR(made(s).signed_distance({0.05 + 0.018 + 0.3, 0.01 + 0.027 + 0.4, 0}, 0.09), 0.5, 1e-12)
       << "beyond the border, to the border";

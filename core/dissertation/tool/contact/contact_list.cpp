@@ -21,7 +21,7 @@ ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParame
       kernels_(kernels),
       finder_(std::move(tool), kernels),
       disks_(parameters.disk_radius_ratio, ContactThinning::kCell_m),
-      touched_(parameters.disk_radius_ratio, parameters.contact_rule != TouchRule::voxels) {}
+      touched_(parameters.disk_radius_ratio, parameters.contact_rule != ContactRule::voxels) {}
 
 void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   finder_.on_frame(std::move(cloud));
@@ -37,7 +37,7 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
 
 void ContactList::reserve(std::size_t padded_size) {
   finder_.reserve(padded_size), disks_.reserve(padded_size), touched_.reserve(padded_size);
-  if (p_.contact_rule == TouchRule::continuous) points_.reserve(padded_size);
+  if (p_.contact_rule == ContactRule::continuous) points_.reserve(padded_size);
   contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
   cells_.reserve(padded_size);
   nearest_.reserve(ContactThinning::kSlots);
@@ -144,7 +144,7 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
 // queried only if it finds no point within two voxels of the tool.
 Touched ContactList::touched(const ToolPose& pose) {
   const double voxels_m = 2 * finder_.tool().grid.size_m, shown_m = std::max(p_.look_ahead_m, voxels_m);
-  const double disk_m = p_.contact_rule == TouchRule::voxels ? 0 : max_disk_m_;
+  const double disk_m = p_.contact_rule == ContactRule::voxels ? 0 : max_disk_m_;
   const auto within = [&](double reach_m) {
     return touched_.query(finder_, kernels_, pose, std::min(reach_m, kMaxReach_m), voxels_m);
   };

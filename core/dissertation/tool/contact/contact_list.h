@@ -38,7 +38,7 @@ class ContactList final : public NearContactSource {
   const NearDisks& near_disks() const { return disks_; }  // disks of the last near()
   // Returns every single point, none merged, with a field value of at most reach_m. No point is returned
   // whose field value is above look_ahead_m plus the radius of the largest disk, or beyond the reach of the
-  // field. Only for TouchRule::continuous. Valid until the next call.
+  // field. Only for ContactRule::continuous. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
   // Returns the contacts of all disks that are within within_m of the tool, or within NearDisks::kSearch_m if

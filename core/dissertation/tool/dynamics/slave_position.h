@@ -11,18 +11,18 @@ namespace remote_touch {
 
 class SlavePosition {
  public:
-  explicit SlavePosition(ToolCommand rule) : rule_(rule) {}
-  // Returns the tool's position for ToolCommand::tool, and the device's for ToolCommand::hip. If the device's
-  // pose is not valid, ToolCommand::hip repeats the last command; the result is NaN before the first one.
+  explicit SlavePosition(SlaveCommand rule) : rule_(rule) {}
+  // Returns the tool's position for SlaveCommand::rendered, and the device's for hip. If the device's pose is
+  // not valid, hip repeats the last command; the result is NaN before the first one.
   // pre: the tool has been placed at a device pose.
   Vec3 command_W(const ToolPose& tool, const std::optional<ToolPose>& device) {
-    if (rule_ == ToolCommand::tool) return tool.p_W;
+    if (rule_ == SlaveCommand::rendered) return tool.p_W;
     if (device) last_W_ = device->p_W;
     return last_W_;
   }
 
  private:
-  const ToolCommand rule_;
+  const SlaveCommand rule_;
   Vec3 last_W_ = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 

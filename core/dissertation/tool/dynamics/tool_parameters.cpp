@@ -55,14 +55,14 @@ Parameters parameters(ToolParameters& p) {
 }
 
 double used_merged_disk_m(const ToolParameters& p) {
-  return p.contact_rule != TouchRule::voxels && p.disk_radius_ratio > 0 ? p.merged_disk_m : 0;
+  return p.contact_rule != ContactRule::voxels && p.disk_radius_ratio > 0 ? p.merged_disk_m : 0;
 }
 
 std::string validate(const ToolParameters& p) {
   if (10 * p.rest_threshold_m > p.max_step_m)
     return "rest_threshold_m = " + std::to_string(p.rest_threshold_m) +
            ": expected a tenth of max_step_m or less";
-  if (p.contact_rule != TouchRule::voxels && p.look_ahead_m < p.max_step_m)
+  if (p.contact_rule != ContactRule::voxels && p.look_ahead_m < p.max_step_m)
     return "look_ahead_m = " + std::to_string(p.look_ahead_m) + ": expected max_step_m or more";
   if (p.motion_metric == MotionMetric::coupling && !(p.gyration_radius_m > 0))
     return "gyration_radius_m = 0: expected more with motion_metric = coupling";

@@ -5,19 +5,18 @@
 
 #include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/rendering/output_rules.h"
 
 namespace remote_touch {
 
 // The rule by which contacts limit the motion. look_ahead: constraints from the distance field. voxels: 6.2.3
 // to 6.2.5 as printed. continuous: as look_ahead, with certified steps.
-enum class TouchRule { look_ahead, voxels, continuous };
+enum class ContactRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // torque of (6.9)
 enum class MotionMetric { tool, coupling };           // M of (6.4)
-enum class ToolVelocityForce { minus, plus, none };   // sign of the velocity term of (4.15), for a tool
-enum class ToolCommand { tool, hip };                 // pose that the slave robot follows, 5.2
 
 struct ToolParameters {
-  TouchRule contact_rule = TouchRule::look_ahead;
+  ContactRule contact_rule = ContactRule::look_ahead;
   int detections_per_tick = 60;
   double max_step_m = 1e-3;       // s_max
   double free_accuracy_m = 1e-4;  // epsilon_f
@@ -37,8 +36,8 @@ struct ToolParameters {
   MotionMetric motion_metric = MotionMetric::tool;
   bool velocity_estimate = false;  // not in the dissertation
   double max_prediction_s = 0.1;
-  ToolVelocityForce velocity_force = ToolVelocityForce::minus;
-  ToolCommand slave_command = ToolCommand::tool;
+  VelocityForce velocity_force = VelocityForce::minus;
+  SlaveCommand slave_command = SlaveCommand::rendered;
 };
 
 Parameters parameters(ToolParameters& p);

@@ -38,7 +38,7 @@ std::string validate(const ToolGodObjectParameters& p) {
 
 ToolParameters tool_parameters(const ToolGodObjectParameters& p) {
   ToolParameters tool = tool_parameters(p.coupling);
-  tool.contact_rule = TouchRule::continuous;  // disks are counted
+  tool.contact_rule = ContactRule::continuous;  // disks are counted
   tool.max_step_m = p.max_step_m;
   tool.rest_threshold_m = p.rest_threshold_m;
   tool.disk_radius_ratio = p.disk_radius_ratio;

@@ -33,7 +33,7 @@ Parameters parameters(ToolPenaltyParameters& p) {
 
 ToolParameters tool_parameters(const ToolPenaltyParameters& p) {
   ToolParameters tool = tool_parameters(p.coupling);
-  tool.contact_rule = TouchRule::voxels;  // points touch, and not disks
+  tool.contact_rule = ContactRule::voxels;  // points touch, and not disks
   tool.rest_threshold_m = p.rest_threshold_m;
   return tool;
 }

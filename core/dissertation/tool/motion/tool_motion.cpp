@@ -25,11 +25,11 @@ class LookAheadOnPoints final : public ToolMotion {
 
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool) {
   switch (parameters.contact_rule) {
-    case TouchRule::voxels:
+    case ContactRule::voxels:
       return std::make_unique<VoxelMotion>(parameters, tool);
-    case TouchRule::continuous:
+    case ContactRule::continuous:
       return std::make_unique<ContinuousMotion>(parameters, tool);
-    case TouchRule::look_ahead:
+    case ContactRule::look_ahead:
       break;
   }
   return std::make_unique<LookAheadOnPoints>(parameters, tool);

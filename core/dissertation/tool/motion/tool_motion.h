@@ -43,7 +43,7 @@ class ToolMotion {
                                 bool updated) = 0;
 };
 
-// The tool has to outlive the result; for TouchRule::continuous it is made with outer_field.
+// The tool has to outlive the result; for ContactRule::continuous it is made with outer_field.
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool);
 
 }  // namespace remote_touch

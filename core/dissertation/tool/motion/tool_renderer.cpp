@@ -108,9 +108,9 @@ void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
 ToolPose ToolRenderer::coupled_pose(double time_s) const {
   ToolPose pose = allowed_W_.isZero(0) ? pose_ : moved(pose_, allowed_W_);
   const bool is_known = p_.velocity_estimate || measured_rate_per_s_.has_value();
-  if (!is_known || !is_held_ || p_.velocity_force == ToolVelocityForce::none) return pose;
+  if (!is_known || !is_held_ || p_.velocity_force == VelocityForce::none) return pose;
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
-  const double sign = p_.velocity_force == ToolVelocityForce::minus ? 1 : -1;  // 1: u_hat = HIP - P - v t
+  const double sign = p_.velocity_force == VelocityForce::minus ? 1 : -1;  // 1: u_hat = HIP - P - v t
   if (measured_rate_per_s_)
     return measured_rate_per_s_->isZero(0) ? pose : moved(pose, sign * since_frame_s * *measured_rate_per_s_);
   pose.p_W += sign * since_frame_s * velocity_.vector();

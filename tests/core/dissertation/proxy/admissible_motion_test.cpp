@@ -106,7 +106,7 @@ TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatter) {
 // The touching normals in a groove all lie in one plane, so any two of them leave the same line.
 TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatterInAGroove) {
   ProxyParameters p;
-  p.contact_rule = ContactRule::regions;
+  p.contact_motion = ContactMotion::regions;
   int together = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     spheres::Draw draw(seed);

@@ -1,6 +1,6 @@
-// A proxy is pressed into a crease of two walls under each of the three contact rules. The plane of the mean
-// normal lets (4.6) move it into the walls and (4.10) move it out again, so it wanders. The other rules find
-// the nearest position.
+// A proxy is pressed into a crease of two walls with each of the three values of contact_motion. The plane
+// of the mean normal lets (4.6) move it into the walls and (4.10) move it out again, so it wanders. The other
+// values find the nearest position.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,9 +58,9 @@ void at_every_crease(const Visit& visit) {
   }
 }
 
-ProxyParameters parameters(ContactRule rule, double xi) {
+ProxyParameters parameters(ContactMotion motion, double xi) {
   ProxyParameters p;
-  p.contact_rule = rule, p.xi = xi, p.velocity_estimate = false;
+  p.contact_motion = motion, p.xi = xi, p.velocity_estimate = false;
   return p;
 }
 
@@ -68,7 +68,7 @@ ProxyParameters parameters(ContactRule rule, double xi) {
 TEST(Crease, ProxyOnTheMeanPlaneWandersByUpTo3mmBelow100Degrees) {
   double sharp_m = 0, wide_m = 0;
   at_every_crease([&](double opening_deg, double xi, const PointCloud& cloud, const Vec3& hip_W) {
-    const double wander_m = rest(parameters(ContactRule::tangent_plane, xi), cloud, hip_W).wander_m;
+    const double wander_m = rest(parameters(ContactMotion::tangent_plane, xi), cloud, hip_W).wander_m;
     double& max_m = opening_deg < 100 ? sharp_m : wide_m;
     max_m = std::max(max_m, wander_m);
   });
@@ -81,8 +81,8 @@ TEST(Crease, ProxyOnTheMeanPlaneWandersByUpTo3mmBelow100Degrees) {
 // (4.8) accepts a contact as converged at an angle theta of 0.1 degrees: 35 um for a spring of 20 mm.
 TEST(Crease, TheRuleForCreasesSettlesNearestToTheHip) {
   at_every_crease([&](double opening_deg, double xi, const PointCloud& cloud, const Vec3& hip_W) {
-    const Rest creases = rest(parameters(ContactRule::creases, xi), cloud, hip_W),
-               regions = rest(parameters(ContactRule::regions, xi), cloud, hip_W);
+    const Rest creases = rest(parameters(ContactMotion::creases, xi), cloud, hip_W),
+               regions = rest(parameters(ContactMotion::regions, xi), cloud, hip_W);
     EXPECT_LT(creases.wander_m, 1e-6) << opening_deg << " degrees";
     if (opening_deg <= 90) {
       EXPECT_LT((creases.proxy_W - regions.proxy_W).norm(), 1e-4) << opening_deg << " degrees";
@@ -92,8 +92,8 @@ TEST(Crease, TheRuleForCreasesSettlesNearestToTheHip) {
 
 // A flat grid as dense as in chapter 4 has no crease, so both rules give equal bits.
 TEST(Crease, ThereIsNoneOnAFlatGrid) {
-  ProxyRenderer plain = scenes::renderer(parameters(ContactRule::tangent_plane, 0.1)),
-                creases = scenes::renderer(parameters(ContactRule::creases, 0.1));
+  ProxyRenderer plain = scenes::renderer(parameters(ContactMotion::tangent_plane, 0.1)),
+                creases = scenes::renderer(parameters(ContactMotion::creases, 0.1));
   for (ProxyRenderer* each : {&plain, &creases}) each->on_frame(scenes::frame(scenes::flat_grid(60)));
   int touching = 0;
   for (int tick = 0; tick < 2000; ++tick) {

@@ -117,7 +117,7 @@ TEST(SlaveCommand, IsTheHipWhereTheConstraintIsSoft) {
 }
 
 TEST(SlaveCommand, IsHeldWhileTheDeviceIsLost) {
-  for (const SlaveCommand command : {SlaveCommand::proxy, SlaveCommand::hip}) {
+  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
     ProxyParameters p;
     p.slave_command = command;
     ProxyRenderer renderer = scenes::renderer(p);

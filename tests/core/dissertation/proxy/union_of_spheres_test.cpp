@@ -198,7 +198,7 @@ TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
   EXPECT_GT(among_others, 500);
 }
 
-// --- the contact rule that treats every touching region separately ---
+// --- the motion in contact that treats every touching region separately ---
 
 // Grows or shrinks the touching regions until p lies on their margin. The width of the contact shell then
 // leaves no nearer position.
@@ -216,7 +216,7 @@ PointCloud as_touched(const PointCloud& cloud, const Vec3& p, const ProxyParamet
 // nearly lie in a plane, the limit is what the regions' curvature opens behind a barrier, 2 um.
 TEST(UnionOfSpheres, SeparateRegionsAreNeverEnteredAndTheProxyConvergesNearestToTheHip) {
   for (ProxyParameters p : settings()) {
-    p.contact_rule = ContactRule::regions;
+    p.contact_motion = ContactMotion::regions;
     const double radius = 0.0002;
     spheres::Draw draw(9);
     int touching = 0, converged = 0, looked = 0, tick = 0, rests = 0, settled = 0;

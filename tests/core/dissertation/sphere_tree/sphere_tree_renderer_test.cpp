@@ -139,7 +139,7 @@ TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndReportedOnce) {
 
 TEST(SphereTreeRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
   const Vec3 lost = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
     ToolParameters p;
     p.slave_command = command;
     SphereTreeRenderer r = renderer({Vec3::Zero()}, p);

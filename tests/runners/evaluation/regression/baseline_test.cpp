@@ -281,12 +281,12 @@ TEST_F(CheckBaseline, RefusesAFileThatWasStoredDamaged) {
 TEST_F(CheckBaseline, RefusesAnotherSchema) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   fs::copy_file(folder_ / "short.h5", folder_ / "map.h5", fs::copy_options::overwrite_existing);
-  expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/2");
+  expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/3");
   stored_sweep();
   fs::copy_file(folder_ / "map.h5", folder_ / "short.h5", fs::copy_options::overwrite_existing);
-  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/2");
+  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/3");
 
-  for (const std::string other : {"remote-touch-trace/1", "remote-touch-trace/3"}) {
+  for (const std::string other : {"remote-touch-trace/1", "remote-touch-trace/4"}) {
     Hdf5Writer hdf5;
     hdf5.attribute("/", "schema", other);
     hdf5.save(folder_ / "short.h5");

@@ -227,7 +227,7 @@ TEST(ScorecardReport, SaysWhereTheOwnMethodIsBehind) {
   EXPECT_EQ(first["ahead"], 1);
   EXPECT_EQ(first["own_mean"], 0);
   EXPECT_EQ(first["other_mean"], 0.95);
-  EXPECT_EQ(first["shown"], true);
+  EXPECT_EQ(first["significant"], true);
   EXPECT_LT(first["p"], 0.05);
   EXPECT_EQ(behind["list"][1]["what"], "success without noise");
   EXPECT_EQ(behind["list"][1]["p"], nullptr);

@@ -59,8 +59,8 @@ TEST(Verification, AcceptsOtherReadingsOfTheProxy) {
       {"damping_Ns_per_m=2"},
       {"damping_Ns_per_m=2", "damping_sign=minus", "velocity_force=plus"},
       {"velocity_force=none"},
-      {"force_gate=contact_now"},
-      {"free_root=smallest_magnitude"},
+      {"force_gate=contact-now"},
+      {"free_root=smallest-magnitude"},
   };
   const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
   for (const auto& reading : kReadings)

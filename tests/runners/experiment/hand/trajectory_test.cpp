@@ -98,7 +98,7 @@ TEST(Press, FollowsFramesOrTheMovingPlane) {
   Press::Settings s;
   s.start_m = {0.01, 0.02, 0.03};
   const Press stepwise(s, lift);
-  s.per_frame = false;
+  s.surface = SurfaceTime::moving;
   const Press smooth(s, lift);
   for (const Press* device : {&stepwise, &smooth}) {
     expect_at(device->at(0).position_W, s.start_m);

@@ -183,8 +183,8 @@ TEST(SessionFile, AFileOfAnotherKindIsRefused) {
   Hdf5Appender other(trace);
   other.attributes("/", {{"schema", schema_name("trace")}});
   other.finish();
-  EXPECT_EQ(why_not(trace), trace.string() + ": is of schema remote-touch-trace/2: expected " +
-                                "remote-touch-session/2, which remote-touch live --record makes");
+  EXPECT_EQ(why_not(trace), trace.string() + ": is of schema remote-touch-trace/3: expected " +
+                                "remote-touch-session/3, which remote-touch live --record makes");
   EXPECT_HAS(why_not(folder / "none.h5"), "none.h5: no such file");
   EXPECT_HAS(why_not(folder.write("text.h5", "a text")), "text.h5: not a readable HDF5 file");
 }

@@ -142,7 +142,7 @@ TEST_F(UnfinishedSessionFile, RefusesWhatIsNoSession) {
   layout.width = 70000;
   EXPECT_HAS(why({block(SessionBlock::start, packed_start(layout, {}))}), "its first block is not whole");
   EXPECT_HAS(why({block(SessionBlock::start, packed_start(layout_, {{"schema", "remote-touch-session/9"}}))}),
-             "is of schema remote-touch-session/9: expected remote-touch-session/2");
+             "is of schema remote-touch-session/9: expected remote-touch-session/3");
   EXPECT_FALSE(fs::exists(folder_ / "r.h5"));
   const std::string opening(kJournalOpening);
   const auto refused = [&](const std::string& bytes) {

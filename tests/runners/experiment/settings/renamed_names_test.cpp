@@ -1,4 +1,5 @@
-// Names of version 0.1: the hint that a key has another name now.
+// Names of earlier versions: the hint that a key or a value has another name now, and settings of results of
+// schema /2.
 #include "runners/experiment/settings/renamed_names.h"
 
 #include <gtest/gtest.h>
@@ -31,6 +32,61 @@ TEST(RenamedNames, OneOldNameHasTheNewNameThatIsKnownThere) {
   EXPECT_EQ(new_name("seed", {"seed"}), std::nullopt);
 }
 
+TEST(RenamedNames, ValuesAreSortedAndDifferent) {
+  const auto key = [](const RenamedValue& value) {
+    return std::pair(std::string(value.setting), std::string(value.old_value));
+  };
+  for (std::size_t i = 0; i < renamed_values().size(); ++i) {
+    EXPECT_STRNE(renamed_values()[i].old_value, renamed_values()[i].new_value);
+    if (i == 0) continue;
+    EXPECT_LT(key(renamed_values()[i - 1]), key(renamed_values()[i]));
+  }
+}
+
+TEST(RenamedNames, ValuesAreThoseOfASetting) {
+  EXPECT_EQ(new_value("exit_rule", "towards_hip", {"towards-hip", "out-of-contact"}), "towards-hip");
+  EXPECT_EQ(new_value("exit_rule", "towards_hip", {"out-of-contact"}), std::nullopt);
+  EXPECT_EQ(new_value("playback", "towards_hip", {"towards-hip"}), std::nullopt);
+  EXPECT_EQ(new_value("exit_rule", "towards-hip", {"towards-hip"}), std::nullopt);
+}
+
+TEST(RenamedNames, StoredNamesAreThoseOfAnEntry) {
+  EXPECT_EQ(stored_name("proxy", "contact_rule"), "contact_motion");
+  EXPECT_EQ(stored_name("tracked-sheet", "contact_rule"), "contact_motion");
+  EXPECT_EQ(stored_name("tool", "contact_rule"), "contact_rule");
+  EXPECT_EQ(stored_name("", "contact_rule"), "contact_rule");
+  EXPECT_EQ(stored_name("oracle", "contact_rule"), "contact_rule") << "a part of a name is another name";
+  EXPECT_EQ(stored_name("surfels", "view"), "view_direction");
+  EXPECT_EQ(stored_name("moving-lift", "rise_frames"), "rise_frames") << "a name of version 0.1";
+  EXPECT_EQ(stored_value("recording", "playback", "ping_pong"), "ping-pong");
+  EXPECT_EQ(stored_value("plates", "truth", "true"), "moving");
+  EXPECT_EQ(stored_value("moving-lift", "truth", "true"), std::nullopt);
+  EXPECT_EQ(stored_value("moving-shape", "truth", "newest_frame"), "newest-frame");
+}
+
+TEST(RenamedNames, AnEntryIsRenamedInItsSectionOnly) {
+  EXPECT_EQ(renamed_entry("scenario", "sheet"), "panel");
+  EXPECT_EQ(renamed_entry("trajectory", "random-walk"), "random-motion");
+  EXPECT_EQ(renamed_entry("renderer", "sheet"), std::nullopt);
+  EXPECT_EQ(renamed_entry("scenario", "random-walk"), std::nullopt);
+  EXPECT_EQ(renamed_entry("scenario", "panel"), std::nullopt);
+}
+
+TEST(RenamedNames, AreTheHintOfAnOldValue) {
+  enum class Rule { towards_hip, out_of_contact } rule = Rule::towards_hip;
+  const Parameters parameters = {
+      {"exit_rule", choice(rule, {"towards-hip", "out-of-contact"}), 0, 0, "the step in contact"}};
+  const auto why = [&](const char* value) {
+    return refusal([&] { read_parameters({{"exit_rule", value}}, parameters, "renderer"); });
+  };
+  EXPECT_EQ(
+      why("out_of_contact"),
+      "renderer.exit_rule = \"out_of_contact\": expected towards-hip, out-of-contact; out_of_contact is now "
+      "out-of-contact");
+  EXPECT_EQ(why("out_of_order"),
+            "renderer.exit_rule = \"out_of_order\": expected towards-hip, out-of-contact");
+}
+
 // The new name is the hint even if another name is nearer in spelling.
 TEST(RenamedNames, AreTheHintOfAnOldKey) {
   double max_force_N = 0, longest_force_N = 0;
@@ -39,7 +95,7 @@ TEST(RenamedNames, AreTheHintOfAnOldKey) {
   EXPECT_EQ(refusal([&] {
               read_parameters({{"largest_force_N", 1}}, parameters, "safety");
             }),
-            "safety.largest_force_N: unknown; did you mean safety.max_force_N");
+            "safety.largest_force_N: unknown; it is now safety.max_force_N");
   EXPECT_EQ(refusal([&] {
               read_parameters({{"longst_force_N", 1}}, parameters, "safety");
             }),

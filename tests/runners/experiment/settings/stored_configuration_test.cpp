@@ -1,4 +1,4 @@
-// Configurations of older results, whose lifts were given in frames.
+// Configurations of older results: lifts that were given in frames, and settings and values with other names.
 #include "runners/experiment/settings/stored_configuration.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,87 @@ TEST(StoredConfiguration, OnlyStoredResultsMayCountFrames) {
                                   "new")
                 .to_json());
   EXPECT_HAS(refusal([&] { Experiment::from_json(old, "old"); }),
-             "scenario.rise_frames: unknown; did you mean scenario.rise_s");
+             "scenario.rise_frames: unknown; it is now scenario.rise_s");
+}
+
+// --- names of schema /2 ---
+
+TEST(StoredConfiguration, OldNamesBecomePresentOnesInTheirPlaces) {
+  EXPECT_EQ(
+      stored_configuration(R"({"scenario": {"name": "plates", "true_motion": true, "noise_sigma_m": 0.0},
+      "renderer": {"name": "proxy", "free_root": "smallest_magnitude", "contact_rule": "tangent_plane",
+      "exit_rule": "towards_hip", "force_gate": "contact_now"}, "trajectory": {"name": "random-walk", "seed": 1}})"),
+      R"({"scenario":{"name":"plates","truth":"moving","noise_sigma_m":0.0},)"
+      R"("renderer":{"name":"proxy","free_root":"smallest-magnitude","contact_motion":"tangent-plane",)"
+      R"("exit_rule":"towards-hip","force_gate":"contact-now"},"trajectory":{"name":"random-motion","seed":1}})");
+  EXPECT_EQ(present(R"({"trajectory": {"name": "press", "per_frame": false}})")["trajectory"].dump(),
+            R"({"name":"press","surface":"moving"})");
+  EXPECT_EQ(present(R"({"scenario": {"name": "sheet"}})")["scenario"]["name"], "panel");
+  const Json shape = present(
+      R"({"scenario": {"name": "moving-shape", "sheets": 2, "sheet_spacing_m": 0.01, "truth": "newest_frame"}})");
+  EXPECT_EQ(shape["scenario"].dump(),
+            R"({"name":"moving-shape","layers":2,"layer_spacing_m":0.01,"truth":"newest-frame"})");
+}
+
+TEST(StoredConfiguration, OldNamesOnAxesBecomePresentOnes) {
+  const Json sweep =
+      present(R"({"experiment": {"scenario": {"name": "plates"}, "renderer": {"name": "surfels"}},
+      "axes": [{"parameter": "scenario.true_motion", "values": [true, false]},
+               {"parameter": "renderer.view.1", "from": -1, "to": -0.5, "count": 2},
+               {"parameter": "renderer", "values": [{"name": "proxy", "contact_rule": "regions"},
+                                                    {"name": "tool", "contact_rule": "voxels"}]}]})");
+  EXPECT_EQ(sweep["axes"][0].dump(), R"({"parameter":"scenario.truth","values":["moving","newest-frame"]})");
+  EXPECT_EQ(sweep["axes"][1]["parameter"], "renderer.view_direction.1");
+  EXPECT_EQ(sweep["axes"][2]["values"].dump(),
+            R"([{"name":"proxy","contact_motion":"regions"},{"name":"tool","contact_rule":"voxels"}])");
+}
+
+TEST(StoredConfiguration, EntriesOnAxesHavePresentNames) {
+  const Json sweep = present(R"({"experiment": {"scenario": {"name": "sheet"}, "renderer": {"name": "proxy"}},
+      "axes": [{"parameter": "scenario", "values": [{"name": "sheet"}, {"name": "plates", "true_motion": true}]},
+               {"parameter": "scenario.name", "values": ["sheet", 3]},
+               {"parameter": "renderer", "values": [{"name": "sheet"}]},
+               {"parameter": "scenario", "from": 0, "to": 1, "count": 2}]})");
+  EXPECT_EQ(sweep["experiment"]["scenario"]["name"], "panel");
+  EXPECT_EQ(sweep["axes"][0]["values"].dump(), R"([{"name":"panel"},{"name":"plates","truth":"moving"}])");
+  EXPECT_EQ(sweep["axes"][1]["values"].dump(), R"(["panel",3])");
+  EXPECT_EQ(sweep["axes"][2]["values"].dump(), R"([{"name":"sheet"}])");
+  EXPECT_EQ(stored_configuration(sweep.dump()), sweep.dump()) << "a second time changes nothing";
+}
+
+// A name is translated only in the settings of an entry that had it.
+TEST(StoredConfiguration, NamesOfOtherEntriesAreReturnedAsTheyAre) {
+  for (
+      const std::string text :
+      {R"({"renderer": {"name": "tool", "contact_rule": "voxels"}})",
+       R"({"renderer": {"name": "my-proxy", "contact_rule": "tangent_plane", "exit_rule": "towards_hip"}})",
+       R"({"scenario": {"name": "my-scene", "sheets": 2, "truth": true, "playback": "ping_pong"}})",
+       R"({"title": "sheet", "contact_rule": "tangent_plane"})",
+       R"({"renderer": {"name": "sheet"}, "trajectory": {"name": "sheet"}, "scenario": {"name": "random-walk"}})",
+       R"({"experiment": {"renderer": {"name": "tool"}}, "axes": [{"parameter": "renderer.contact_rule",)"
+       R"( "values": ["voxels"]}, {"parameter": "seed", "values": [1]}, 3, {"parameter": 4}]})"})
+    EXPECT_EQ(stored_configuration(text), text);
+}
+
+TEST(StoredConfiguration, OnlyStoredResultsMayHaveOldNames) {
+  const std::string old =
+      R"({"scenario": {"name": "moving-shape", "sheets": 2}, "renderer": {"name": "proxy",
+      "contact_rule": "tangent_plane"}, "trajectory": {"name": "press"}, "duration_s": 0.8})";
+  EXPECT_EQ(Experiment::from_json(stored_configuration(old), "old").to_json(),
+            Experiment::from_json(R"({"scenario": {"name": "moving-shape", "layers": 2},
+                                      "renderer": {"name": "proxy", "contact_motion": "tangent-plane"},
+                                      "trajectory": {"name": "press"}, "duration_s": 0.8})",
+                                  "new")
+                .to_json());
+  EXPECT_HAS(refusal([&] { Experiment::from_json(old, "old"); }),
+             "scenario.sheets: unknown; it is now scenario.layers");
+  const auto why = [](const std::string& assignment) {
+    return refusal([&] { Experiment::load("fig4.12", {assignment}); });
+  };
+  EXPECT_HAS(why("renderer.contact_rule=regions"),
+             "renderer.contact_rule: unknown; it is now renderer.contact_motion");
+  EXPECT_HAS(why("renderer.contact_motion=tangent_plane"), "; tangent_plane is now tangent-plane");
+  EXPECT_HAS(why("trajectory.name=random-walk"), "; random-walk is now random-motion");
 }
 
 }  // namespace

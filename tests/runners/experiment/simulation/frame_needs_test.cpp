@@ -76,7 +76,7 @@ void expect_force_or_refusal(const Kind& kind, const Method& method, const std::
     return;
   }
   const std::string line = refusal([&] { run(json); });
-  EXPECT_HAS(line, std::string(method.needs) == "view" ? "renderer.view = " : "renderer.name = \"");
+  EXPECT_HAS(line, std::string(method.needs) == "view" ? "renderer.view_direction = " : "renderer.name = \"");
   EXPECT_HAS(line, method.needs);
 }
 
@@ -131,7 +131,7 @@ TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
   EXPECT_HAS(line(pcd(false, false), "god-object"), "of a PCD file: HEIGHT above 1");
   EXPECT_HAS(
       line(pcd(false, false), "surfels"),
-      "renderer.view = [0, -1, 0]: the frames of this recording are not images, so the direction of the sensor must "
+      "renderer.view_direction = [0, -1, 0]: the frames of this recording are not images, so the direction of the sensor must "
       "be given: expected the direction in which it looks, [0, 0, 1]");
 }
 
@@ -149,7 +149,7 @@ TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
 TEST_F(FrameNeeds, AGivenViewIsEnough) {
   const Kind cloud = pcd(false, false);
   for (const char* name : {"surfels", "averaged-proxy"}) {
-    const Method told{name, R"(, "view": [0, 0.1, 1])", "", "the view is told"};
+    const Method told{name, R"(, "view_direction": [0, 0.1, 1])", "", "the view is told"};
     expect_force_or_refusal(cloud, told);
   }
 }

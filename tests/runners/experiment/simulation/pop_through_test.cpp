@@ -55,7 +55,7 @@ TEST(PopThrough, AProxyThatLosesTheSurfacePoppedThrough) {
 TEST(PopThrough, DoesNotCountAHandThatSlidesOffTheEdge) {
   for (const char* scenario :
        {R"({"name": "plates", "plates": [[0, 0, 0, 0.1, 0.1, 0, 0, 0, 0]]})",
-        R"({"name": "sheet", "normal": [0, 1, 0], "width_m": 0.1, "height_m": 0.1, "spacing_m": 0.0015})",
+        R"({"name": "panel", "normal": [0, 1, 0], "width_m": 0.1, "height_m": 0.1, "spacing_m": 0.0015})",
         R"({"name": "flat-grid", "columns": 67, "rows": 67})"}) {
     const Trace trace =
         run(std::string(R"({"scenario": )") + scenario +

@@ -37,8 +37,8 @@ TEST(ForceGate, TheLatestContactGivesAForceInEveryTick) {
         "fig4.11", {"scenario.noise_sigma_m=0.003", "renderer.force_gate=" + gate, "duration_s=3"}));
     return no_force_fraction(trace, 0.005);
   };
-  EXPECT_EQ(silent("latest_contact"), 0);
-  EXPECT_GT(silent("contact_now"), 0.005);
+  EXPECT_EQ(silent("latest-contact"), 0);
+  EXPECT_GT(silent("contact-now"), 0.005);
 }
 
 }  // namespace

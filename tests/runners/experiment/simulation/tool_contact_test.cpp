@@ -175,7 +175,7 @@ TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
 // The tool moves from behind the sheet to 5 mm in front of it, and back.
 Trace from_behind(const std::string& mesh, const std::string& rule) {
   return run(
-      R"({"name": "sheet"})", tool(mesh, rule),
+      R"({"name": "panel"})", tool(mesh, rule),
       poses("[0,0,-0.03,0,0,0,0], [0,0,0.005,0,0,0,0.5], [0,0,0.005,0,0,0,0.2], [0,0,-0.03,0,0,0,0.5]"));
 }
 
@@ -202,7 +202,7 @@ TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
   for (const std::string tilt : {"0", "3"})
     for (const std::string width : {"0.078", "0.15"}) {
       const Trace trace = run(
-          R"({"name": "sheet", "normal": [0, 1, 0], "width_m": )" + width + R"(, "height_m": )" + width + "}",
+          R"({"name": "panel", "normal": [0, 1, 0], "width_m": )" + width + R"(, "height_m": )" + width + "}",
           tool("slab-20", "look-ahead"),
           poses("[0,-0.06,0," + tilt + ",0,0,0], [0,-0.003,0," + tilt +
                 ",0,0,0.5], [0,-0.003,0,0,0,0,0.3], [0.013,-0.003,0.009,0,0,0,0.3], "

@@ -138,7 +138,7 @@ TEST(TrackedSheet, ForceOfAVanishedSheetEndsOneFrameLaterThanTheProxys) {
 TEST(TrackedSheet, ALeaningPlaneIsHeldLikeALevelOne) {
   for (const double tilt_deg : {0.0, 20.0, 40.0}) {
     const Trace trace =
-        run("parallel-sheets", {kSheet, "scenario.sheets=1", setting("scenario.tilt_deg", tilt_deg),
+        run("parallel-sheets", {kSheet, "scenario.layers=1", setting("scenario.tilt_deg", tilt_deg),
                                 setting("scenario.noise_sigma_m", 0.6 * kRc)});
     SCOPED_TRACE(tilt_deg);
     expect_rests_on_plane(trace.signed_distance_m.back(), 0.6);
@@ -159,12 +159,12 @@ TEST(TrackedSheet, FixturesKeepTheirDistance) {
 
 // The frame without points has no fixtures either: the proxy stays where the fixture held it.
 TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
-  const Trace trace =
-      run("vanishing-plane",
-          {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_s=-1",
-           "scenario.empty_frame_at_s=0.6666666666666666", setting("scenario.noise_sigma_m", 0.3 * kRc),
-           "duration_s=1",
-           R"(trajectory={"name": "press", "start_m": [0, 0.06, 0], "depth_m": -0.01, "per_frame": false})"});
+  const Trace trace = run(
+      "vanishing-plane",
+      {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_s=-1",
+       "scenario.empty_frame_at_s=0.6666666666666666", setting("scenario.noise_sigma_m", 0.3 * kRc),
+       "duration_s=1",
+       R"(trajectory={"name": "press", "start_m": [0, 0.06, 0], "depth_m": -0.01, "surface": "moving"})"});
   double min = 1, max = 0, min_force = 1e9;
   for (std::size_t i = 600; i < trace.length(); ++i) {
     min = std::min(min, trace.signed_distance_m[i]), max = std::max(max, trace.signed_distance_m[i]);

@@ -12,7 +12,7 @@ SWEEP = {
     "experiment": PRESS,
     "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.002, "count": 3},
              {"parameter": "renderer.steps_per_tick", "values": [5, 30]},
-             {"parameter": "renderer.contact_rule", "values": ["mean-plane", "regions"]}],
+             {"parameter": "renderer.contact_motion", "values": ["mean-plane", "regions"]}],
     "replicates": 2,
     "measures": ["max_force", "popped_through"],
 }
@@ -21,7 +21,7 @@ SWEEP = {
 @pytest.fixture(scope="module", autouse=True)
 def rules():
     """The second axis takes the names that the renderer has."""
-    text = next(line for line in rt.describe("proxy").split("contact_rule")[1].splitlines() if "allowed" in line)
+    text = next(line for line in rt.describe("proxy").split("contact_motion")[1].splitlines() if "allowed" in line)
     SWEEP["axes"][2]["values"] = text.split("allowed ")[1].split(", ")[:2]
 
 
@@ -39,10 +39,10 @@ def test_threads_do_not_matter_and_the_file_is_that_of_the_command_line(command_
 
 def test_axes_units_and_values():
     sweep = rt.sweep(SWEEP)
-    assert sweep.max_force.dims == ("noise_sigma_m", "steps_per_tick", "contact_rule", "replicate")
+    assert sweep.max_force.dims == ("noise_sigma_m", "steps_per_tick", "contact_motion", "replicate")
     assert sweep.max_force.shape == (3, 2, 2, 2)
     assert list(sweep.noise_sigma_m.values) == [0, 0.001, 0.002] and sweep.noise_sigma_m.attrs["units"] == "m"
-    assert list(sweep.contact_rule.values) == SWEEP["axes"][2]["values"]
+    assert list(sweep.contact_motion.values) == SWEEP["axes"][2]["values"]
     assert sweep.max_force.attrs["units"] == "N" and (sweep.state == 2).all()
     assert not sweep.max_force.values.flags.owndata
     # Cell (1, 0, 0) is that run, with its own noise.
@@ -57,7 +57,7 @@ def test_replay_is_the_command(command_line, tmp_path):
     sweep = rt.sweep(SWEEP, output=file)
     text = command_line("replay", file, "--cell", "2,1,0", "--replicate", "1", "-o", tmp_path / "command.h5")
     rule = SWEEP["axes"][2]["values"][0]
-    cell = {"noise_sigma_m": 0.002, "steps_per_tick": 30, "contact_rule": rule}
+    cell = {"noise_sigma_m": 0.002, "steps_per_tick": 30, "contact_motion": rule}
     again = rt.replay(file, cell=cell, replicate=1, output=tmp_path / "python.h5")
     assert again.attrs["digest"] == digest_in(text)
     assert_same_file(tmp_path / "python.h5", tmp_path / "command.h5")
@@ -66,7 +66,7 @@ def test_replay_is_the_command(command_line, tmp_path):
 
 def test_settings_of_a_sweep():
     sweep = rt.sweep(SWEEP, set={"replicates": 1, "seed": 9, "axes.0.count": 2})
-    assert sweep.sizes == {"noise_sigma_m": 2, "steps_per_tick": 2, "contact_rule": 2, "replicate": 1}
+    assert sweep.sizes == {"noise_sigma_m": 2, "steps_per_tick": 2, "contact_motion": 2, "replicate": 1}
     assert json.loads(sweep.attrs["config"])["experiment"]["seed"] == 9
 
 

@@ -148,7 +148,7 @@ const char* const kLift = R"({
   "renderer": {"name": "proxy"},
   "trajectory": {"name": "waypoints", "waypoints": [[0, 0.03, 0, 0], [0, -0.01, 0, 0.06]]}})";
 const char* const kSheet = R"({
-  "scenario": {"name": "sheet"}, "renderer": {"name": "tool", "tool_mesh": "ball"},
+  "scenario": {"name": "panel"}, "renderer": {"name": "tool", "tool_mesh": "ball"},
   "trajectory": {"name": "poses", "poses": [[0, 0.04, 0, 0, 0, 0, 0], [0, -0.01, 0, 0, 0, 0, 0.6]]}})";
 
 TEST(LiveRun, ARecordingOfCloudsGivesTheSameDigestOffline) {

@@ -107,7 +107,7 @@ TEST(ResultTables, OtherFilesAreRefused) {
   write_trace(folder / "short.h5", columns, kProvenance, {});
   EXPECT_HAS(refusal([&] { result_tables(Hdf5Reader(folder / "short.h5")); }), "is not as long as time");
   Hdf5Writer other;
-  other.attribute("/", "schema", "remote-touch-hashes/2");
+  other.attribute("/", "schema", "remote-touch-hashes/3");
   other.save(folder / "hashes.h5");
   EXPECT_HAS(refusal([&] { result_tables(Hdf5Reader(folder / "hashes.h5")); }), "expected a trace, a sweep");
 }

@@ -183,7 +183,7 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
 TEST(ContactList, PointsWithinReachAreNeverMerged) {
   const PointCloud cloud = scenes::dense_plane();
   ToolParameters p;
-  p.contact_rule = TouchRule::continuous;
+  p.contact_rule = ContactRule::continuous;
   ContactList list(kTool, p, scenes::kernels());
   list.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
   const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};

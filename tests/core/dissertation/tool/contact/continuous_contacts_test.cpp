@@ -38,7 +38,7 @@ TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   const auto pin = two_pins();
   const PointCloud cloud = scenes::dense_plane();
   ToolParameters p;
-  p.contact_rule = TouchRule::continuous;
+  p.contact_rule = ContactRule::continuous;
   ContactList points(pin, p, scenes::kernels());
   points.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
   ContinuousContacts contacts(p, *pin);
@@ -61,7 +61,7 @@ TEST(ContinuousContacts, ASurfaceAheadStopsAMotionUnlessItOnlyTouches) {
   const Vec3 half_m(0.005, 0.003, 0.004);
   const auto tool = scenes::box_tool(half_m, 2.5e-4);
   ToolParameters p;
-  p.contact_rule = TouchRule::continuous;
+  p.contact_rule = ContactRule::continuous;
   ContactList points(tool, p, scenes::kernels());
   points.on_frame(formatted<TiledCloud>(scenes::dense_plane(), 0.0));
   ContinuousContacts contacts(p, *tool);

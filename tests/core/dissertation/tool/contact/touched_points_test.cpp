@@ -99,10 +99,10 @@ TEST(TouchedPoints, AreThoseOfALoopOverAllPointsOnAWalk) {
 TEST(TouchedPoints, AContactListCountsEveryTouchedPoint) {
   ToolParameters p;
   const double voxels_m = 2 * kTool->grid.size_m;
-  for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::voxels})
+  for (const ContactRule rule : {ContactRule::look_ahead, ContactRule::voxels})
     for (const std::size_t count : {20000u, 500u}) {
       p.contact_rule = rule, p.disk_radius_ratio = kRatio;
-      const bool with_disks = rule == TouchRule::look_ahead;
+      const bool with_disks = rule == ContactRule::look_ahead;
       ContactList list(kTool, p, scenes::kernels());
       const auto cloud = formatted<TiledCloud>(cloud_of(count, 50));
       list.on_frame(cloud);

@@ -27,7 +27,7 @@ struct Ride {
   explicit Ride(ToolParameters p)
       : renderer(with_rule(p), scenes::outer_box_tool(kHalf_m), scenes::kernels()) {}
   static ToolParameters with_rule(ToolParameters p) {
-    p.contact_rule = TouchRule::continuous;
+    p.contact_rule = ContactRule::continuous;
     return p;
   }
   // Runs ten ticks of one frame with the device at a height. Returns the height of the tool.

@@ -27,9 +27,9 @@ PointCloud sheet(int n = 60, double spacing_m = 0.002, const Vec3& normal = Vec3
   return cloud;
 }
 
-ToolRenderer renderer(TouchRule rule = TouchRule::look_ahead, ToolParameters p = {}) {
+ToolRenderer renderer(ContactRule rule = ContactRule::look_ahead, ToolParameters p = {}) {
   p.contact_rule = rule;
-  const bool is_outer = rule == TouchRule::continuous;
+  const bool is_outer = rule == ContactRule::continuous;
   return ToolRenderer(p, is_outer ? scenes::outer_box_tool(kHalf_m) : scenes::box_tool(kHalf_m),
                       scenes::kernels());
 }
@@ -38,9 +38,9 @@ DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
   return {p_W, rotation(turn)};
 }
 
-class EveryRule : public testing::TestWithParam<TouchRule> {};
+class EveryRule : public testing::TestWithParam<ContactRule> {};
 INSTANTIATE_TEST_SUITE_P(
-    Tool, EveryRule, testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous),
+    Tool, EveryRule, testing::Values(ContactRule::look_ahead, ContactRule::voxels, ContactRule::continuous),
     [](const auto& rule) {
       return (std::array{"look_ahead", "voxels", "continuous"}[static_cast<std::size_t>(rule.param)]);
     });
@@ -82,7 +82,7 @@ TEST_P(EveryRule, PointsWithoutANormalAreCounted) {
   RenderOutput out;
   for (int i = 0; i <= 100; ++i) out = r.step(device({0, 0.02 - 3e-4 * i, 0}), 0.001 * i);
   EXPECT_EQ(out.tool->disabled_points, 3600);
-  if (GetParam() == TouchRule::voxels) {
+  if (GetParam() == ContactRule::voxels) {
     EXPECT_EQ(out.proxy_W.y(), 0.02 - 0.03);
   } else {
     EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 2e-4);
@@ -148,7 +148,7 @@ TEST_P(EveryRule, StaleFramesAreDroppedAndReported) {
 // 5.2 for a tool: a hard constraint on the slave robot, or a soft one.
 TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
   ToolParameters p;
-  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
     p.slave_command = command;
     ToolRenderer r = renderer(GetParam(), p);
     r.on_frame(scenes::frame(sheet()));
@@ -156,7 +156,7 @@ TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
     for (int i = 0; i < 300; ++i) out = r.step(device({0, 0.02 - 1e-4 * i, 0}), 0.001 * i);
     const Vec3 device_W(0, 0.02 - 1e-4 * 299, 0);
     ASSERT_GT((out.proxy_W - device_W).norm(), 0.01);  // the points hold it
-    const Vec3 expected = command == ToolCommand::tool ? out.proxy_W : device_W;
+    const Vec3 expected = command == SlaveCommand::rendered ? out.proxy_W : device_W;
     EXPECT_EQ(out.slave_W, expected);
     out = r.step(device(Vec3::Constant(kNaN)), 0.3);
     EXPECT_EQ(out.slave_W, expected);  // the last command is repeated
@@ -164,10 +164,10 @@ TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
 }
 
 TEST(ToolRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
-  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
     ToolParameters p;
     p.slave_command = command;
-    ToolRenderer r = renderer(TouchRule::look_ahead, p);
+    ToolRenderer r = renderer(ContactRule::look_ahead, p);
     EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0).slave_W.array().isNaN().all());
     r.on_frame(scenes::frame(sheet()));
     EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0.001).slave_W.array().isNaN().all());

@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-class Sheet final : public PanelScene {
+class SinglePanel final : public PanelScene {
  public:
   struct Settings {
     Vec3 centre_m = Vec3::Zero();
@@ -18,7 +18,7 @@ class Sheet final : public PanelScene {
     double spacing_m = 0.002;
   };
 
-  Sheet(const Settings& settings, const NoiseKey&, const Kernels&)
+  SinglePanel(const Settings& settings, const NoiseKey&, const Kernels&)
       : PanelScene({settings.spacing_m}), settings_(settings) {}
   std::vector<FlatPanel> panels(double time_s) const override;
 
@@ -26,8 +26,8 @@ class Sheet final : public PanelScene {
   const Settings settings_;
 };
 
-Parameters parameters(Sheet::Settings& s);
-inline std::string validate(const Sheet::Settings& s) {
+Parameters parameters(SinglePanel::Settings& s);
+inline std::string validate(const SinglePanel::Settings& s) {
   return s.normal.norm() > 0 ? "" : "normal = 0, 0, 0: expected any direction";
 }
 

@@ -13,7 +13,7 @@ namespace remote_touch {
 
 // Each coordinate of the position and of the rotation vector is a sum of three sines with incommensurable
 // frequencies and random phases.
-class RandomWalk final : public Trajectory {
+class RandomMotion final : public Trajectory {
  public:
   struct Settings {
     Vec3 centre_m = Vec3::Zero();
@@ -24,7 +24,7 @@ class RandomWalk final : public Trajectory {
     double duration_s = 10;
   };
 
-  RandomWalk(const Settings& settings, const Scenario& scenario);
+  RandomMotion(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override;
   double duration_s() const override { return settings_.duration_s; }
 
@@ -37,7 +37,7 @@ class RandomWalk final : public Trajectory {
   std::array<std::array<double, kSines>, 6> phase_{};  // phases of the position, then of the rotation vector
 };
 
-Parameters parameters(RandomWalk::Settings& s);
-std::string validate(const RandomWalk::Settings& s);
+Parameters parameters(RandomMotion::Settings& s);
+std::string validate(const RandomMotion::Settings& s);
 
 }  // namespace remote_touch

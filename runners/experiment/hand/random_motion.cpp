@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/random_walk.h"
+#include "runners/experiment/hand/random_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kTwoPi = 6.283185307179586;
 
 // Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
 // allowed speed.
-double rate_of_first_sine(const RandomWalk::Settings& s) {
+double rate_of_first_sine(const RandomMotion::Settings& s) {
   double of_all = 0;
   for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];
   const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
@@ -31,7 +31,7 @@ double rate_of_first_sine(const RandomWalk::Settings& s) {
 
 }  // namespace
 
-Parameters parameters(RandomWalk::Settings& s) {
+Parameters parameters(RandomMotion::Settings& s) {
   return {
       {"centre_m", &s.centre_m, -100, 100, "centre of the box that the device stays in"},
       {"extent_m", &s.extent_m, 0, 100, "half size of the box"},
@@ -42,14 +42,14 @@ Parameters parameters(RandomWalk::Settings& s) {
   };
 }
 
-std::string validate(const RandomWalk::Settings& s) {
+std::string validate(const RandomMotion::Settings& s) {
   if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: expected above 0 along one axis or more";
   return rate_of_first_sine(s) * s.duration_s < 1e5
              ? ""
              : "extent_m is too small for speed_m_per_s and duration_s: expected fewer than 15000 oscillations";
 }
 
-RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
+RandomMotion::RandomMotion(const Settings& settings, const Scenario&)
     : settings_(settings), rate_(rate_of_first_sine(settings)) {
   const NoiseStream stream = noise_stream({settings.seed}, NoiseUse::motion, 0);
   for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -58,7 +58,7 @@ RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
   }
 }
 
-double RandomWalk::coordinate(int axis, double time_s) const {
+double RandomMotion::coordinate(int axis, double time_s) const {
   double sum = 0;
   for (int i = 0; i < kSines; ++i) {
     const double phase = phase_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
@@ -67,7 +67,7 @@ double RandomWalk::coordinate(int axis, double time_s) const {
   return sum;
 }
 
-DeviceState RandomWalk::at(double time_s) const {
+DeviceState RandomMotion::at(double time_s) const {
   const double t = std::clamp(time_s, 0.0, settings_.duration_s);
   Vec3 position, angles;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/random_walk.h"
+#include "runners/experiment/hand/random_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -8,17 +8,17 @@
 #include "scenarios/synthetic/flat_grid.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::random_walk_test {
+namespace remote_touch::random_motion_test {
 namespace {
 
-RandomWalk walk(const RandomWalk::Settings& settings) {
-  return RandomWalk(settings, FlatGrid({}, NoiseKey{}, scenes::kernels()));
+RandomMotion motion_of(const RandomMotion::Settings& settings) {
+  return RandomMotion(settings, FlatGrid({}, NoiseKey{}, scenes::kernels()));
 }
 
-TEST(RandomWalk, StaysInItsBoxAndBelowItsSpeed) {
-  RandomWalk::Settings s;
+TEST(RandomMotion, StaysInItsBoxAndBelowItsSpeed) {
+  RandomMotion::Settings s;
   s.centre_m = {1, 2, 3}, s.extent_m = {0.02, 0.05, 0.01}, s.max_rotation_deg = 40, s.duration_s = 200;
-  const RandomWalk device = walk(s);
+  const RandomMotion device = motion_of(s);
   Vec3 max_width = Vec3::Zero();
   double max_speed = 0, max_rotation = 0;
   for (double t = 0; t < s.duration_s; t += 0.01) {
@@ -40,11 +40,11 @@ TEST(RandomWalk, StaysInItsBoxAndBelowItsSpeed) {
   EXPECT_GT(max_rotation, 0.5 * s.max_rotation_deg * degree);
 }
 
-TEST(RandomWalk, EverySeedIsAnotherWalk) {
-  RandomWalk::Settings s;
-  const RandomWalk one = walk(s), same = walk(s);
+TEST(RandomMotion, EverySeedIsAnotherMotion) {
+  RandomMotion::Settings s;
+  const RandomMotion one = motion_of(s), same = motion_of(s);
   s.seed = 2;
-  const RandomWalk other = walk(s);
+  const RandomMotion other = motion_of(s);
   for (const double t : {3.0, 0.0, 7.7}) {
     EXPECT_EQ(one.at(t).position_W, same.at(t).position_W);
     EXPECT_GT((one.at(t).position_W - other.at(t).position_W).norm(), 1e-3);
@@ -54,8 +54,8 @@ TEST(RandomWalk, EverySeedIsAnotherWalk) {
   EXPECT_EQ(one.duration_s(), 10);
 }
 
-TEST(RandomWalk, RefusesABoxThatIsTooSmall) {
-  RandomWalk::Settings s;
+TEST(RandomMotion, RefusesABoxThatIsTooSmall) {
+  RandomMotion::Settings s;
   EXPECT_EQ(validate(s), "");
   s.extent_m = {1e-7, 0, 0};
   EXPECT_NE(validate(s), "");
@@ -64,4 +64,4 @@ TEST(RandomWalk, RefusesABoxThatIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace remote_touch::random_walk_test
+}  // namespace remote_touch::random_motion_test

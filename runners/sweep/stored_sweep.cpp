@@ -1,0 +1,55 @@
+#include "runners/sweep/stored_sweep.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "runners/experiment/settings/stored_configuration.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+// axis: its definition in the configuration, with present names. A definition that does not fit the column is
+// ignored; Sweep::require_fits() refuses it.
+void rename_axis(const Json& axis, Column& column) {
+  if (!axis.is_object() || !axis.contains("parameter") || !axis["parameter"].is_string()) return;
+  const std::string parameter = axis["parameter"].get<std::string>();
+  if (column.long_name != parameter) {
+    column.long_name = parameter;
+    column.name = parameter.substr(parameter.rfind('.') + 1);
+  }
+  const auto values = axis.find("values");
+  if (values == axis.end() || !values->is_array() || values->size() != column.value_names.size()) return;
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    const Json& value = (*values)[i];
+    column.value_names[i] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+}
+
+StoredSweep with_present_names(StoredSweep stored) {
+  const auto config = std::find_if(stored.attributes.begin(), stored.attributes.end(),
+                                   [](const auto& one) { return one.first == "config"; });
+  if (config == stored.attributes.end()) return stored;
+  const std::string present = stored_configuration(config->second);
+  if (present == config->second) return stored;
+  config->second = present;
+  const Json json = parse_json(present, "config");
+  const auto axes = json.find("axes");
+  if (axes == json.end() || !axes->is_array()) return stored;
+  for (std::size_t i = 0; i < std::min(axes->size(), stored.result.axes.size()); ++i)
+    rename_axis((*axes)[i], stored.result.axes[i]);
+  return stored;
+}
+
+}  // namespace
+
+StoredSweep read_stored_sweep(const Hdf5Reader& file) {
+  return with_present_names(read_sweep(file));
+}
+
+StoredSweep read_stored_sweep(const std::filesystem::path& file) {
+  return with_present_names(read_sweep(file));
+}
+
+}  // namespace remote_touch
