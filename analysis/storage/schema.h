@@ -32,4 +32,9 @@ inline bool is_earlier_schema(const std::string& schema) {
          schema.ends_with(std::string(1, '/') + std::to_string(kOldestSchema));
 }
 
+// Returns the schema of the same kind of file in this layout.
+inline std::string present_schema(const std::string& schema) {
+  return schema.substr(0, schema.rfind('/') + 1) + std::to_string(kSchemaVersion);
+}
+
 }  // namespace remote_touch

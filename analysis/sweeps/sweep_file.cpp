@@ -228,6 +228,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
   StoredSweep stored;
   SweepResult& result = stored.result;
   stored.attributes = provenance_of(file.attributes());
+  stored.schema = reader.text("schema");
   stored.in_progress = reader.has("checksum");
   for (const std::string& name : split_names(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());

@@ -29,6 +29,7 @@ struct StoredSweep {
   SweepResult result;
   TextAttributes attributes;  // all but schema, digest, and the names of axes, measures and note kinds
   bool in_progress = false;
+  std::string schema = {};
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
 // Reads the file again if a running sweep has replaced it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/storage/schema.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
 
@@ -28,6 +29,10 @@ void rename_axis(const Json& axis, Column& column) {
 }
 
 StoredSweep with_present_names(StoredSweep stored) {
+  if (is_earlier_schema(stored.schema)) {
+    stored.attributes.emplace_back(kTranslatedFrom, stored.schema);
+    stored.schema = present_schema(stored.schema);
+  }
   const auto config = std::find_if(stored.attributes.begin(), stored.attributes.end(),
                                    [](const auto& one) { return one.first == "config"; });
   if (config == stored.attributes.end()) return stored;

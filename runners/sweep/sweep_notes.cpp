@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
@@ -9,6 +10,26 @@
 #include "runners/sweep/cell_text.h"
 
 namespace remote_touch {
+
+namespace {
+
+// pre: the distance to the true surface is unknown in some tick, as in every run whose outcome is unknown.
+std::string text_of_unknown_outcome(const Trace& trace) {
+  std::size_t unknown = 0, last = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (std::isnan(trace.signed_distance_m[i])) last = i, ++unknown;
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "it is not known whether the %s popped through: its distance to the true surface is unknown in "
+      "%.3g %% of the ticks, last at %.6g s, beside an object or at a depth edge for example; choose a "
+      "larger scene, or a hand that stays over it",
+      trace.has_tool() ? "tool" : "proxy",
+      100 * static_cast<double>(unknown) / static_cast<double>(trace.length()), trace.time_s[last]);
+  return text;
+}
+
+}  // namespace
 
 std::string option_of_run(const SweepResult& result, std::size_t run) {
   std::string option = "--cell " + cell_text(result, result.cell_of(run));
@@ -31,14 +52,14 @@ void refuse_notes(const SweepResult& result) {
   if (!all.empty()) throw InputError("--strict", all);
 }
 
-void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes) {
+void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes) {
   const auto is_known = [](double distance_m) { return !std::isnan(distance_m); };
   const auto is_unknown = [&](const Measure& measure) {
     return is_outcome(measure.name) && applies(measure, trace) && std::isnan(measure.compute(trace));
   };
   if (std::any_of(trace.signed_distance_m.begin(), trace.signed_distance_m.end(), is_known) &&
       std::any_of(measures.begin(), measures.end(), is_unknown))
-    notes.push_back({"outcome unknown", "it is not known whether the proxy or tool popped through"});
+    notes.push_back({"outcome unknown", text_of_unknown_outcome(trace)});
 }
 
 void NoteCounts::add_run(std::int32_t bits) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ void refuse_notes(const SweepResult& result);
 
 // Adds the note "outcome unknown" if the distance to the true surface is known in some tick but a measure of
 // the outcome is NaN: an event is then counted as if it had not happened, see tally().
-void add_unknown_outcome(const std::vector<Measure>& measures, const Trace& trace, std::vector<Note>& notes);
+void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes);
 
 // The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
 class NoteCounts {

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
@@ -16,6 +17,14 @@ namespace {
 std::string first_difference(const TextAttributes& theirs, const TextAttributes& ours) {
   const auto all = configuration_differences(attribute(theirs, "config"), attribute(ours, "config"));
   return all.empty() ? "its title" : all.front();
+}
+
+// Throws InputError for a sweep of an earlier schema. Its settings have other names, so that it would look
+// like another sweep, and another program made it.
+void require_present_schema(const std::filesystem::path& file, const std::string& schema) {
+  if (is_earlier_schema(schema))
+    throw InputError(file.string(), "was written with the earlier schema " + schema +
+                                        ": expected a new file, in which the sweep starts again");
 }
 
 // Throws InputError for a file of another sweep, shard or build, so that it is not overwritten.
@@ -81,6 +90,7 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
                      "a pipe or a device: expected a file, because a sweep stores each run when it is done");
   if (!std::filesystem::is_regular_file(there)) return plan;
   StoredSweep stored = read_sweep(file);
+  require_present_schema(file, stored.schema);
   require_same(file, stored.attributes, attributes);
   take_over(std::move(stored.result), file, plan.result);
   const std::string inputs = attribute(attributes, "input_digests");

@@ -20,9 +20,9 @@ struct SweepPlan {
   bool is_there = false;
   bool is_finished = false;  // the file exists and equals what a finished sweep with this result would write
 };
-// Throws InputError for a file that is not a sweep (also for a pipe or a device), or that belongs to another
-// configuration, shard or build. Throws InputError also if a recording that a finished run has read was
-// changed. A recording that only failed runs have read may be repaired.
+// Throws InputError for a file that is not a sweep (also for a pipe or a device), that has an earlier schema,
+// or that belongs to another configuration, shard or build. Throws InputError also if a recording that a
+// finished run has read was changed. A recording that only failed runs have read may be repaired.
 SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                        const std::filesystem::path& file);
 

@@ -1,6 +1,8 @@
 #include "runners/evaluation/regression/comparison_text.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -44,7 +46,7 @@ std::string row_text(const Column& column, std::size_t row) {
   for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
     if (!all.empty()) all += " ";
     if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
-      all += text("%.17g", (*numbers)[i]);
+      all += shortest_text((*numbers)[i]);
     else if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values))
       all += text("%016" PRIx64, (*hashes)[i]);
     else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values)) {
@@ -204,8 +206,8 @@ void print_sweep(const SweepComparison& sweep, bool paired, std::FILE* out) {
     cell.append(cell.empty() ? "" : ",").append(std::to_string(index));
   std::fprintf(out, "  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
   if (!sweep.first->measure.empty())
-    std::fprintf(out, ", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,
-                 sweep.first->candidate);
+    std::fprintf(out, ", %s %s against %s", sweep.first->measure.c_str(),
+                 shortest_text(sweep.first->baseline).c_str(), shortest_text(sweep.first->candidate).c_str());
   std::fprintf(
       out,
       "\n  see it: remote-touch replay FILE --cell %s --replicate %d -o trace.h5, of both, then compare\n",
@@ -213,6 +215,12 @@ void print_sweep(const SweepComparison& sweep, bool paired, std::FILE* out) {
 }
 
 }  // namespace
+
+std::string shortest_text(double number) {
+  std::array<char, 40> digits{};
+  char* const begin = digits.data();
+  return {begin, std::to_chars(begin, begin + digits.size(), number, std::chars_format::general).ptr};
+}
 
 std::string tolerance_text(const Tolerance& tolerance) {
   if (tolerance.absolute == 0 && tolerance.relative == 0) return "exact";
@@ -236,8 +244,9 @@ const char* word_for(Outcome outcome) {
 }
 
 void print_comparison(const ResultComparison& comparison, std::FILE* out) {
-  std::fprintf(out, "%s: %s against %s\n", comparison.kind.c_str(), comparison.candidate.c_str(),
-               comparison.baseline.c_str());
+  // The lines below state the baseline first, too: "seed 1 against 7".
+  std::fprintf(out, "%s: baseline %s against candidate %s\n", comparison.kind.c_str(),
+               comparison.baseline.c_str(), comparison.candidate.c_str());
   for (const std::string& difference : comparison.configuration)
     std::fprintf(out, "  configuration: %s\n", difference.c_str());
   for (const std::string& difference : comparison.provenance)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "runners/evaluation/regression/comparison_text.h"
+
 namespace remote_touch {
 
 namespace {
@@ -72,9 +74,8 @@ ReportCase::State state_of(Judgement judgement, Outcome whole) {
 }
 
 ReportCase case_of(const ValueComparison& measure, Outcome whole) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%.17g against %.17g: %s (%s)", measure.baseline, measure.candidate,
-                name_of(measure.judgement), text_of(measure.better));
+  std::string text = shortest_text(measure.baseline) + " against " + shortest_text(measure.candidate);
+  text += std::string(": ") + name_of(measure.judgement) + " (" + text_of(measure.better) + ")";
   return {measure.name, state_of(measure.judgement, whole), text};
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/evaluation/scorecard/stored_card.h"
@@ -22,7 +23,11 @@ void make_scorecard_folder(const std::string& folder) {
 void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
-  const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
+  const TextAttributes attributes = Hdf5Reader(file).attributes();
+  if (const std::string schema = attribute(attributes, "schema"); is_earlier_schema(schema))
+    throw InputError(file.string(), "was written with the earlier schema " + schema +
+                                        ": expected another folder, in which the scorecard starts again");
+  const Json stored = Json::parse(attribute(attributes, "config"), nullptr,
                                   false);  // a broken text gives no object
   const Json wanted = Json::parse(configuration_of(plan));
   for (const char* kind : {"methods", "scenes"}) {

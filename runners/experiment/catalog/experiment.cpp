@@ -16,11 +16,24 @@
 
 namespace remote_touch {
 
+namespace {
+
+// Throws InputError if a file that was named as an experiment is a sweep.
+void refuse_sweep(const Json& configuration, const std::string& label) {
+  if (configuration.contains("experiment") && configuration.contains("axes"))
+    throw InputError(label, std::string("is a sweep: expected `remote-touch sweep ") + label + " -o FILE`");
+}
+
+}  // namespace
+
 Experiment Experiment::from_json(const std::string& text, const std::string& label,
                                  const std::vector<std::string>& overrides) {
   Json configuration = parse_json(text, label);
   if (!configuration.is_object()) throw InputError(label, "not an object: expected {\"scenario\": ..., ...}");
+  refuse_sweep(configuration, label);
+  const Json former = configuration;
   apply_overrides(configuration, overrides);
+  refuse_former_keys(former, configuration);
   return from_json(configuration);
 }
 

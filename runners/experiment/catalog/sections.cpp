@@ -42,7 +42,7 @@ Settings read_settings(const Json& json, const std::string& path) {
   if (!json.is_object())
     throw InputError(path, "expected an object of parameters; leave the section out otherwise");
   Settings settings;
-  read_parameters(json, parameters(settings), path);
+  read_parameters(json, parameters(settings), path, {}, "");
   const std::string problem = validate(settings);
   if (!problem.empty()) throw InputError(path + "." + problem);
   return settings;
@@ -78,7 +78,7 @@ Part<Entry> read_part(const Json& json, std::span<const Entry> catalog, const st
   Part<Entry> part;
   part.name = json["name"].template get<std::string>();
   part.factory = find_entry(catalog, part.name, path + ".name").make();
-  read_parameters(json, part.factory->settings(), path, {"name"});
+  read_parameters(json, part.factory->settings(), path, {"name"}, part.name);
   const std::string problem = part.factory->validate();
   if (!problem.empty()) throw InputError(path + "." + problem);
   return part;
@@ -139,6 +139,15 @@ bool has(const Section& section, const Json& whole, const std::string& parameter
     if (entry.name.empty() || own.value("name", Json()) == entry.name)
       if (has(entry.make()->settings(), parameter)) return true;
   return false;
+}
+
+// True if the JSON of a section names one of its entries.
+bool has_known_name(const Section& section, const Json& own) {
+  if (!own.is_object()) return false;
+  const Json name = own.value("name", Json());
+  const std::vector<SectionEntry> entries = section.entries();
+  return name.is_string() &&
+         std::ranges::any_of(entries, [&](const SectionEntry& entry) { return name == entry.name; });
 }
 
 // Throws InputError for a key at the top level that is a parameter of a section in this configuration. The
@@ -284,6 +293,20 @@ const Section kSections[] = {
 
 std::span<const ExperimentSection> experiment_sections() {
   return kSections;
+}
+
+void refuse_former_keys(const Json& former, const Json& json) {
+  for (const Section& section : kSections) {
+    const Json &before = given(former, section.key), &now = given(json, section.key);
+    if (!section.heading || !before.is_object() || !has_known_name(section, now)) continue;
+    const std::string name = now["name"].get<std::string>();
+    if (before.value("name", Json()) == name) continue;
+    for (const auto& item : before.items())
+      if (now.contains(item.key()) && has(section, former, item.key()) && !has(section, json, item.key()))
+        throw InputError(std::string(section.key) + "." + item.key(),
+                         name + " has no such parameter: expected --set '" + section.key + "={\"name\": \"" +
+                             name + "\"}', which replaces the whole object");
+  }
 }
 
 ExperimentConfiguration read_configuration(const Json& json) {

@@ -47,6 +47,9 @@ struct ExperimentSection {
 // The sections, in the order in which they are read and written.
 std::span<const ExperimentSection> experiment_sections();
 
+// Throws InputError if `json` has another entry in a section than `former` had, and still has a parameter
+// that only the former entry has: --set replaced the name alone.
+void refuse_former_keys(const nlohmann::ordered_json& former, const nlohmann::ordered_json& json);
 // Throws InputError for anything that cannot be run.
 ExperimentConfiguration read_configuration(const nlohmann::ordered_json& json);
 // Returns the complete configuration: every parameter of every section that is present.

@@ -39,17 +39,21 @@ DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {
   return depth;
 }
 
+// The reason why the first frame of the scenario is no image, and what is expected.
+std::string no_image_text(const Scenario& scenario, const PointCloud& cloud) {
+  if (scenario.input().empty())
+    return "the scene has no camera: expected a scenario with one (recording, camera-scene, beating-heart, "
+           "valve-tank)";
+  if (cloud.grid_columns == 0) return "the frames are not images: expected a recording with a camera";
+  return "the rows and columns of the recording are no image of a camera: expected clouds in the frame of "
+         "the camera that are not mirrored";
+}
+
 }  // namespace
 
 FrameImage first_image(const Scenario& scenario, const std::string& subject) {
   const PointCloud cloud = scenario.cloud(0);
-  if (!cloud.image)
-    throw InputError(subject,
-                     cloud.grid_columns > 0
-                         ? "the frames have rows and columns but are not images, because no camera sees "
-                           "each point at its pixel: expected clouds in the frame of the camera that are "
-                           "not mirrored"
-                         : "the frames are not images: expected a scenario with a camera");
+  if (!cloud.image) throw InputError(subject, no_image_text(scenario, cloud));
   if (cloud.size() != cloud.image->camera.pixels())
     throw InputError(subject, "frame 0 has " + std::to_string(cloud.size()) + " points: expected " +
                                   size_text(cloud.image->camera));

@@ -1,5 +1,6 @@
 #include "runners/experiment/hand/nearest_object.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -99,6 +100,17 @@ double area_m2(const DepthImage& image, const CameraIntrinsics& camera, const st
   return area;
 }
 
+// Returns true if more than half of the pixels are on the camera's side of the plane.
+bool is_patch_in_front(const Plane& plane, const DepthImage& image, const CameraIntrinsics& camera,
+                       const std::vector<int>& patch) {
+  const auto is_on_camera_side = [&](int i) {
+    const int row = i / image.width, column = i % image.width;
+    return plane.is_camera_side(unproject(camera, column, row, image.z_m[static_cast<std::size_t>(i)]));
+  };
+  const auto count = std::count_if(patch.begin(), patch.end(), is_on_camera_side);
+  return 2 * static_cast<std::size_t>(count) > patch.size();
+}
+
 NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
   std::vector<double> depth, rows, columns;
   for (const int i : patch) {
@@ -125,15 +137,18 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
   }
   if (measured.empty()) return {0, 0, 0, {}, true};
 
-  std::optional<NearestObject> nearest;
+  std::optional<NearestObject> in_front, behind;
   for (const int seed : measured) {
     if (!open[static_cast<std::size_t>(seed)]) continue;
     const std::vector<int> patch = take_patch(image, seed, open);
     if (static_cast<double>(patch.size()) < kObjectFraction * static_cast<double>(image.z_m.size())) continue;
     NearestObject object = describe(image, patch);
+    object.is_behind_plane = plane && !is_patch_in_front(*plane, image, camera, patch);
+    std::optional<NearestObject>& nearest = object.is_behind_plane ? behind : in_front;
     if (!nearest || object.nearest_depth_m < nearest->nearest_depth_m) nearest = std::move(object);
   }
-  if (nearest) return *nearest;
+  if (in_front) return *in_front;
+  if (behind) return *behind;
   NearestObject scene = describe(image, measured);
   scene.is_whole_scene = true;
   return scene;
@@ -142,10 +157,11 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
 NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera) {
   NearestObject object = nearest_large_object(image.measured(), camera);
   NearestObject closed = nearest_large_object(image.closed(), camera);
+  if (closed.is_whole_scene || object.is_whole_scene) return closed.is_whole_scene ? object : closed;
+  if (closed.is_behind_plane != object.is_behind_plane) return closed.is_behind_plane ? object : closed;
   // An object is nearer only if the difference is larger: closing the holes of one and the same object moves
   // its nearest part by less.
-  const bool is_nearer = closed.nearest_depth_m < object.nearest_depth_m - kContinuous_m;
-  return !closed.is_whole_scene && (object.is_whole_scene || is_nearer) ? closed : object;
+  return closed.nearest_depth_m < object.nearest_depth_m - kContinuous_m ? closed : object;
 }
 
 std::string text_of_nearer(const NearestObject& object) {

@@ -171,20 +171,32 @@ const std::string& nearest_key(const std::string& key, const std::vector<std::st
       known, [&](const auto& a, const auto& b) { return edit_distance(key, a) < edit_distance(key, b); });
 }
 
+// Returns the path of the settings alone: "renderer." of "method mine: renderer.".
+std::string without_label(const std::string& prefix) {
+  const std::size_t colon = prefix.rfind(": ");
+  return colon == std::string::npos ? prefix : prefix.substr(colon + 2);
+}
+
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
-                             const std::string& prefix) {
+                             const std::string& prefix, const std::optional<std::string>& entry) {
   if (known.empty()) throw InputError(prefix + key, "unknown; no parameters here");
-  const std::optional<std::string> renamed = new_name(key, known);
-  throw InputError(prefix + key, renamed ? "unknown; it is now " + prefix + *renamed
-                                         : "unknown; did you mean " + prefix + nearest_key(key, known));
+  const std::optional<std::string> renamed = new_name(key, known, entry);
+  const std::string hint = renamed ? "unknown; it is now " : "unknown; did you mean ";
+  throw InputError(prefix + key, hint + without_label(prefix) + renamed.value_or(nearest_key(key, known)));
+}
+
+// Returns what a refusal of the value expects.
+std::string expected_text(const Parameter& p, const Json& value) {
+  const bool lacks_number = std::holds_alternative<double*>(p.value) && !value.is_number();
+  return (lacks_number ? "expected a number from " : "expected ") + allowed(p);
 }
 
 // Returns the end of a refusal of a value that was renamed; nothing for other values.
-std::string rename_hint(const Parameter& p, const Json& value) {
+std::string rename_hint(const Parameter& p, const Json& value, const std::optional<std::string>& entry) {
   const auto* const choice = std::get_if<Choice>(&p.value);
   if (!choice) return {};
   const std::string old_value = value.is_string() ? value.get<std::string>() : shown(value);
-  const std::optional<std::string> renamed = new_value(p.name, old_value, choice->names);
+  const std::optional<std::string> renamed = new_value(p.name, old_value, choice->names, entry);
   return renamed ? "; " + old_value + " is now " + *renamed : "";
 }
 
@@ -198,7 +210,7 @@ std::string value_text(const Parameter& parameter) {
 }
 
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     const std::vector<std::string>& elsewhere) {
+                     const std::vector<std::string>& elsewhere, const std::optional<std::string>& entry) {
   if (!object.is_object()) throw InputError(path, "not an object: expected {\"name\": ..., ...}");
   const std::string prefix = path.empty() ? "" : path + ".";
   for (const auto& item : object.items()) {
@@ -206,10 +218,10 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
     const Json& value = item.value();
     if (std::ranges::find(elsewhere, key) != elsewhere.end()) continue;
     const auto found = std::ranges::find_if(parameters, [&](const auto& p) { return p.name == key; });
-    if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix);
+    if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix, entry);
     if (!std::visit(Reader{value, *found}, found->value))
       throw InputError(prefix + key + " = " + shown(value),
-                       "expected " + allowed(*found) + rename_hint(*found, value));
+                       expected_text(*found, value) + rename_hint(*found, value, entry));
   }
 }
 

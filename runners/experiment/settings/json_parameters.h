@@ -1,6 +1,7 @@
 // Parameters from and to JSON, with the checks that every configuration shares.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,9 +14,10 @@ namespace remote_touch {
 
 // Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
 // one), a value of the wrong kind or one out of range; path is the name of the object, for example
-// "renderer". elsewhere: keys that the caller reads itself.
+// "renderer". elsewhere: keys that the caller reads itself. entry: for hints about old names, see new_name().
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     const std::vector<std::string>& elsewhere = {});
+                     const std::vector<std::string>& elsewhere = {},
+                     const std::optional<std::string>& entry = {});
 
 // Writes all parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);

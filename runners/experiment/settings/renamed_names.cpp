@@ -127,6 +127,11 @@ bool is_owner(std::string_view owners, const std::string& entry) {
   return false;
 }
 
+// True if the entry is not known, or has had the old name. A name of version 0.1 may be of any entry.
+bool may_be_of(std::string_view owners, const std::optional<std::string>& entry) {
+  return !entry || owners.empty() || is_owner(owners, *entry);
+}
+
 }  // namespace
 
 std::span<const RenamedName> renamed_names() {
@@ -137,16 +142,20 @@ std::span<const RenamedValue> renamed_values() {
   return kRenamedValues;
 }
 
-std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known) {
+std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known,
+                                    const std::optional<std::string>& entry) {
   for (const RenamedName& name : kRenamed)
-    if (old_name == name.old_name && is_known(known, name.new_name)) return name.new_name;
+    if (old_name == name.old_name && is_known(known, name.new_name) && may_be_of(name.owners, entry))
+      return name.new_name;
   return {};
 }
 
 std::optional<std::string> new_value(const std::string& setting, const std::string& old_value,
-                                     const std::vector<std::string>& known) {
+                                     const std::vector<std::string>& known,
+                                     const std::optional<std::string>& entry) {
   for (const RenamedValue& value : kRenamedValues)
-    if (setting == value.setting && old_value == value.old_value && is_known(known, value.new_value))
+    if (setting == value.setting && old_value == value.old_value && is_known(known, value.new_value) &&
+        may_be_of(value.owners, entry))
       return value.new_value;
   return {};
 }

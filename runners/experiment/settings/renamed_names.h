@@ -31,11 +31,16 @@ std::span<const RenamedName> renamed_names();
 // Sorted by setting and old value.
 std::span<const RenamedValue> renamed_values();
 
-// Returns the new name of old_name if it is one of the known names; nothing otherwise.
-std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known);
+// Returns the new name of old_name if it is one of the known names; nothing otherwise. entry: whose setting
+// it is, empty in a section without entries; nothing if that is not known. Another entry never had the old
+// name.
+std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known,
+                                    const std::optional<std::string>& entry = {});
 // Returns the new value for an old value of the setting if it is one of the known values; nothing otherwise.
+// entry: as of new_name().
 std::optional<std::string> new_value(const std::string& setting, const std::string& old_value,
-                                     const std::vector<std::string>& known);
+                                     const std::vector<std::string>& known,
+                                     const std::optional<std::string>& entry = {});
 
 // Returns the present name of the scenario or trajectory that had this name in results of schema /2; nothing
 // for other names. No new entry may have such a name, because results would be read as those of the other.

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/renamed_names.h"
 #include "scenarios/text_files/json_text.h"
@@ -162,6 +163,17 @@ std::string stored_configuration(const std::string& text) {
   convert_to_seconds(configuration);
   use_present_names("", configuration);
   return configuration == before ? text : configuration.dump();
+}
+
+TextAttributes present_attributes(TextAttributes attributes) {
+  const std::string schema = attribute(attributes, "schema");
+  if (!is_earlier_schema(schema)) return attributes;
+  for (auto& [name, value] : attributes) {
+    if (name == "schema") value = present_schema(schema);
+    if (name == "config") value = stored_configuration(value);
+  }
+  attributes.emplace_back(kTranslatedFrom, schema);
+  return attributes;
 }
 
 }  // namespace remote_touch

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "analysis/storage/hdf5_file.h"
+
 namespace remote_touch {
 
 // Returns the same configuration with the parameters of this version. Before version 0.3 the motion of
@@ -10,5 +12,13 @@ namespace remote_touch {
 // the configuration's frame rate, and the motion keeps its bits. Settings and values that schema /2 had under
 // other names (renamed_names.h) have their present names, also on axes. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
+
+// Root attribute of what was made of a result of an earlier schema: that schema. The names in it were
+// translated, so the program that its other attributes name cannot read them.
+inline constexpr const char* kTranslatedFrom = "translated_from";
+
+// Returns the attributes of a stored result. Those of an earlier schema have the stored_configuration(), the
+// present schema, and the attribute translated_from.
+TextAttributes present_attributes(TextAttributes attributes);
 
 }  // namespace remote_touch

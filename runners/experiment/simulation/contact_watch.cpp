@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
 
+#include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/simulation/point_gap.h"
 
@@ -38,6 +42,17 @@ double gap_radius_m(const NeighbourSearch& frame, const Vec3& position_W, double
     if (gap.radius_m > 0 || gap.is_decided) return gap.radius_m;
   }
   return 0;
+}
+
+// Returns two numbers with three digits, or with more if they would look equal.
+std::pair<std::string, std::string> distinct_texts(double a, double b) {
+  constexpr int kMostDigits = 9;
+  for (int digits = 3;; ++digits) {
+    char text_a[32], text_b[32];
+    std::snprintf(text_a, sizeof text_a, "%.*g", digits, a);
+    std::snprintf(text_b, sizeof text_b, "%.*g", digits, b);
+    if (digits == kMostDigits || std::strcmp(text_a, text_b) != 0) return {text_a, text_b};
+  }
 }
 
 }  // namespace
@@ -121,16 +136,31 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
   // The true surface may extend beyond the points. A hand beside the points loses nothing there.
   const double reach_m = ball_radius_m + moved_m;
   if (!crossing_->touched && points_in(*site.points, {site.position_W, reach_m}, kernels).empty()) return {};
-  char text[280];
+  const auto [moved, safe] =
+      distinct_texts(moved_m / (site.time_s - before_s), ball_radius_m * scenario.frame_rate_hz());
+  char text[320];
   std::snprintf(
       text, sizeof text,
-      "the true surface passed the proxy at %.6g s, %s; it moved at %.3g m/s towards the proxy, and "
-      "even without noise a first touch is safe only up to %.3g m/s at most",
+      "the true surface passed the proxy at %.6g s, %s; it moved at %s m/s towards the proxy, and even "
+      "without noise a first touch is safe only up to %s m/s over a point, and less between points",
       site.time_s,
       crossing_->touched ? "before a third frame came after the first contact"
                          : "before the proxy touched a point",
-      moved_m / (site.time_s - before_s), ball_radius_m * scenario.frame_rate_hz());
+      moved.c_str(), safe.c_str());
   return {{"lost at the first touch", text}};
+}
+
+std::vector<Note> tool_start_notes(const Trace& trace) {
+  const auto has_frame = [](int frame) { return frame >= 0; };
+  const auto first = std::ranges::find_if(trace.frame_index, has_frame) - trace.frame_index.begin();
+  const auto tick = static_cast<std::size_t>(first);
+  if (tick == trace.length() || trace.contact_count[tick] == 0) return {};
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the tool touches points when the first frame arrives, at %.6g s: %d contacts, a force of %.3g N",
+      trace.time_s[tick], trace.contact_count[tick], trace.force_N[tick].norm());
+  return {{"starts in contact", text}};
 }
 
 }  // namespace remote_touch

@@ -17,6 +17,7 @@
 namespace remote_touch {
 
 class NeighbourSearch;
+struct Trace;
 
 class ContactWatch {
  public:
@@ -67,5 +68,8 @@ class ContactWatch {
   double nearest_m_ = std::numeric_limits<double>::infinity();
   int frame_ = -1, frames_ = 0;  // newest frame; frames since the contact
 };
+
+// Returns a note "starts in contact" if a tool touches points in the first tick with a frame.
+std::vector<Note> tool_start_notes(const Trace& trace);
 
 }  // namespace remote_touch

@@ -45,6 +45,7 @@ const std::vector<NoteKind>& note_kinds() {
       {"nothing selected", "a fixture rule selects no point, so that it has no effect"},
       {"outcome unknown",
        "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
+      {"few frames", "fewer than three frames show the motion of the scene"},
   };
   return kinds;
 }

@@ -29,6 +29,38 @@ void add_late_phases(const std::vector<Phase>& of_scene, const std::vector<Phase
                                                last.name + " has ended at " + seconds(last.ends_s)});
 }
 
+// Returns the number of frames that the renderer used in a part of the run.
+int frames_between(const Trace& trace, double begins_s, double ends_s) {
+  int frames = 0, newest = -1;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const bool is_inside = trace.time_s[i] > begins_s - kSameTime_s && trace.time_s[i] < ends_s + kSameTime_s;
+    if (!is_inside || trace.frame_index[i] == newest) continue;
+    newest = trace.frame_index[i];
+    ++frames;
+  }
+  return frames;
+}
+
+// Adds a note if the renderer used only one or two frames while the scene moved. A motion that lasts less
+// than 0.2 s in this run gets no note, because few frames of an ordinary rate are in it.
+void add_few_frames(const std::vector<Phase>& of_scene, const Trace& trace, double end_s,
+                    std::vector<Note>& notes) {
+  constexpr double kBriefMotion_s = 0.2;
+  constexpr int kEnoughFrames = 3;
+  if (of_scene.empty()) return;
+  double begins_s = end_s, ends_s = 0;
+  for (const Phase& phase : of_scene) {
+    begins_s = std::min(begins_s, std::max(0.0, phase.begins_s));
+    ends_s = std::max(ends_s, std::min(end_s, phase.ends_s));
+  }
+  const int frames = frames_between(trace, begins_s, ends_s);
+  if (frames == 0 || frames >= kEnoughFrames || ends_s - begins_s < kBriefMotion_s) return;
+  notes.push_back({"few frames", std::to_string(frames) + (frames == 1 ? " frame" : " frames") + " in the " +
+                                     seconds(ends_s - begins_s) + " in which the scene moves: its motion " +
+                                     (frames == 1 ? "after this frame" : "between and after them") +
+                                     " is not seen"});
+}
+
 void add_contact(const Trace& trace, std::vector<Note>& notes) {
   const auto is_none = [](int count) { return count == 0; };
   const auto is_zero = [](const Vec3& force) { return force.norm() == 0; };
@@ -78,6 +110,7 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
                                                      ", before the trajectory ends at " +
                                                      seconds(trajectory.duration_s())});
   add_late_phases(of_scene, of_hand, end_s, report.notes);
+  add_few_frames(of_scene, trace, end_s, report.notes);
   add_contact(trace, report.notes);
   return report;
 }

@@ -179,7 +179,9 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     add_missed_phases(experiment.operator_phases(), end_s, notes);
     add(fixture_notes(frames.fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
-    if (!trace.has_tool())
+    if (trace.has_tool())
+      add(tool_start_notes(trace), notes);
+    else
       add(contact_notes(contacts, scenario->without_faults(), contact, has_fixtures, kernels), notes);
   }
   return trace;

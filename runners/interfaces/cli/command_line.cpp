@@ -32,9 +32,13 @@ void load_plugins(const std::vector<std::string>& files) {
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
   CLI::App* place = &app;
-  while (!place->get_subcommands().empty()) place = place->get_subcommands().front();
+  std::string called = "remote-touch";
+  while (!place->get_subcommands().empty()) {
+    place = place->get_subcommands().front();
+    called += " " + place->get_name();
+  }
   if (place->get_subcommands(nullptr).empty() || left.empty())
-    return InputError(error.what(), "see remote-touch --help");
+    return InputError(error.what(), "see " + called + " --help");
   std::string known;
   for (const CLI::App* command : place->get_subcommands(nullptr))
     known += (known.empty() ? "" : ", ") + command->get_name();

@@ -31,9 +31,10 @@ int make_figures(const CommandLine& line, const FigureRequest& request) {
 }
 
 void add_lists(Subcommands& commands) {
-  commands.add("list",
-               "list the names of scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
-               command_list);
+  commands.add(
+      "list",
+      "list the names of scenarios, renderers, trajectories, experiments, sweeps, tools, figures, measures",
+      command_list);
   auto [describe, described] = commands.add(
       "describe",
       "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",

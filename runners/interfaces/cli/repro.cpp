@@ -141,7 +141,9 @@ class Repro {
     if (of("command").find(" scorecard ") != std::string::npos)
       comment("it belongs to a scorecard, made by " + of("command") + " -o FOLDER; to make it alone:");
     else
-      comment("its command no longer makes this configuration (another file, or another default)");
+      comment(
+          "its command no longer makes this configuration (another file, another default, or a name that has "
+          "changed)");
     std::vector<std::string> words = program_words(), config = words;
     words.insert(words.end(), {kind_ == "sweep" ? "sweep" : "run", "again.json", "-o", "again.h5"});
     config.insert(config.end(), {"repro", file_, "--config", "again.json"});

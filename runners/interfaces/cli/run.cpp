@@ -13,6 +13,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
@@ -61,6 +62,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
       experiment.to_json(), Recipe{"run", request.experiment, request.overrides}, line.kernels->isa, inputs);
   const Trace trace = simulate(experiment, options);
   require_unchanged(experiment.inputs(), inputs);
+  add_unknown_outcome(measures(), trace, report.notes);
   if (request.strict) refuse_notes(report);
   experiment.add_depth_device(origin);
   add_report(origin, report);

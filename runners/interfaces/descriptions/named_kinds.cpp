@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/dissertation/tool/shape/generated_tools.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/catalog/catalog.h"
@@ -46,6 +47,8 @@ std::vector<NamedKind> named_kinds() {
   for (const Method& method : chosen_methods({})) methods.push_back({method.name, method.title});
   auto& scenes = add("scenes");
   for (const BenchmarkScene& scene : chosen_scenes({})) scenes.push_back({scene.name, scene.title});
+  auto& tools = add("tools");
+  for (const GeneratedTool& tool : generated_tools()) tools.push_back({tool.name, tool.summary});
   auto& drawn = add("figures");
   for (const auto& entry : figures()) drawn.push_back({entry.name, entry.summary});
   auto& numbers = add("measures");

@@ -23,6 +23,7 @@
 #include "runners/interfaces/python/outputs.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
@@ -82,6 +83,7 @@ RunResult run(const std::string& subject, const std::optional<std::string>& text
   const Trace trace = simulate(experiment, options);
   require_unchanged(experiment.inputs(), inputs);
   experiment.add_depth_device(origin);
+  add_unknown_outcome(measures(), trace, report.notes);
   add_report(origin, report);
   RunResult result{trace.columns(), measures_of(trace), {}, {}};
   result.attributes = trace_attributes(

@@ -6,7 +6,6 @@
 
 #include "analysis/comparison/column_source.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/schema.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
@@ -44,14 +43,6 @@ py::dict as_dict(const char* kind, std::vector<Column> columns, const TextAttrib
   return all;
 }
 
-// Names of settings in a trace of an earlier schema become present ones, as those of a sweep do.
-TextAttributes with_present_configuration(TextAttributes attributes) {
-  if (!is_earlier_schema(attribute(attributes, "schema"))) return attributes;
-  for (auto& one : attributes)
-    if (one.first == "config") one.second = stored_configuration(one.second);
-  return attributes;
-}
-
 py::dict open_result(const std::string& file) {
   std::string kind;
   std::vector<Column> columns;
@@ -62,7 +53,7 @@ py::dict open_result(const std::string& file) {
     const FileTurn turn;
     const Hdf5Reader reader(file);
     kind = kind_of(reader);
-    attributes = with_present_configuration(reader.attributes());
+    attributes = present_attributes(reader.attributes());
     if (kind == "sweep") sweep = read_stored_sweep(reader);
     if (kind == "trace") columns = all_columns(StoredTrace(reader));
     if (kind == "figure") columns = all_columns(StoredFigure(reader));

@@ -21,7 +21,7 @@ std::string member_of(const std::vector<Table>& tables, const Table& table, cons
 
 std::string about(const ExportJob& job, const std::vector<Table>& tables) {
   Json attributes = Json::object(), members = Json::object();
-  for (const auto& [name, value] : job.result.attributes()) attributes[name] = value;
+  for (const auto& [name, value] : exported_attributes(job.result, tables)) attributes[name] = value;
   for (const Table& table : tables)
     for (const Column& column : table.columns)
       members[member_of(tables, table, column)] = {

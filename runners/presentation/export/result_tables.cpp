@@ -6,6 +6,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
@@ -111,6 +112,17 @@ std::vector<Table> result_tables(const Hdf5Reader& result) {
                                                 : tables_of_figure(result);
   for (const Table& table : tables) require_exportable(result, table);
   return tables;
+}
+
+TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<Table>& tables) {
+  TextAttributes all = present_attributes(result.attributes());
+  for (auto& [name, value] : all) {
+    if (name != "axes") continue;  // of a sweep: its first columns
+    std::vector<std::string> names = names_of(tables.front().columns);
+    names.resize(std::min(split_names(value).size(), names.size()));
+    value = joined(names, ",");
+  }
+  return all;
 }
 
 std::vector<std::string> component_names(const Column& column) {

@@ -9,6 +9,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/trace/trace.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::measures_test {
 namespace {
@@ -60,6 +61,16 @@ TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
 TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
   EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {kNoValue}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
   EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{kNoValue}}))));
+}
+
+// A change counts only in ticks with a force or a torque, now or in the tick before.
+TEST(Measures, TextsOfChangesNameTheTicksThatCount) {
+  for (const char* name : {"rms_force_jump", "force_noise", "jump_fraction_5", "jump_fraction_20"})
+    EXPECT_NE(measure_named(name).meaning.find("with a force"), std::string::npos) << name;
+  for (const char* name : {"rms_torque_jump", "torque_noise"})
+    EXPECT_NE(measure_named(name).meaning.find("with a torque"), std::string::npos) << name;
+  for (const char* name : {"mean_lateral_force", "lateral_force_95"})
+    EXPECT_NE(measure_named(name).meaning.find("pushes out"), std::string::npos) << name;
 }
 
 // Results are compared bit by bit, and the NaN of 0 / 0 has another sign on some machines.

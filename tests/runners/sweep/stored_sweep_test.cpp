@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/schema.h"
 #include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::stored_sweep_test {
@@ -86,6 +88,41 @@ TEST(StoredSweep, ASwitchThatIsNowAChoiceHasItsNames) {
   const StoredSweep stored = read_stored_sweep(folder / "old.h5");
   EXPECT_EQ(stored.result.axes.at(0).name, "truth");
   EXPECT_EQ(stored.result.axes.at(0).value_names, (std::vector<std::string>{"moving", "newest-frame"}));
+}
+
+// As `merge` does with shards of schema /2.
+TEST(StoredSweep, WhatIsWrittenOfItSaysThatItsNamesAreTranslated) {
+  const TestFolder folder("stored_sweep_test");
+  const std::string config = old_configuration(R"({"parameter": "seed", "values": [1, 2]})");
+  write_old(folder / "old.h5", two_runs({"seed", "1", "seed", std::vector<double>{1, 2}, 1, {}}), config);
+  EXPECT_EQ(attribute(read_sweep(folder / "old.h5").attributes, "translated_from"), "");
+  const StoredSweep stored = read_stored_sweep(folder / "old.h5");
+  EXPECT_EQ(stored.schema, schema_name("sweep"));
+  write_sweep(folder / "new.h5", stored.result, stored.attributes);
+  const StoredSweep again = read_stored_sweep(folder / "new.h5");
+  EXPECT_EQ(again.schema, schema_name("sweep"));
+  EXPECT_EQ(again.attributes, stored.attributes);
+  EXPECT_EQ(attribute(again.attributes, "translated_from"), "remote-touch-sweep/2");
+}
+
+TEST(StoredSweep, IsNotContinued) {
+  const TestFolder folder("stored_sweep_test");
+  const std::string config =
+      old_configuration(R"({"parameter": "renderer.contact_rule", "values": ["tangent_plane", "regions"]})");
+  write_old(folder / "old.h5",
+            two_runs({"contact_rule",
+                      "1",
+                      "renderer.contact_rule",
+                      std::vector<std::int32_t>{0, 1},
+                      1,
+                      {"tangent_plane", "regions"}}),
+            config);
+  const Sweep sweep =
+      Sweep::from_json(attribute(read_stored_sweep(folder / "old.h5").attributes, "config"), "new.json");
+  EXPECT_HAS(refusal([&] {
+               plan_in_file(sweep, {}, {{"config", sweep.to_json()}}, folder / "old.h5");
+             }),
+             "old.h5: was written with the earlier schema remote-touch-sweep/2: expected a new file");
 }
 
 TEST(StoredSweep, OtherAxesAreUnchanged) {

@@ -5,6 +5,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/comparison_text.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 #include "tests/support/test_files.h"
@@ -160,6 +161,14 @@ TEST_F(CompareMeasuresOfTraces, NeedAllColumns) {
   EXPECT_EQ(other.outcome, Outcome::changed);
   EXPECT_HAS(other.verdict, "no measures: a column is missing");
   EXPECT_TRUE(other.measures.empty());
+}
+
+TEST(ShortestText, HasTheFewestDigitsThatStateTheNumberExactly) {
+  EXPECT_EQ(shortest_text(0.033), "0.033");
+  EXPECT_EQ(shortest_text(0), "0");
+  EXPECT_EQ(shortest_text(-2), "-2");
+  EXPECT_EQ(shortest_text(1e-20), "1e-20");
+  EXPECT_EQ(shortest_text(0.1 + 0.2), "0.30000000000000004");  // the last bit counts
 }
 
 }  // namespace

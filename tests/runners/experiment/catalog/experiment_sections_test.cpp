@@ -90,7 +90,8 @@ TEST(ExperimentSections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
 // --- refused ---
 
 TEST(ExperimentSections, RefuseInvalidValues) {
-  EXPECT_HAS(why("sequence.0.deadline_s=soon"), "sequence.0.deadline_s = \"soon\": expected 0 to 86400");
+  EXPECT_HAS(why("sequence.0.deadline_s=soon"),
+             "sequence.0.deadline_s = \"soon\": expected a number from 0 to 86400");
   EXPECT_HAS(why("sequence.1.action=open"),
              "sequence.1.action = \"open\": expected lock, unlock, activate, release, wait");
   EXPECT_HAS(why("sequence.1.button=32"), "sequence.1.button = 32: expected integers 0 to 31");

@@ -175,7 +175,7 @@ TEST(Experiments, RefuseWithTheMessageOfTheManual) {
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"renderer.stiffness_N_per_m=-3"}); }),
             "renderer.stiffness_N_per_m = -3: expected 0 to 10000");
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"haptic_rate_hz=fast"}); }),
-            "haptic_rate_hz = \"fast\": expected 100 to 10000");
+            "haptic_rate_hz = \"fast\": expected a number from 100 to 10000");
 }
 
 TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
@@ -198,6 +198,25 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
   // A key without its section is named with it.
   EXPECT_HAS(nearest("spacing_m=0.001"), "spacing_m: unknown; did you mean scenario.spacing_m");
   EXPECT_HAS(nearest("r1_m=0.001"), "r1_m: unknown; did you mean renderer.r1_m");
+}
+
+TEST(Experiments, AnotherNameKeepsNoParameterThatOnlyTheFormerEntryHas) {
+  EXPECT_EQ(refusal([] { Experiment::load("fig4.12", {"scenario.name=flat-grid"}); }),
+            "scenario.acceleration_m_per_s2: flat-grid has no such parameter: expected --set "
+            "'scenario={\"name\": \"flat-grid\"}', which replaces the whole object");
+  EXPECT_EQ(refusal([] { Experiment::load("fig4.12", {"scenario={\"name\": \"flat-grid\"}"}); }),
+            "no InputError");
+  EXPECT_HAS(refusal([] { Experiment::load("fig4.12", {"scenario.name=moon"}); }),
+             "scenario.name = \"moon\"");
+  EXPECT_HAS(refusal([] {
+               Experiment::load("fig4.12", {"scenario.name=flat-grid", "scenario.x_m=1"});
+             }),
+             "flat-grid has no such parameter");
+}
+
+TEST(Experiments, ASweepIsRefusedByItsCommand) {
+  EXPECT_EQ(refusal([] { Experiment::from_json(R"({"experiment": "fig4.12", "axes": []})", "mine.json"); }),
+            "mine.json: is a sweep: expected `remote-touch sweep mine.json -o FILE`");
 }
 
 TEST(Experiments, RefuseTextThatIsNoExperiment) {

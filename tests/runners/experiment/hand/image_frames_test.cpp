@@ -33,7 +33,9 @@ PointCloud without_image(PointCloud cloud) {
 
 class Frames final : public Scenario {
  public:
-  explicit Frames(std::vector<PointCloud> frames) : frames_(std::move(frames)) {}
+  explicit Frames(std::vector<PointCloud> frames, std::string input = "")
+      : frames_(std::move(frames)), input_(std::move(input)) {}
+  std::string input() const override { return input_; }
   double frame_rate_hz() const override { return 10; }
   int frame_count() const override { return static_cast<int>(frames_.size()); }
   PointCloud cloud(int frame) const override { return frames_[static_cast<std::size_t>(frame)]; }
@@ -41,6 +43,7 @@ class Frames final : public Scenario {
 
  private:
   const std::vector<PointCloud> frames_;
+  const std::string input_;
 };
 
 constexpr double kInFirst_s = 0.05, kInSecond_s = 0.15;
@@ -109,13 +112,23 @@ TEST(ImageFrames, TheCameraMayMove) {
 // Rows and columns alone are no image: an organised cloud of a PCD file may be mirrored.
 TEST(ImageFrames, RefusesAFirstFrameThatNoCameraSees) {
   PointCloud organised = without_image(plane(0.5));
-  EXPECT_EQ(refusal([&] { first_image(Frames({organised}), "x"); }),
-            "x: the frames are not images: expected a scenario with a camera");
+  EXPECT_EQ(refusal([&] { first_image(Frames({organised}, "read a.pcd"), "x"); }),
+            "x: the frames are not images: expected a recording with a camera");
   organised.grid_columns = kCamera.width;
-  EXPECT_EQ(
-      refusal([&] { first_image(Frames({organised}), "x"); }),
-      "x: the frames have rows and columns but are not images, because no camera sees each point at its "
-      "pixel: expected clouds in the frame of the camera that are not mirrored");
+  EXPECT_EQ(refusal([&] { first_image(Frames({organised}, "read a.pcd"), "x"); }),
+            "x: the rows and columns of the recording are no image of a camera: expected clouds in the frame "
+            "of the camera that are not mirrored");
+}
+
+// A simulated scene with rows and columns, such as moving-lift, reads no file.
+TEST(ImageFrames, RefusesASceneWithoutACameraByThoseThatHaveOne) {
+  PointCloud grid = without_image(plane(0.5));
+  for (const int columns : {0, kCamera.width}) {
+    grid.grid_columns = columns;
+    EXPECT_EQ(refusal([&] { first_image(Frames({grid}), "x"); }),
+              "x: the scene has no camera: expected a scenario with one (recording, camera-scene, "
+              "beating-heart, valve-tank)");
+  }
 }
 
 TEST(ImageFrames, TheFirstFrameHasAPointForEachPixel) {

@@ -132,6 +132,18 @@ TEST(ImagePress, HasNoNoteIfTheNearestObjectIsPressed) {
   EXPECT_EQ(kinds(ImagePress({.row = 240, .column = 100}, box)), Kinds{});
 }
 
+// A table that rises from the lower edge of the image to the upper one, with a hollow 3 cm deep at its near
+// edge and a box at its far edge. The hollow is nearer to the camera than the box.
+TEST(ImagePress, AHollowOfTheTableIsNoObject) {
+  const auto table = [](double x, double y) {
+    const bool is_hollow = y > 0.3 && std::abs(x)<0.3, is_box = y> - 0.3 && y < -0.2 && std::abs(x) < 0.15;
+    return is_box ? 0.85 : 0.8 / (1 + 0.8 * y) + (is_hollow ? 0.03 : 0);
+  };
+  const Views scene({photographed(table, everywhere)});
+  EXPECT_NEAR(ImagePress({}, scene).at(5).position_W.z(), 0.86, 1e-9) << "the hand presses the box";
+  EXPECT_HAS(ImageScan({}, scene).aim(), "at depth 0.850 to 0.850 m");
+}
+
 // A ring before a wall: in the given row of its middle the ring is touched, in a row above it the wall.
 TEST(ImagePress, NotesThatTheObjectHasNoPixelInTheGivenRow) {
   const Surface ring = [](double x, double y) {

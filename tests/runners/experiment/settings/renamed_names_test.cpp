@@ -50,6 +50,16 @@ TEST(RenamedNames, ValuesAreThoseOfASetting) {
   EXPECT_EQ(new_value("exit_rule", "towards-hip", {"towards-hip"}), std::nullopt);
 }
 
+TEST(RenamedNames, AreNoHintForAnEntryThatNeverHadThem) {
+  EXPECT_EQ(new_name("view", {"view_direction"}, ""), std::nullopt) << "a section without entries";
+  EXPECT_EQ(new_name("view", {"view_direction"}, "surfels"), "view_direction");
+  EXPECT_EQ(new_name("true_motion", {"truth"}, "moving-lift"), std::nullopt);
+  EXPECT_EQ(new_name("true_motion", {"truth"}, "plates"), "truth");
+  EXPECT_EQ(new_name("largest_force_N", {"max_force_N"}, ""), "max_force_N") << "a name of version 0.1";
+  EXPECT_EQ(new_value("truth", "true", {"newest-frame", "moving"}, "moving-lift"), std::nullopt);
+  EXPECT_EQ(new_value("truth", "true", {"newest-frame", "moving"}, "plates"), "moving");
+}
+
 TEST(RenamedNames, StoredNamesAreThoseOfAnEntry) {
   EXPECT_EQ(stored_name("proxy", "contact_rule"), "contact_motion");
   EXPECT_EQ(stored_name("tracked-sheet", "contact_rule"), "contact_motion");
@@ -76,8 +86,8 @@ TEST(RenamedNames, AreTheHintOfAnOldValue) {
   enum class Rule { towards_hip, out_of_contact } rule = Rule::towards_hip;
   const Parameters parameters = {
       {"exit_rule", choice(rule, {"towards-hip", "out-of-contact"}), 0, 0, "the step in contact"}};
-  const auto why = [&](const char* value) {
-    return refusal([&] { read_parameters({{"exit_rule", value}}, parameters, "renderer"); });
+  const auto why = [&](const char* value, const char* entry = "proxy") {
+    return refusal([&] { read_parameters({{"exit_rule", value}}, parameters, "renderer", {}, entry); });
   };
   EXPECT_EQ(
       why("out_of_contact"),
@@ -85,6 +95,8 @@ TEST(RenamedNames, AreTheHintOfAnOldValue) {
       "out-of-contact");
   EXPECT_EQ(why("out_of_order"),
             "renderer.exit_rule = \"out_of_order\": expected towards-hip, out-of-contact");
+  EXPECT_EQ(why("out_of_contact", "another"),
+            "renderer.exit_rule = \"out_of_contact\": expected towards-hip, out-of-contact");
 }
 
 // The new name is the hint even if another name is nearer in spelling.
@@ -96,6 +108,10 @@ TEST(RenamedNames, AreTheHintOfAnOldKey) {
               read_parameters({{"largest_force_N", 1}}, parameters, "safety");
             }),
             "safety.largest_force_N: unknown; it is now safety.max_force_N");
+  EXPECT_EQ(refusal([&] {
+              read_parameters({{"largest_force_N", 1}}, parameters, "method mine: safety");
+            }),
+            "method mine: safety.largest_force_N: unknown; it is now safety.max_force_N");
   EXPECT_EQ(refusal([&] {
               read_parameters({{"longst_force_N", 1}}, parameters, "safety");
             }),

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "analysis/storage/schema.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "scenarios/text_files/json_text.h"
 #include "tests/support/test_files.h"
@@ -122,6 +123,20 @@ TEST(StoredConfiguration, NamesOfOtherEntriesAreReturnedAsTheyAre) {
     EXPECT_EQ(stored_configuration(text), text);
 }
 
+TEST(StoredConfiguration, AttributesOfAnEarlierSchemaSayThatTheyAreTranslated) {
+  const std::string old = R"({"renderer":{"contact_rule":"tangent_plane","name":"proxy"}})",
+                    now = R"({"renderer":{"contact_motion":"tangent-plane","name":"proxy"}})";
+  const TextAttributes present =
+      present_attributes({{"schema", "remote-touch-trace/2"}, {"config", old}, {"git_commit", "1234567"}});
+  EXPECT_EQ(attribute(present, "schema"), schema_name("trace"));
+  EXPECT_EQ(Json::parse(attribute(present, "config")), Json::parse(now));
+  EXPECT_EQ(attribute(present, "git_commit"), "1234567");
+  EXPECT_EQ(attribute(present, "translated_from"), "remote-touch-trace/2");
+  EXPECT_EQ(present_attributes(present), present) << "a second time changes nothing";
+  const TextAttributes another = {{"schema", schema_name("figure")}, {"config", old}};
+  EXPECT_EQ(present_attributes(another), another);
+}
+
 TEST(StoredConfiguration, OnlyStoredResultsMayHaveOldNames) {
   const std::string old =
       R"({"scenario": {"name": "moving-shape", "sheets": 2}, "renderer": {"name": "proxy",
@@ -141,6 +156,9 @@ TEST(StoredConfiguration, OnlyStoredResultsMayHaveOldNames) {
              "renderer.contact_rule: unknown; it is now renderer.contact_motion");
   EXPECT_HAS(why("renderer.contact_motion=tangent_plane"), "; tangent_plane is now tangent-plane");
   EXPECT_HAS(why("trajectory.name=random-walk"), "; random-walk is now random-motion");
+  EXPECT_HAS(why("faults.view=[0, 0, 1]"), "faults.view: unknown; did you mean ") << "never had that name";
+  EXPECT_HAS(why("scenario.true_motion=true"), "scenario.true_motion: unknown; did you mean ");
+  EXPECT_TRUE(why("scenario.truth=true").ends_with("expected newest-frame, moving"));
 }
 
 }  // namespace

@@ -143,6 +143,24 @@ TEST(ContactWatch, ReportsProxiesThatTheFirstTouchLoses) {
   }
 }
 
+// One frame shows the plane 5 mm below the proxy, and the next 5.013 mm higher. The limit is r_c f_c = 0.15.
+TEST(ContactWatch, VelocitiesThatDifferHaveDifferentTexts) {
+  const ReportedRun made = run_of(lift(0.1504, 0.000444), kRest, R"("duration_s": 0.5)");
+  EXPECT_HAS(text_of(made.report), "it moved at 0.1504 m/s towards the proxy");
+  EXPECT_HAS(text_of(made.report), "safe only up to 0.15 m/s over a point, and less between points");
+}
+
+// The slab is 10 mm thick.
+TEST(ContactWatch, ReportsAToolThatStartsInContact) {
+  const auto made = [](const std::string& height_m) {
+    return run_of(R"({"name": "moving-plane", "start_height_m": )" + height_m + R"(, "wait_s": 0.05})",
+                  R"({"name": "poses", "poses": [[0, 0, 0, 0, 0, 0, 0]]})", R"("duration_s": 0.1)",
+                  R"(tool", "tool_mesh": "slab-10)");
+  };
+  EXPECT_TRUE(made("-0.0048").has("starts in contact"));
+  EXPECT_FALSE(made("-0.02").has("starts in contact"));
+}
+
 // The acceleration is above r_1 f_c^2 = 4.5 m/s^2, (4.14). It loses the proxy long after the first touch.
 TEST(ContactWatch, ALaterLossIsNoneAtTheFirstTouch) {
   const ReportedRun made = run_of(lift(0.1, 0, R"("acceleration_m_per_s2": 20, "acceleration_s": 0.2, )"),

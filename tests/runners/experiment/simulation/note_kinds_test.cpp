@@ -15,7 +15,8 @@ TEST(NoteKinds, KeepTheirBits) {
       "points dropped,frames unused,frames apart,unusual rate,recording incomplete,"
       "colours missing,viewpoint unused,behind the surface,off the surface,holes bridged,"
       "edges bridged,object not scanned,camera changes,starts in contact,"
-      "lost at the first touch,object not pressed,hand jumped,nothing selected,outcome unknown";
+      "lost at the first touch,object not pressed,hand jumped,nothing selected,outcome unknown,"
+      "few frames";
   const std::vector<std::string> names = note_kind_names();
   std::string joined;
   for (const std::string& name : names) joined += (joined.empty() ? "" : ",") + name;

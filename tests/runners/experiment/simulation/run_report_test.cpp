@@ -48,6 +48,28 @@ TEST(RunReport, ReportsAPressAfterTheMotion) {
              "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s");
 }
 
+// The plane rises from the start on; the run shows it in two frames at 2 Hz and in one at 0.5 Hz.
+TEST(RunReport, ReportsAMotionThatFewFramesShow) {
+  const auto lift = [](const std::string& rate_hz, const std::string& more = "") {
+    return R"({"name": "moving-lift", "rows": 41, "columns": 41, "noise_sigma_m": 0, "frame_rate_hz": )" +
+           rate_hz + more + "}";
+  };
+  const char* const rest = R"({"name": "waypoints", "waypoints": [[0, 0, 0, 0]]})";
+  const auto noted = [&](const std::string& scene, const std::string& duration_s) {
+    return run_of(scene, rest, R"("duration_s": )" + duration_s).has("few frames");
+  };
+  EXPECT_TRUE(noted(lift("2"), "0.8"));
+  EXPECT_FALSE(noted(lift("5"), "0.8"));
+  EXPECT_FALSE(noted(lift("30"), "0.05")) << "the run is cut short";
+  EXPECT_FALSE(noted(lift("0.5", R"(, "start_velocity_m_per_s": 0, "acceleration_m_per_s2": 0)"), "0.8"))
+      << "the scene is at rest";
+  EXPECT_HAS(text_of(run_of(lift("0.5"), rest, R"("duration_s": 0.8)").report),
+             "note (few frames): 1 frame in the 0.8 s in which the scene moves: its motion");
+  const std::string jumps =
+      R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 1, "rise_height_m": 0.01})";
+  EXPECT_FALSE(noted(jumps, "0.8")) << "a brief motion";
+}
+
 TEST(RunReport, ReportsATrajectoryThatDoesNotEnd) {
   const std::string path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})";
   EXPECT_EQ(run_of(kPlane, path).kinds(), Kinds{});
