@@ -285,11 +285,11 @@ test("each page says who has the hand, and what is with the run and the connecti
 
   // The first statement gives way to the second after four seconds, which may be less than a picture takes: the page does
   // not look at the connection until the first has been seen. Beside a load it may have called the connection silent just
-  // before, and then it shows the first statement only after the next data.
+  // before, and then it shows the first statement only after the next data. The statement about a late camera may follow.
   await watching.evaluate(() => { window.remoteTouch.connection.look = () => {}; });
   await watching.waitForFunction(() => document.body.dataset.state === "open");
   signal("SIGSTOP"); // as when the machine sleeps
-  await says(watching, ".status", /^No tick has arrived for \d+ s: the picture is the last one\. $/);
+  await says(watching, ".status", /^No tick has arrived for \d+ s: the picture is the last one\. /);
   await watching.evaluate(() => { delete window.remoteTouch.connection.look; });
   await says(watching, ".status", /^No data has arrived for \d+ s: the program or the connection to it hangs\./);
   signal("SIGCONT");
