@@ -39,7 +39,7 @@ DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {
   return depth;
 }
 
-// The reason why the first frame of the scenario is no image, and what is expected.
+// Returns why the first frame of the scenario is no image, and what is expected.
 std::string no_image_text(const Scenario& scenario, const PointCloud& cloud) {
   if (scenario.input().empty())
     return "the scene has no camera: expected a scenario with one (recording, camera-scene, beating-heart, "

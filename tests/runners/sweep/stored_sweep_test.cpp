@@ -49,11 +49,11 @@ void write_old(const std::filesystem::path& file, const SweepResult& result, con
   hdf5.save(file);
 }
 
-TEST(StoredSweep, HasPresentNamesOfAxesAndValues) {
-  const TestFolder folder("stored_sweep_test");
+// Writes an old sweep over the contact rule of the proxy, and returns its configuration.
+std::string write_contact_rules(const std::filesystem::path& file) {
   const std::string config =
       old_configuration(R"({"parameter": "renderer.contact_rule", "values": ["tangent_plane", "regions"]})");
-  write_old(folder / "old.h5",
+  write_old(file,
             two_runs({"contact_rule",
                       "1",
                       "renderer.contact_rule",
@@ -61,6 +61,12 @@ TEST(StoredSweep, HasPresentNamesOfAxesAndValues) {
                       1,
                       {"tangent_plane", "regions"}}),
             config);
+  return config;
+}
+
+TEST(StoredSweep, HasPresentNamesOfAxesAndValues) {
+  const TestFolder folder("stored_sweep_test");
+  const std::string config = write_contact_rules(folder / "old.h5");
   EXPECT_EQ(read_sweep(folder / "old.h5").result.axes[0].name, "contact_rule");
   const StoredSweep stored = read_stored_sweep(folder / "old.h5");
   const Column& axis = stored.result.axes.at(0);
@@ -90,7 +96,7 @@ TEST(StoredSweep, ASwitchThatIsNowAChoiceHasItsNames) {
   EXPECT_EQ(stored.result.axes.at(0).value_names, (std::vector<std::string>{"moving", "newest-frame"}));
 }
 
-// As `merge` does with shards of schema /2.
+// `merge` writes shards of schema /2 in this way.
 TEST(StoredSweep, WhatIsWrittenOfItSaysThatItsNamesAreTranslated) {
   const TestFolder folder("stored_sweep_test");
   const std::string config = old_configuration(R"({"parameter": "seed", "values": [1, 2]})");
@@ -107,16 +113,7 @@ TEST(StoredSweep, WhatIsWrittenOfItSaysThatItsNamesAreTranslated) {
 
 TEST(StoredSweep, IsNotContinued) {
   const TestFolder folder("stored_sweep_test");
-  const std::string config =
-      old_configuration(R"({"parameter": "renderer.contact_rule", "values": ["tangent_plane", "regions"]})");
-  write_old(folder / "old.h5",
-            two_runs({"contact_rule",
-                      "1",
-                      "renderer.contact_rule",
-                      std::vector<std::int32_t>{0, 1},
-                      1,
-                      {"tangent_plane", "regions"}}),
-            config);
+  write_contact_rules(folder / "old.h5");
   const Sweep sweep =
       Sweep::from_json(attribute(read_stored_sweep(folder / "old.h5").attributes, "config"), "new.json");
   EXPECT_HAS(refusal([&] {

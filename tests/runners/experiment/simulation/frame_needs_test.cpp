@@ -149,7 +149,7 @@ TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
 TEST_F(FrameNeeds, AGivenViewIsEnough) {
   const Kind cloud = pcd(false, false);
   for (const char* name : {"surfels", "averaged-proxy"}) {
-    const Method told{name, R"(, "view_direction": [0, 0.1, 1])", "", "the view is told"};
+    const Method told{name, R"(, "view_direction": [0, 0.1, 1])", "", "the view is set"};
     expect_force_or_refusal(cloud, told);
   }
 }
