@@ -20,14 +20,6 @@ using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or in some if its contact model loses contact"};
-// Returns the smallest fraction of the ticks that must have a force. Three contact models push back in a few
-// ticks only. With `nothing` the HIP passes through the points, a moving mesh (`mesh`) leaves the HIP behind
-// it, and `oriented` ignores forbidden regions, so it meets only the points in their middle.
-double min_touch(ContactModel contact_model) {
-  const bool loses_contact = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
-                             contact_model == ContactModel::oriented;
-  return loses_contact ? 0.02 : 0.5;
-}
 
 // Makes the renderer under test, as often as it is needed.
 class Subject {
@@ -60,29 +52,22 @@ class Subject {
   // True if the scene determines the output of a renderer of tools; always true for other renderers.
   bool is_for(const MetamorphicScene& scene) const {
     if (!is_tool()) return true;
-    switch (entry_.contact_model) {
-      case ContactModel::regions:
-        return !scene.views.front().cloud.fixture_radius_m.empty();
-      case ContactModel::resting_points:
-        return scene.cloud_rests;
-      case ContactModel::sheet:
-        return !scene.has_crease;
-      default:
-        return true;
-    }
+    const ContactModel& model = entry_.contact_model;
+    if (model.feels_only_regions && scene.views.front().cloud.fixture_radius_m.empty()) return false;
+    if (model.needs_resting_cloud && !scene.cloud_rests) return false;
+    return !(model.rounds_creases && scene.has_crease);
   }
   DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
   bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
-  double min_touch_fraction() const { return min_touch(entry_.contact_model); }
+  // Returns the smallest fraction of the ticks that must have a force.
+  double min_touch_fraction() const { return entry_.contact_model.may_lose_contact ? 0.02 : 0.5; }
   Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
     const auto settings_of = factory();
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = max_length_m(parameters);
-    run.uses_camera = entry_.contact_model == ContactModel::oriented;
-    run.depends_on_axes = entry_.contact_model == ContactModel::sheet || run.uses_camera;
-    run.order_matters = entry_.contact_model == ContactModel::mesh;
-    run.can_be_mirrored = !is_tool() || (entry_.contact_model != ContactModel::regions && !names_a_tool());
+    run.contact_model = entry_.contact_model;
+    run.can_be_mirrored = !is_tool() || (!run.contact_model.feels_only_regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }

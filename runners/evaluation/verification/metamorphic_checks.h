@@ -27,12 +27,11 @@ struct CheckResult {
 };
 
 // Returns all results, scene by scene. The first result of each scene, "touch", checks that the renderer
-// exerts a force in most ticks, or in some ticks if its contact model can lose contact (nothing, mesh or
-// oriented). Without it the other checks would mean little. assignments: "r1_m=0.004"; a renderer of a tool
-// has kVerifiedTool unless they name another. Throws InputError for an assignment that the renderer refuses,
-// and for a parameter whose units cannot be changed (see dimension.h). stop: when set, ends between two
-// scenes with Interrupted. Without scenes: verification_scenes(), or tool_scenes() for a renderer of six
-// degrees of freedom.
+// exerts a force in most ticks, or in some ticks if its contact model may lose contact. Without it the other
+// checks would mean little. assignments: "r1_m=0.004"; a renderer of a tool has kVerifiedTool unless they
+// name another. Throws InputError for an assignment that the renderer refuses, and for a parameter whose
+// units cannot be changed (see dimension.h). stop: when set, ends between two scenes with Interrupted.
+// Without scenes: verification_scenes(), or tool_scenes() for a renderer of six degrees of freedom.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop = nullptr);

@@ -15,8 +15,9 @@ namespace {
 
 // True if the renderer needs the images of the clouds, which a search by grid removes.
 bool needs_its_images(const Variation& run) {
-  return run.uses_camera && std::any_of(run.scene.views.begin(), run.scene.views.end(),
-                                        [](const CloudView& view) { return view.cloud.image.has_value(); });
+  return run.contact_model.uses_camera &&
+         std::any_of(run.scene.views.begin(), run.scene.views.end(),
+                     [](const CloudView& view) { return view.cloud.image.has_value(); });
 }
 
 // False if a cloud has the column already.
@@ -97,7 +98,7 @@ bool use_other_grid(Variation& run) {
 }
 
 bool shuffle(Variation& run) {
-  if (run.order_matters || needs_its_images(run)) return false;
+  if (run.contact_model.order_matters || needs_its_images(run)) return false;
   replace_search(run, 0);
   reorder(run, [](int size) {
     std::vector<int> order(static_cast<std::size_t>(size));
@@ -110,7 +111,7 @@ bool shuffle(Variation& run) {
 }
 
 bool add_missing(Variation& run) {
-  if (run.order_matters || needs_its_images(run)) return false;
+  if (run.contact_model.order_matters || needs_its_images(run)) return false;
   replace_search(run, run.scene.cell_m);
   reorder(run, [](int size) {
     std::vector<int> order{-1};
@@ -154,13 +155,13 @@ bool add_stiffness_column(Variation& run) {
 // --- space, time and force ---
 
 bool mirror_axis(Variation& run, int axis) {
-  if (run.depends_on_axes || !run.can_be_mirrored) return false;
+  if (run.contact_model.depends_on_axes || !run.can_be_mirrored) return false;
   remote_touch::mirror(run, axis);
   return true;
 }
 
 bool move(Variation& run) {
-  if (run.depends_on_axes) return false;
+  if (run.contact_model.depends_on_axes) return false;
   RigidTransform motion = RigidTransform::Identity();
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);
@@ -216,7 +217,7 @@ bool send_late(Variation& run) {
 // A step to the side over bumps has a component along the normal, which (4.13) interprets as a motion of the
 // cloud.
 bool double_rate(Variation& run) {
-  if (run.depends_on_axes) return false;
+  if (run.contact_model.depends_on_axes) return false;
   if (!run.scene.cloud_rests || run.scene.hip_rests) return false;
   send_more_often(run, 0);
   run.until_velocity = true;
@@ -224,7 +225,7 @@ bool double_rate(Variation& run) {
 }
 
 bool double_rate_at_rest(Variation& run) {
-  if (run.depends_on_axes) return false;
+  if (run.contact_model.depends_on_axes) return false;
   if (!run.scene.cloud_rests || !run.scene.hip_rests) return false;
   send_more_often(run, 1);
   return true;

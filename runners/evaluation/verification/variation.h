@@ -8,6 +8,7 @@
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/verification/dimension.h"
 #include "runners/evaluation/verification/metamorphic_scene.h"
+#include "runners/experiment/catalog/factory.h"
 
 namespace remote_touch {
 
@@ -17,15 +18,11 @@ struct Variation {
   MetamorphicScene scene;
   std::vector<RenderOutput> expected;  // output of each tick
   const Kernels* kernels = nullptr;
-  UnitChange units = {};        // change of the renderer's parameters
-  bool until_velocity = false;  // compare only until either run has estimated a surface velocity
-  double reach_m = 0;           // the renderer's largest length
-  // The renderer fits a sheet (ContactModel::sheet or oriented). Its result depends on the world's axes,
-  // along which its cells lie, and on the number of frames, from which it estimates the noise.
-  bool depends_on_axes = false;
-  bool uses_camera = false;                      // the renderer also uses the camera of an image layout
-  bool order_matters = false;                    // the renderer depends on the points' rows and columns
-  bool can_be_mirrored = true;                   // false: a tool of unknown shape, or of regions
+  UnitChange units = {};            // change of the renderer's parameters
+  bool until_velocity = false;      // compare only until either run has estimated a surface velocity
+  double reach_m = 0;               // the renderer's largest length
+  ContactModel contact_model = {};  // the renderer's
+  bool can_be_mirrored = true;      // false: a tool of unknown shape, or of regions
   std::optional<double> stiffness_N_per_m = {};  // parameter of the renderer, if it has one of that name
   std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run
 };

@@ -98,22 +98,39 @@ struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
 // Degrees of freedom that a renderer uses: six if its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };
 
-// The parts of a frame that constrain the proxy or tool of a renderer.
-// - points: all points of a cloud.
-// - regions: only the regions of points with r_f above 0.
-// - mesh: the triangles between neighbours in an organised frame, so the order of the points matters.
-// - sheet: a sheet fitted to points in cells along the world's axes. A rotated scene, or one that is sent
-//   more often, gives similar outputs but not the same bits.
-// - nothing: points only push, and a HIP that is pressed deeper passes them.
-// - oriented: all points, and the direction to the sensor matters. The image layout of a frame gives this
-//   direction; without one a setting in the world's axes does. Forbidden regions are ignored.
-// - resting_points: all points, but points that a new frame puts into the tool stay in it. Rounding therefore
-//   decides when a moving surface passes through the tool.
-enum class ContactModel { points, regions, mesh, sheet, nothing, oriented, resting_points };
+// What the contract tests and `verify` may ask of a renderer. Runs do not depend on it. All values are false
+// for a proxy that is held by all points of a cloud and by the forbidden regions around them: every check
+// applies to it. Each value that is true changes or omits checks.
+struct ContactModel {
+  bool feels_only_regions = false;     // the checks give it points with r_f above 0, and mirror no tool
+  bool lets_a_deep_hand_pass = false;  // points only push: the contract tests press less deep
+  bool may_lose_contact = false;       // `touch` asks for a force in 2 % of the ticks, not in half of them
+  bool order_matters = false;          // the points keep their rows and columns
+  bool uses_camera = false;            // clouds keep their images, which give the direction to the sensor
+  bool depends_on_axes = false;        // the scene is not moved, mirrored or sent more often
+  bool rounds_creases = false;         // a tool gets no scene in which walls meet
+  bool needs_resting_cloud = false;    // a tool gets no cloud that moves
+
+  // The models that have a name, by what holds the proxy. remote_touch_plugin.h gives the reasons.
+  static const ContactModel points, regions, mesh, sheet, nothing, oriented, resting_points;
+};
+inline constexpr ContactModel ContactModel::points{};
+inline constexpr ContactModel ContactModel::regions{.feels_only_regions = true};
+inline constexpr ContactModel ContactModel::mesh{.may_lose_contact = true, .order_matters = true};
+inline constexpr ContactModel ContactModel::sheet{.depends_on_axes = true, .rounds_creases = true};
+inline constexpr ContactModel ContactModel::nothing{.lets_a_deep_hand_pass = true, .may_lose_contact = true};
+inline constexpr ContactModel ContactModel::oriented{
+    .may_lose_contact = true, .uses_camera = true, .depends_on_axes = true};
+inline constexpr ContactModel ContactModel::resting_points{.needs_resting_cloud = true};
+
+// The models by their numbers in plug-ins. Python has their names in the same order.
+inline constexpr ContactModel kContactModels[] = {
+    ContactModel::points,  ContactModel::regions,  ContactModel::mesh,          ContactModel::sheet,
+    ContactModel::nothing, ContactModel::oriented, ContactModel::resting_points};
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;
-  ContactModel contact_model = ContactModel::points;
+  ContactModel contact_model = {};
   std::vector<FrameNeed> needs = {};  // runs whose frames lack them are refused
 };
 

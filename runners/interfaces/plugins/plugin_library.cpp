@@ -89,7 +89,7 @@ std::vector<RendererEntry> load_plugin(const std::string& file) {
     entry.make = [functions] { return plugin_factory(*functions); };
     entry.degrees_of_freedom =
         functions->degrees_of_freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three;
-    entry.contact_model = static_cast<ContactModel>(functions->contact_model);
+    entry.contact_model = kContactModels[functions->contact_model];
     entries.push_back(std::move(entry));
   }
   if (entries.size() == kMaxRenderers &&

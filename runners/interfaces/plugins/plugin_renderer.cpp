@@ -12,9 +12,12 @@ namespace remote_touch {
 
 namespace {
 
-static_assert(REMOTE_TOUCH_SHEET == static_cast<int>(ContactModel::sheet) &&
-              REMOTE_TOUCH_ORIENTED == static_cast<int>(ContactModel::oriented) &&
-              REMOTE_TOUCH_RESTING_POINTS == static_cast<int>(ContactModel::resting_points) &&
+static_assert(kContactModels[REMOTE_TOUCH_REGIONS].feels_only_regions &&
+              kContactModels[REMOTE_TOUCH_MESH].order_matters &&
+              kContactModels[REMOTE_TOUCH_NOTHING].lets_a_deep_hand_pass &&
+              kContactModels[REMOTE_TOUCH_SHEET].rounds_creases &&
+              kContactModels[REMOTE_TOUCH_ORIENTED].uses_camera &&
+              kContactModels[REMOTE_TOUCH_RESTING_POINTS].needs_resting_cloud &&
               REMOTE_TOUCH_ENTRENCHED == static_cast<int>(ContactState::entrenched) &&
               REMOTE_TOUCH_DEVICE_NOT_FINITE == static_cast<int>(RenderStatus::device_not_finite));
 

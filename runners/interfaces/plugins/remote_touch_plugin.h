@@ -83,15 +83,30 @@ typedef struct {
   double tool_penetration_m;
 } remote_touch_output;
 
-/* The things that constrain the proxy. Tests and comparisons depend on this choice. */
+/* What holds the proxy. Runs do not depend on it. It says what `verify` and the contract tests may ask of the
+ * renderer; if touch is relaxed, a force in 2 % of the ticks is enough, not in half of them. */
 enum {
-  REMOTE_TOUCH_POINTS = 0,        /* all points of a cloud */
-  REMOTE_TOUCH_REGIONS = 1,       /* only forbidden regions around points */
-  REMOTE_TOUCH_MESH = 2,          /* triangles between neighbours in an organised frame */
-  REMOTE_TOUCH_SHEET = 3,         /* a surface fitted along the world's axes */
-  REMOTE_TOUCH_NOTHING = 4,       /* points only push: a HIP that is pressed deeper passes them */
-  REMOTE_TOUCH_ORIENTED = 5,      /* points, and the direction to the sensor */
-  REMOTE_TOUCH_RESTING_POINTS = 6 /* points; but those that a new frame puts into the tool stay there */
+  /* All points of a cloud, and the forbidden regions around them. All checks apply. */
+  REMOTE_TOUCH_POINTS = 0,
+  /* Only the regions of points with a radius above 0. The contract tests give all points a region. A tool
+   * gets only scenes with regions, which are not mirrored. */
+  REMOTE_TOUCH_REGIONS = 1,
+  /* Triangles between neighbours in an organised frame. The points keep their order. Touch is relaxed,
+   * because a moving mesh leaves the HIP behind it. */
+  REMOTE_TOUCH_MESH = 2,
+  /* A surface fitted in cells along the world's axes. The scene is not moved, mirrored or sent more often,
+   * because the outputs are then only similar. A tool gets no scene in which walls meet. */
+  REMOTE_TOUCH_SHEET = 3,
+  /* Nothing: points only push, and a HIP that is pressed deeper passes them. The contract tests press less
+   * deep. Touch is relaxed. */
+  REMOTE_TOUCH_NOTHING = 4,
+  /* All points, and the direction to the sensor: from the image of a frame, which it keeps, or else from a
+   * setting in the world's axes. The scene is not moved, mirrored or sent more often. Touch is relaxed,
+   * because forbidden regions are ignored: only the points in their middle are met. */
+  REMOTE_TOUCH_ORIENTED = 5,
+  /* All points, but those that a new frame puts into the tool stay in it. A tool gets only clouds that rest,
+   * because rounding decides when a moving surface passes through it. */
+  REMOTE_TOUCH_RESTING_POINTS = 6
 };
 
 /* One renderer. `values`: the values of its settings, in the order of `settings`. */

@@ -59,9 +59,9 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
   const int freedom = type.attr("degrees_of_freedom").cast<int>();
   if (freedom != 3 && freedom != 6) throw InputError(entry.name + ": degrees_of_freedom", "expected 3 or 6");
   const auto model =
-      choice_of<ContactModel>(type.attr("contact_model").cast<std::string>(),
-                              {"points", "regions", "mesh", "sheet", "nothing", "oriented", "resting_points"},
-                              entry.name + ": contact_model");
+      choice_of<int>(type.attr("contact_model").cast<std::string>(),
+                     {"points", "regions", "mesh", "sheet", "nothing", "oriented", "resting_points"},
+                     entry.name + ": contact_model");
   std::vector<FrameNeed> needs;
   for (const py::handle need : type.attr("needs"))
     needs.push_back(choice_of<FrameNeed>(
@@ -69,7 +69,7 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
   replace_or_add(
       all.renderers,
       renderer_entry_of(std::move(entry), freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three,
-                        model, std::move(needs)));
+                        kContactModels[model], std::move(needs)));
 }
 
 // A class replaces an earlier one of the same name, because a cell of a notebook may be run again.

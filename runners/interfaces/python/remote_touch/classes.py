@@ -36,7 +36,7 @@ class Renderer(_Base):
     """
 
     degrees_of_freedom = 3  # or 6: outputs have torque_Nm and tool_orientation
-    # contact_model: or regions, mesh, sheet, nothing, oriented, resting_points, see runners/experiment/catalog/factory.h
+    # or regions, mesh, sheet, nothing, oriented, resting_points, see runners/interfaces/plugins/remote_touch_plugin.h
     contact_model = "points"
     needs = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
     haptic_rate_hz = 1000.0  # set before __init__ too
