@@ -11,6 +11,7 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/simulation/note_kinds.h"
@@ -278,7 +279,12 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
 }
 
 Sweep Sweep::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
-  return from_json(embedded_or_file(embedded_sweeps(), name_or_file, "a sweep's"), name_or_file, overrides);
+  const std::string text = embedded_or_file(embedded_sweeps(), name_or_file, "a sweep's");
+  const auto read = [&](const std::vector<std::string>& settings) {
+    return from_json(text, name_or_file, settings);
+  };
+  return is_stored(embedded_sweeps(), name_or_file) ? read(overrides)
+                                                    : read_text_of(name_or_file, overrides, read);
 }
 
 const std::string& Sweep::title() const {

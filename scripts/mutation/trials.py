@@ -3,14 +3,14 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
 import time
 
 STAGES = ("unit", "program", "bits")  # in this order; "bits": the stored results
-SLOW_FIGURES = {"4.13", "4.13-replicated", "4.13-tracked", "bounds", "proxy-rates", "5.8", "5.8-recorded", "7.4", "7.5",
-                "7.5-guidance", "7.5-recorded", "latency", "tool-lifts", "tool-shapes", "tool-tracked"}  # more than 5 s each; not tried
+MAX_FIGURE_S = 8  # slower figures are not tried
 # A mistake may ask for all memory or write without end.
 LIMITS = ("prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
 
@@ -60,10 +60,15 @@ def listed(program, section):
         yield line.split()[0]
 
 
+def seconds_of(program, figure):
+    text = subprocess.run([program, "describe", figure], capture_output=True, text=True, check=True).stdout
+    return float(re.search(r"^  about (\S+) s on one core", text, re.MULTILINE)[1])
+
+
 def program_tests(root, build):
     """Figures with their claims, the metamorphic checks, the command line where it judges results; the stored results."""
     program = str(build / "remote-touch")
-    for name in [name for name in listed(program, "figures") if name not in SLOW_FIGURES]:
+    for name in [name for name in listed(program, "figures") if seconds_of(program, name) <= MAX_FIGURE_S]:
         yield Test(f"figure {name}", [program, "-q", "figure", name, "-o", "figures"], "program")
     yield Test("reference", [str(root / "scripts/reference"), "--check", program], "program")
     for renderer in ("proxy", "tracked-sheet"):

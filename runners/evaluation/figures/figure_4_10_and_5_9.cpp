@@ -98,7 +98,7 @@ constexpr double kShell_5_9_m[] = {0.00499, 0.00501};  // r_1 and r_2 of Table 4
 
 }  // namespace
 
-Figure figure_4_10(const FigureContext& context) {
+Figure figure_4_10(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.11");
   const Trace trace = context.run(experiment);
   const auto tick = static_cast<std::size_t>(kInstant_4_10_s * experiment.settings().haptic_rate_hz);
@@ -129,7 +129,7 @@ Figure figure_4_10(const FigureContext& context) {
   return figure;
 }
 
-Figure figure_5_9(const FigureContext& context) {
+Figure figure_5_9(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig5.8", {"duration_s=12.001"});
   const Trace trace = context.run(experiment);
   const std::size_t tick = trace.length() - 1;

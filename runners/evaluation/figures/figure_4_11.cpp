@@ -54,7 +54,7 @@ double steps_to_contact(const Trace& single) {
 
 }  // namespace
 
-Figure figure_4_11(const FigureContext& context) {
+Figure figure_4_11(FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig4.11"));
   // A budget of one step per tick shows, in the tick of the jump, where the first step leads.
   const Trace single = context.run(Experiment::load("fig4.11", {"renderer.steps_per_tick=1"}));

@@ -24,7 +24,7 @@ Table heights_per_update(const Trace& trace) {
 }
 
 // Returns the share of lifts that did not pop through, over seeds 1 .. count.
-double survival(const FigureContext& context, int count, const std::vector<std::string>& overrides) {
+double survival(FigureContext& context, int count, const std::vector<std::string>& overrides) {
   std::vector<Experiment> lifts;
   for (int seed = 1; seed <= count; ++seed) {
     std::vector<std::string> settings = overrides;
@@ -36,7 +36,7 @@ double survival(const FigureContext& context, int count, const std::vector<std::
 
 // Returns the share of lifts without noise that did not pop through, over 16 positions of the grid under the
 // proxy.
-double survival_over_phases(const FigureContext& context, double acceleration,
+double survival_over_phases(FigureContext& context, double acceleration,
                             const std::vector<std::string>& overrides = {}) {
   std::vector<Experiment> lifts;
   for (const char* x : {"0", "0.25", "0.5", "0.75"})
@@ -53,7 +53,7 @@ double survival_over_phases(const FigureContext& context, double acceleration,
 
 }  // namespace
 
-Figure figure_4_12(const FigureContext& context) {
+Figure figure_4_12(FigureContext& context) {
   constexpr int kSeeds = 300;
   const Trace trace = context.run(Experiment::load("fig4.12"));
   Figure figure{

@@ -90,7 +90,7 @@ Panel probability_panel(const std::string& title, const std::string& map, const 
 
 }  // namespace
 
-Figure figure_4_13(const FigureContext& context) {
+Figure figure_4_13(FigureContext& context) {
   const Table map = map_table("map", context.sweep(context.map("fig4.13")));
   const Table without = map_table(
       "map_without_estimate", context.sweep(context.map("fig4.13", {"renderer.velocity_estimate=false"})));
@@ -117,7 +117,7 @@ Figure figure_4_13(const FigureContext& context) {
   return figure;
 }
 
-Figure figure_4_13_replicated(const FigureContext& context) {
+Figure figure_4_13_replicated(FigureContext& context) {
   const SweepResult result = context.sweep(context.map("fig4.13-replicated"));
   const std::size_t columns = result.axes.at(1).length();
   const Table map = map_table("map", result);

@@ -83,7 +83,7 @@ Slide slide_of(const Trace& trace) {
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
 
 // Returns the mean over the reported seeds at each noise strength.
-std::vector<Slide> slides(const FigureContext& context, const std::string& renderer) {
+std::vector<Slide> slides(FigureContext& context, const std::string& renderer) {
   std::vector<Experiment> runs;
   for (const double sigma : kSlideNoise)
     for (const int number : kReportedSeeds)
@@ -158,7 +158,7 @@ void add_lateral_claims(const Claims& claims, const std::vector<Slide>& ours,
 
 // --- runs without noise, and runs with two sheets ---
 
-double ticks_that_differ(const FigureContext& context, const char* experiment) {
+double ticks_that_differ(FigureContext& context, const char* experiment) {
   const Trace paper = context.run(Experiment::load(experiment, {kPaper})),
               ours = context.run(Experiment::load(experiment, {kTracked}));
   double count = 0;
@@ -170,7 +170,7 @@ double ticks_that_differ(const FigureContext& context, const char* experiment) {
   return count;
 }
 
-double success_on_two_sheets(const FigureContext& context, double sigma) {
+double success_on_two_sheets(FigureContext& context, double sigma) {
   constexpr int kRuns = 40;
   std::vector<Experiment> runs;
   for (int i = 0; i < kRuns; ++i)
@@ -179,8 +179,8 @@ double success_on_two_sheets(const FigureContext& context, double sigma) {
   return survived_share(context, runs);
 }
 
-void add_claims(Figure& figure, const FigureContext& context, const Lifts& lifts,
-                const std::vector<Slide>& ours, const std::vector<Slide>& paper) {
+void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, const std::vector<Slide>& ours,
+                const std::vector<Slide>& paper) {
   const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
   const std::string three = ", least of 3 seeds";
   constexpr double kAll = 1e9;
@@ -214,7 +214,7 @@ Panel slide_panel(const char* title, const char* y_label, const char* column) {
 
 }  // namespace
 
-Figure figure_4_13_tracked(const FigureContext& context) {
+Figure figure_4_13_tracked(FigureContext& context) {
   Lifts lifts;
   Table map;
   for (const int number : kReportedSeeds) {

@@ -106,7 +106,7 @@ std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace,
 
 }  // namespace
 
-Figure figure_4_14(const FigureContext& context) {
+Figure figure_4_14(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.14");
   const auto scenario = experiment.build_scenario(kernels_for(Isa::x86_64));
   const Trace trace = context.run(experiment);

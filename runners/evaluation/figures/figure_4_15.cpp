@@ -52,7 +52,7 @@ double error_in_sigmas(const Scenario& scenario, const PointCloud& cloud) {
 
 }  // namespace
 
-Figure figure_4_15(const FigureContext& context) {
+Figure figure_4_15(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.16");
   context.uses(experiment);
   const auto scenario = experiment.build_scenario(context.kernels());

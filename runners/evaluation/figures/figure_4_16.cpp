@@ -85,7 +85,7 @@ void add_panels(Figure& figure, const std::string& title, const std::string& tab
 
 }  // namespace
 
-Figure figure_4_16(const FigureContext& context) {
+Figure figure_4_16(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.16");
   const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
@@ -109,7 +109,7 @@ Figure figure_4_16(const FigureContext& context) {
 namespace {
 
 // The HIP scans over a cloud at rest.
-void add_scan(Figure& figure, const FigureContext& context, const char* name, const std::string& table,
+void add_scan(Figure& figure, FigureContext& context, const char* name, const std::string& table,
               const std::string& title) {
   const Experiment experiment = Experiment::load(name);
   const Trace trace = context.run(experiment);
@@ -137,7 +137,7 @@ void place_in_column(Figure& figure, std::size_t first, int column) {
 }
 
 // The HIP presses at one pixel while the camera moves.
-void add_moving(Figure& figure, const FigureContext& context) {
+void add_moving(Figure& figure, FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig4.16-moving"));
   figure.tables.push_back(path_table("moving", trace, 0, 2));
   const auto add = [&](const char* title, const char* y_label, const std::vector<Curve>& curves) {
@@ -154,7 +154,7 @@ void add_moving(Figure& figure, const FigureContext& context) {
 
 }  // namespace
 
-Figure figure_4_16_recorded(const FigureContext& context) {
+Figure figure_4_16_recorded(FigureContext& context) {
   Figure figure{"4.16-recorded", "Recorded depth images and clouds",
                 "The experiment of Fig 4.16 on recordings; x to the right, z away from the camera. "
                 "Scans: the HIP follows an image row, 1 cm behind the surface of the first frame, and "

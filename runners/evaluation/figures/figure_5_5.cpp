@@ -53,7 +53,7 @@ double max_force_error(const Trace& trace) {
 
 }  // namespace
 
-Figure figure_5_5(const FigureContext& context) {
+Figure figure_5_5(FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig5.5"));
   Figure figure{"5.5", "Single point virtual fixture",
                 "One point at the origin with r_f = 0.1 m. The HIP passes through its region, leaves it and "

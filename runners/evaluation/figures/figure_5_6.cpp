@@ -132,7 +132,7 @@ void claim_second(const Claims& claims, const std::string& claim, double measure
 
 }  // namespace
 
-Figure figure_5_6(const FigureContext& context) {
+Figure figure_5_6(FigureContext& context) {
   const Crossing at_zero = crossing(context.run(Experiment::load("fig5.6")));
   const Crossing below = crossing(context.run(Experiment::load("fig5.6-below")));
   const Crossing stiffness = crossing(context.run(Experiment::load("fixture-stiffness")));

@@ -219,7 +219,7 @@ void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, doub
 
 }  // namespace
 
-Figure figure_5_8(const FigureContext& context) {
+Figure figure_5_8(FigureContext& context) {
   std::vector<Experiment> experiments;
   experiments.push_back(Experiment::load("fig5.8"));
   experiments.push_back(Experiment::load("fig5.8", kNoise));

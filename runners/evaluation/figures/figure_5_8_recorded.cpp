@@ -181,7 +181,7 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
 
 // Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it
 // moves with the tracked sheet as renderer.
-std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
+std::vector<RecordedRun> recorded_runs(FigureContext& context) {
   std::vector<Experiment> experiments;  // the longest first, because they run in parallel
   experiments.push_back(Experiment::load("fig5.8-moving"));
   experiments.push_back(Experiment::load("fig5.8-moving", {"fixtures.0.schedule=[]"}));
@@ -203,7 +203,7 @@ std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
 
 }  // namespace
 
-Figure figure_5_8_recorded(const FigureContext& context) {
+Figure figure_5_8_recorded(FigureContext& context) {
   const std::vector<RecordedRun> runs = recorded_runs(context);
   Figure figure{
       "5.8-recorded", "A fixture that grows on a recorded organ model",

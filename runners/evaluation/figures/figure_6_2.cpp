@@ -206,7 +206,7 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
 
 }  // namespace
 
-Figure figure_6_2(const FigureContext& context) {
+Figure figure_6_2(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig6.2");
   context.uses(experiment);
   const Kernels& kernels = context.kernels();

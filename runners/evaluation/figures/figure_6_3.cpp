@@ -125,7 +125,7 @@ Table summary_table(const std::vector<BoxRun>& runs) {
   return table;
 }
 
-std::vector<BoxRun> box_runs(const FigureContext& context) {
+std::vector<BoxRun> box_runs(FigureContext& context) {
   std::vector<BoxRun> runs;
   std::vector<Experiment> experiments;
   const auto add = [&](const std::string& name, const std::string& tool, const std::string& rule, int mm) {
@@ -223,7 +223,7 @@ void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
 
 // Claims for a bar of 80 x 10 mm that turns between two walls 40 mm apart. Its corner is at a wall where 40
 // sin(a) + 5 cos(a) = 20.
-void add_slot_claim(Figure& figure, const FigureContext& context) {
+void add_slot_claim(Figure& figure, FigureContext& context) {
   const double stops_deg =
       (std::asin(20 / std::hypot(40.0, 5.0)) - std::atan2(5.0, 40.0)) / kRadiansPerDegree;
   std::vector<Experiment> experiments;
@@ -241,7 +241,7 @@ void add_slot_claim(Figure& figure, const FigureContext& context) {
 
 // Claims for the fifth side, 6.3.1: the device moves 20 mm deeper than the floor allows the tool. The floor's
 // top is at -20 mm, and half of the husky, or the block, is 10 mm high.
-void add_floor_claims(Figure& figure, const FigureContext& context) {
+void add_floor_claims(Figure& figure, FigureContext& context) {
   constexpr double kDevice_m = -0.03, kTool_m = -0.01, kSubStep_m = 0.5 * kBoxVoxel_m;
   std::vector<Experiment> experiments;
   for (const auto& [name, rule] : kRules)
@@ -296,7 +296,7 @@ void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& ru
 
 }  // namespace
 
-Figure figure_6_3(const FigureContext& context) {
+Figure figure_6_3(FigureContext& context) {
   const std::vector<BoxRun> runs = box_runs(context);
   Figure figure{
       "6.3", "A tool in a narrow box of points",

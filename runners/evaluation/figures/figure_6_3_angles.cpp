@@ -111,7 +111,7 @@ void add_claims(Figure& figure, const std::vector<Turning>& runs) {
 
 }  // namespace
 
-Figure figure_6_3_angles(const FigureContext& context) {
+Figure figure_6_3_angles(FigureContext& context) {
   const std::vector<Turning> runs = turnings(context.sweep(Sweep::load("fig6.3-angles")));
   Figure figure{
       "6.3-angles", "A tool turned in a box, over angle, spacing and rule",

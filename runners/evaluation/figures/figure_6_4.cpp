@@ -188,7 +188,7 @@ Table summary_table(const std::vector<TouchRun>& runs) {
        {"largest force jump at a frame", "N", [](R r) { return max_force_jump_N(r.trace); }}});
 }
 
-std::vector<TouchRun> touch_runs(const FigureContext& context) {
+std::vector<TouchRun> touch_runs(FigureContext& context) {
   std::vector<Experiment> experiments;
   std::vector<std::pair<const DrawnMoment*, std::string>> of;
   for (const DrawnMoment& shown : kDrawnMoments)
@@ -205,7 +205,7 @@ std::vector<TouchRun> touch_runs(const FigureContext& context) {
 
 }  // namespace
 
-Figure figure_6_4(const FigureContext& context) {
+Figure figure_6_4(FigureContext& context) {
   const std::vector<TouchRun> runs = touch_runs(context);
   Figure figure{
       "6.4", "Tools of meshes in recorded point clouds",

@@ -172,7 +172,7 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
 
 }  // namespace
 
-Figure figure_7_1_recorded(const FigureContext& context) {
+Figure figure_7_1_recorded(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig7.1-recorded");
   context.uses(experiment);
   const auto scenario = experiment.build_scenario(context.kernels());

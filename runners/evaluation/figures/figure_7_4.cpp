@@ -142,7 +142,7 @@ Table summary_table(const std::vector<ValveTask>& tasks) {
 
 }  // namespace
 
-Figure figure_7_4(const FigureContext& context) {
+Figure figure_7_4(FigureContext& context) {
   const std::vector<ValveTask> tasks = run_tasks(
       context, {{"task", "first task", "fig7.4"},
                 {"slip", "pushed deep beside the middle", "fig7.4", {kOffCentre, "duration_s=3.5"}}});

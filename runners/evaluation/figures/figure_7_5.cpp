@@ -101,7 +101,7 @@ Table target_table(const ValveTask& task) {
 
 }  // namespace
 
-Figure figure_7_5(const FigureContext& context) {
+Figure figure_7_5(FigureContext& context) {
   const std::vector<ValveTask> tasks = run_tasks(
       context,
       {{"five", "Five motors", "fig7.5"}, {"six", "Six motors", "fig7.5", {"device.torque_x=true"}}});

@@ -49,7 +49,7 @@ Panel guided_panel(const std::string& title, const std::string& column, const st
 
 }  // namespace
 
-Figure figure_7_5_guidance(const FigureContext& context) {
+Figure figure_7_5_guidance(FigureContext& context) {
   const std::vector<GuidedEnds> list = guided_ends(context.sweep(Sweep::load("fig7.5-guidance")));
   const GuidedEnds &six = list[0], &five = list[1];
   Figure figure{

@@ -114,7 +114,7 @@ void add_pictures(Figure& figure, const Kernels& kernels, const ValveTask& task)
 
 }  // namespace
 
-Figure figure_7_5_recorded(const FigureContext& context) {
+Figure figure_7_5_recorded(FigureContext& context) {
   const std::vector<ValveTask> tasks = run_tasks(context, {{"desk", "recorded desk", "fig7.5-recorded"}});
   const ValveTask& task = tasks[0];
   Figure figure{

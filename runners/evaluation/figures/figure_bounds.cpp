@@ -147,7 +147,7 @@ void add_claims(Figure& figure, const Phases& phases, const Table& thickness, co
 
 }  // namespace
 
-Figure figure_bounds(const FigureContext& context) {
+Figure figure_bounds(FigureContext& context) {
   constexpr int kSeed = 2;  // the bound with scatter was derived while a map of another seed was viewed
   const Phases phases = critical_over_phases(context);
   const MeasuredNoise noise = measured_noise(context);

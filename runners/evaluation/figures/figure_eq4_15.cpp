@@ -54,7 +54,7 @@ Table force_table(const std::string& name, const Trace& trace) {
 
 }  // namespace
 
-Figure figure_eq4_15(const FigureContext& context) {
+Figure figure_eq4_15(FigureContext& context) {
   Figure figure{"eq4.15", "Force between updates",
                 "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "
                 "is constant. The velocity term of (4.15) as printed (plus), left out (none), and with "

@@ -55,7 +55,7 @@ struct Losses {
   }
 };
 
-Losses measured(const FigureContext& context, Losses losses, const std::vector<std::string>& overrides) {
+Losses measured(FigureContext& context, Losses losses, const std::vector<std::string>& overrides) {
   const SweepResult result = context.sweep(Sweep::load("first-touch", overrides));
   losses.speed_m_per_s = axis_values(result, 0);
   const std::vector<double>& popped = result.measure("popped_through");
@@ -73,7 +73,7 @@ Losses measured(const FigureContext& context, Losses losses, const std::vector<s
 // The stored sweep is at 30 frames per second. At another rate the speeds are scaled so that the surface
 // moves the same distances from frame to frame, and the start times are again uniform over one interval
 // between frames.
-Losses at_rest(const FigureContext& context, double frame_rate_hz) {
+Losses at_rest(FigureContext& context, double frame_rate_hz) {
   const SweepResult stored = Sweep::load("first-touch").plan();
   const double factor = frame_rate_hz / kLift.frame_rate_hz;
   std::vector<double> speeds = axis_values(stored, 0);
@@ -86,13 +86,13 @@ Losses at_rest(const FigureContext& context, double frame_rate_hz) {
                    "axes.1.to=" + nlohmann::json(last_s).dump()});
 }
 
-Losses over_a_point(const FigureContext& context) {
+Losses over_a_point(FigureContext& context) {
   return measured(context, {"over_point", "over a point", touch_at(kLift.frame_rate_hz, Over::point), {}, {}},
                   {"scenario.phase_x=0.5", "scenario.phase_z=0.5"});
 }
 
 // The hand presses onto the surface while it rises, 5 to 9 cm below the position where the hand waited.
-Losses by_hand(const FigureContext& context) {
+Losses by_hand(FigureContext& context) {
   const double last_s = (kHandPhases - 1.0) / kHandPhases / kLift.frame_rate_hz;
   return measured(
       context,
@@ -169,7 +169,7 @@ Panel panel(const std::string& title, const std::vector<Losses>& list, const std
 
 }  // namespace
 
-Figure figure_first_touch(const FigureContext& context) {
+Figure figure_first_touch(FigureContext& context) {
   Figure figure{
       "first-touch", "Pop-through at the first touch",
       "A surface without noise moves evenly towards a proxy at rest. When it first touches the proxy, "

@@ -71,7 +71,7 @@ void add_claims(Figure& figure, const std::vector<Threshold>& list) {
 
 }  // namespace
 
-Figure figure_frame_rates(const FigureContext& context) {
+Figure figure_frame_rates(FigureContext& context) {
   const std::vector<Threshold> list = thresholds(context.sweep(Sweep::load("frame-rates")));
   Figure figure{
       "frame-rates", "Pop-through at other frame rates",

@@ -51,7 +51,7 @@ struct Measured {
   }
 };
 
-Measured measured(const FigureContext& context, const std::string& name) {
+Measured measured(FigureContext& context, const std::string& name) {
   // Frames become older here than the default limit up to which a prediction is used.
   const std::string horizon = "renderer.max_prediction_s=0.4";
   const Sweep plain = Sweep::load(name, {horizon});
@@ -196,7 +196,7 @@ double max_outside(const Table& jitter) {
 
 }  // namespace
 
-Figure figure_latency(const FigureContext& context) {
+Figure figure_latency(FigureContext& context) {
   const Table map = map_table(measured(context, "fixture-latency"));
   Table jitter = spread_table("jitter", "ms", 1e3, measured(context, "fixture-jitter"));
   add_jitter_bounds(jitter);

@@ -39,7 +39,7 @@ struct Machine {
   std::vector<double> noise_m, thickness_m, at_end, in_time;
 };
 
-std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, double steps_per_tick) {
+std::vector<Machine> machines(FigureContext& context, const Sweep& sweep, double steps_per_tick) {
   const SweepResult plan = sweep.plan();
   const std::vector<NoiseMeans> lifts = context.measure(sweep, noise_means);
   std::vector<Machine> list;
@@ -62,7 +62,7 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
   return list;
 }
 
-std::vector<Machine> all_machines(const FigureContext& context) {
+std::vector<Machine> all_machines(FigureContext& context) {
   std::vector<Machine> list = machines(context, Sweep::load("proxy-rates"), 1);
   const std::vector<std::string> fast = {"axes.0.values=[10000]", "renderer.steps_per_tick=3"};
   const std::vector<Machine> last = machines(context, Sweep::load("proxy-rates", fast), 3);
@@ -122,7 +122,7 @@ struct Predecessor {
 };
 
 // Finds the velocities by bisection.
-std::vector<Predecessor> predecessors(const FigureContext& context, const std::vector<int>& steps) {
+std::vector<Predecessor> predecessors(FigureContext& context, const std::vector<int>& steps) {
   std::vector<Predecessor> list;
   for (const int count : steps) {
     for (const double step_m : {2e-5, 3.5e-5, 5e-5, 8e-5, 1e-4}) list.push_back({count, step_m});
@@ -256,7 +256,7 @@ void add_machine_claims(const Claims& claims, const std::vector<Machine>& list) 
 
 }  // namespace
 
-Figure figure_proxy_rates(const FigureContext& context) {
+Figure figure_proxy_rates(FigureContext& context) {
   const std::vector<Machine> list = all_machines(context);
   std::vector<int> steps;
   for (const Machine& machine : list) steps.push_back(machine.steps);

@@ -168,7 +168,7 @@ PressResult result_of(const ModelPress& press, const Trace& trace) {
 
 // results[method][press]
 using PressResults = std::vector<std::vector<PressResult>>;
-PressResults results_of(const FigureContext& context, const std::vector<ModelPress>& presses,
+PressResults results_of(FigureContext& context, const std::vector<ModelPress>& presses,
                         std::span<const ToolMethod> methods = kToolMethods) {
   std::vector<Experiment> runs;
   for (const ToolMethod& method : methods)
@@ -309,7 +309,7 @@ void add_groove_and_slot_claims(const Claims& claims, const Table& grooves, cons
 
 }  // namespace
 
-Figure figure_tool_forces(const FigureContext& context) {
+Figure figure_tool_forces(FigureContext& context) {
   Figure figure{
       kForcesFigure, "Force and torque of a tool against model scenes",
       "Presses of 6 mm in 0.4 s in which force and torque are known in closed form: a block of 40 x 10 mm on a "

@@ -53,7 +53,7 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
   return table;
 }
 
-Table lift_limits(const FigureContext& context) {
+Table lift_limits(FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-lifts")));
   return limit_table(
       "lifts", "Speed up to which a plate is carried", sweep,
@@ -62,7 +62,7 @@ Table lift_limits(const FigureContext& context) {
 }
 
 // The plate lies flat on a tilted surface, which approaches along its normal by v cos(tilt) / f_c.
-Table tilt_limits(const FigureContext& context) {
+Table tilt_limits(FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
   return limit_table(
       "tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
@@ -73,7 +73,7 @@ Table tilt_limits(const FigureContext& context) {
 
 // The surface turns by A sin(2 pi f t): by about 2 pi f A / f_c in the first frame. The end of the plate that
 // is nearer to the axis moves least, and the plate is lost if the surface passes through that end too.
-Table turn_limits(const FigureContext& context) {
+Table turn_limits(FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
   return limit_table("turns", "Angle of a surface that turns at 1 Hz, plate of 5 mm", sweep,
                      {"lever", "m", "from the axis to the middle of the plate", sweep.values(0), 1, {}},
@@ -84,7 +84,7 @@ Table turn_limits(const FigureContext& context) {
                      });
 }
 
-Table noise_limits(const FigureContext& context) {
+Table noise_limits(FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-noise")));
   return limit_table(
       "noise", "Acceleration with a velocity estimate, plate of 10 mm", sweep,
@@ -128,7 +128,7 @@ void add_claims(const Claims& claims, const Table& lifts, const Table& tilts, co
 
 }  // namespace
 
-Figure figure_tool_lifts(const FigureContext& context) {
+Figure figure_tool_lifts(FigureContext& context) {
   Figure figure{
       "tool-lifts", "Where a plate loses the surface that it is pressed onto",
       "A surface of points rises, rises tilted, turns or accelerates under a plate of 40 x 40 mm, by the "

@@ -260,7 +260,7 @@ Panel pool_panel(const Table& pooled, std::pair<double, double> grid_position) {
 
 }  // namespace
 
-Figure figure_tool_shapes(const FigureContext& context) {
+Figure figure_tool_shapes(FigureContext& context) {
   Figure figure{
       "tool-shapes", "Where edges, corners, balls and walls pass through a plate",
       "A surface jumps in one frame against a plate of 40 x 40 mm that a hand presses onto it, by the three "

@@ -51,7 +51,7 @@ Survived count_of(const Table& map) {
   return all;
 }
 
-Table lift_map_of(const FigureContext& context, const TrackedMethod& method, int seed) {
+Table lift_map_of(FigureContext& context, const TrackedMethod& method, int seed) {
   const Sweep sweep = context.map("tool-tracked", {method.renderer, seed_setting(seed)});
   return map_table(std::string("map_") + method.column, context.sweep(sweep), "tool_popped_through");
 }
@@ -118,7 +118,7 @@ const std::vector<JumpMotion> kJumpMotions = {
     {"left", "Rises, the hand stays", {"scenario.rise_s=0.8333333333333334", "scenario.acceleration_s=0"}}};
 
 // Returns the rms jump at each noise strength, over the updates of all seeds.
-std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& method,
+std::vector<ToolJump> jumps(FigureContext& context, const TrackedMethod& method,
                             const std::vector<std::string>& motion) {
   std::vector<Experiment> runs;
   for (const double sigma : kJumpNoise)
@@ -146,7 +146,7 @@ std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& m
   return rms;
 }
 
-Table jump_table(const FigureContext& context, const JumpMotion& motion) {
+Table jump_table(FigureContext& context, const JumpMotion& motion) {
   Table table{motion.table, motion.title};
   table.add("noise", "r_c", "standard deviation of the noise",
             {std::begin(kJumpNoise), std::end(kJumpNoise)});
@@ -185,7 +185,7 @@ double mean_height_over(const Trace& trace) {
 }
 
 // Returns the height by which noise raises the plate, compared with the same renderer without noise, in r_c.
-std::vector<double> raised_by_noise(const FigureContext& context, const TrackedMethod& method) {
+std::vector<double> raised_by_noise(FigureContext& context, const TrackedMethod& method) {
   std::vector<Experiment> runs;
   for (const char* shape : kToolShapes)
     for (const double sigma : kShapeNoise) {
@@ -205,7 +205,7 @@ std::vector<double> raised_by_noise(const FigureContext& context, const TrackedM
   return raised;
 }
 
-Table shape_table(const FigureContext& context) {
+Table shape_table(FigureContext& context) {
   Column name{"shape", "1", "shape of the surface", std::vector<std::string>{}, 1, {}};
   std::vector<double> noise;
   for (const char* shape : kToolShapes)
@@ -257,7 +257,7 @@ Panel jump_panel(const Table& table, const std::string& what, const std::string&
 
 }  // namespace
 
-Figure figure_tool_tracked(const FigureContext& context) {
+Figure figure_tool_tracked(FigureContext& context) {
   Figure figure{
       "tool-tracked", "A plate on noisy surfaces that accelerate, by tracked sheets",
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "

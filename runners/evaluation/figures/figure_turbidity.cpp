@@ -50,7 +50,7 @@ void draw_mask(const std::vector<char>& picked, const std::vector<char>& is, std
   }
 }
 
-Level measure_level(const FigureContext& context, double turbidity_per_m) {
+Level measure_level(FigureContext& context, double turbidity_per_m) {
   const Experiment experiment =
       Experiment::load("turbidity", {"scenario.turbidity_per_m=" + std::to_string(turbidity_per_m)});
   context.uses(experiment);
@@ -174,7 +174,7 @@ void add_claims(Figure& figure, const std::vector<Level>& levels) {
 
 }  // namespace
 
-Figure figure_turbidity(const FigureContext& context) {
+Figure figure_turbidity(FigureContext& context) {
   std::vector<Level> levels;
   for (const double per_m : kLevels_per_m) levels.push_back(measure_level(context, per_m));
   Figure figure{

@@ -77,13 +77,13 @@ std::span<const FigureEntry> figures() {
   return kFigures;
 }
 
-Trace FigureContext::run(const Experiment& experiment) const {
+Trace FigureContext::run(const Experiment& experiment) {
   note(experiment.to_json());
   inputs_.add(experiment.inputs());
   return simulated(experiment);
 }
 
-std::vector<Trace> FigureContext::run(const std::vector<Experiment>& experiments) const {
+std::vector<Trace> FigureContext::run(const std::vector<Experiment>& experiments) {
   for (const Experiment& experiment : experiments) {
     note(experiment.to_json());
     inputs_.add(experiment.inputs());
@@ -98,7 +98,7 @@ std::string FigureContext::configurations() const {
   return list.empty() ? "[]" : list + "]";
 }
 
-Trace FigureContext::simulated(const Experiment& experiment) const {
+Trace FigureContext::simulated(const Experiment& experiment) {
   SimulationOptions options;
   options.kernels = &kernels_;
   options.stop = stop_;
@@ -109,14 +109,14 @@ Trace FigureContext::simulated(const Experiment& experiment) const {
   return trace;
 }
 
-Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) const {
+Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) {
   const Sweep whole = Sweep::load(name, overrides);
   Sweep made = coarse_ > 1 ? whole.thinned(coarse_) : whole;
   runs_of_maps_ += whole.plan().run_count(), made_runs_of_maps_ += made.plan().run_count();
   return made;
 }
 
-SweepResult FigureContext::sweep(const Sweep& sweep) const {
+SweepResult FigureContext::sweep(const Sweep& sweep) {
   note(sweep.to_json());
   inputs_.add(sweep.inputs());
   SweepResult result = run_sweep(sweep, {&kernels_, stop_, {}, runs_});

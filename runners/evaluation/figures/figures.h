@@ -30,32 +30,32 @@ class FigureContext {
                 SideBySide runs = side_by_side)
       : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
 
-  Trace run(const Experiment& experiment) const;
+  Trace run(const Experiment& experiment);
   // Records an experiment whose frames are used without a run.
-  void uses(const Experiment& experiment) const {
+  void uses(const Experiment& experiment) {
     note(experiment.to_json());
     inputs_.add(experiment.inputs());
   }
   const Kernels& kernels() const { return kernels_; }
-  std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // parallel runs
+  std::vector<Trace> run(const std::vector<Experiment>& experiments);  // parallel runs
   // Returns of(trace) for each run, in parallel. The first failure is thrown after all runs have ended.
   template <class Of>
-  auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
+  auto measure(const std::vector<Experiment>& experiments, Of&& of) {
     if (!experiments.empty()) note(experiments.front().to_json());
     for (const Experiment& experiment : experiments) inputs_.add(experiment.inputs());
     return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
   }
   // Returns a stored sweep of thousands of runs, thinned by `coarse`, for the calls of sweep() and measure()
   // below.
-  Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
+  Sweep map(const std::string& name, const std::vector<std::string>& overrides = {});
   // Number of runs of the full maps, and number of runs that are made, over all calls of map().
   std::size_t runs_of_maps() const { return runs_of_maps_; }
   std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
   // Makes every run of a sweep; throws InputError if one failed.
-  SweepResult sweep(const Sweep& sweep) const;
+  SweepResult sweep(const Sweep& sweep);
   // Returns of(trace) for each run of a sweep's plan, in its order.
   template <class Of>
-  auto measure(const Sweep& sweep, Of&& of) const {
+  auto measure(const Sweep& sweep, Of&& of) {
     const SweepResult plan = sweep.plan();
     note(sweep.to_json());
     inputs_.add(sweep.inputs());
@@ -73,23 +73,23 @@ class FigureContext {
   std::vector<std::string> note_lines() const { return notes_.lines(); }
 
  private:
-  Trace simulated(const Experiment& experiment) const;
+  Trace simulated(const Experiment& experiment);  // called by several threads at the same time
   template <class Work>
   auto collect(std::size_t count, Work&& work) const {
     std::vector<decltype(work(std::size_t{}))> results(count);
     runs_(count, [&](std::size_t i) { results[i] = work(i); });
     return results;
   }
-  void note(const std::string& configuration) const { configurations_.push_back(configuration); }
+  void note(const std::string& configuration) { configurations_.push_back(configuration); }
 
-  mutable std::vector<std::string> configurations_;
-  mutable InputHashes inputs_;
-  mutable NoteCounts notes_;
+  std::vector<std::string> configurations_;
+  InputHashes inputs_;
+  NoteCounts notes_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
   int coarse_;
   SideBySide runs_;
-  mutable std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
+  std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
 
 // The values of a numeric axis of a sweep, and the one that a cell has.
@@ -101,7 +101,7 @@ inline double axis_value(const SweepResult& sweep, std::size_t axis, std::size_t
 }
 
 // May throw InputError: the figure is then reported as not run.
-using MakeFigure = Figure(const FigureContext& context);
+using MakeFigure = Figure(FigureContext& context);
 // A new figure is one file, its name at the end of this header, and one line in figures.cpp.
 struct FigureEntry {
   const char* name;

@@ -29,8 +29,7 @@ std::vector<double> radii(const Experiment& experiment, const Trace& trace, cons
 
 }  // namespace
 
-std::vector<FixtureRun> run_fixtures(const FigureContext& context,
-                                     const std::vector<Experiment>& experiments) {
+std::vector<FixtureRun> run_fixtures(FigureContext& context, const std::vector<Experiment>& experiments) {
   std::vector<Trace> traces = context.run(experiments);
   std::vector<FixtureRun> runs;
   for (std::size_t r = 0; r < experiments.size(); ++r) {

@@ -22,8 +22,7 @@ struct FixtureRun {
 };
 
 // Runs the experiments in parallel. pre: every point has the same r_f, and no scene ends before its run.
-std::vector<FixtureRun> run_fixtures(const FigureContext& context,
-                                     const std::vector<Experiment>& experiments);
+std::vector<FixtureRun> run_fixtures(FigureContext& context, const std::vector<Experiment>& experiments);
 
 // Adds the claim that the proxy is never behind the surface. where: what the text begins with.
 void add_side_claim(Figure& figure, const std::string& where, const Trace& trace);

@@ -23,8 +23,7 @@ LiftUpdates updates_of(const Trace& trace) {
   return lift_updates(trace, Vec3(0, 1, 0), kLift.r1_m, kLift.frame_rate_hz);
 }
 
-std::vector<double> popped_over_phases(const FigureContext& context,
-                                       const std::vector<double>& acceleration) {
+std::vector<double> popped_over_phases(FigureContext& context, const std::vector<double>& acceleration) {
   std::vector<Experiment> lifts;
   for (std::size_t i = 0; i < acceleration.size(); ++i)
     lifts.push_back(Experiment::load(
@@ -37,7 +36,7 @@ std::vector<double> popped_over_phases(const FigureContext& context,
 
 }  // namespace
 
-Phases critical_over_phases(const FigureContext& context) {
+Phases critical_over_phases(FigureContext& context) {
   constexpr std::size_t kCount = 64;
   Phases phases;
   std::vector<double> low(kCount, Phases::kSurvives), high(kCount, Phases::kPops), middle(kCount), x, z;
@@ -69,7 +68,7 @@ NoiseEffect MeasuredNoise::at(double noise_m) const {
           between(&NoiseEffect::margin_sd_m),           between(&NoiseEffect::gain)};
 }
 
-MeasuredNoise measured_noise(const FigureContext& context) {
+MeasuredNoise measured_noise(FigureContext& context) {
   const Sweep sweep = Sweep::load("steady-lifts");
   const SweepResult plan = sweep.plan();
   const std::vector<LiftUpdates> lifts = context.measure(sweep, updates_of);
@@ -112,7 +111,7 @@ Table effect_table(const MeasuredNoise& noise) {
   return table;
 }
 
-LiftMap lift_map(const FigureContext& context, int seed) {
+LiftMap lift_map(FigureContext& context, int seed) {
   const Sweep sweep = context.map("fig4.13", {seed_setting(seed)});
   const SweepResult plan = sweep.plan();
   LiftMap result;

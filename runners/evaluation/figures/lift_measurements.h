@@ -18,7 +18,7 @@ struct Phases {
   Table table{"phases", "critical acceleration without noise, by position of the grid"};
   double survived_low = 0, survived_high = 0;
 };
-Phases critical_over_phases(const FigureContext& context);
+Phases critical_over_phases(FigureContext& context);
 
 // (4.19) to (4.24): the effect of noise, from lifts without acceleration, and fits up to kFitted_m.
 inline constexpr double kFitted_m = 0.01;
@@ -29,7 +29,7 @@ struct MeasuredNoise {
 
   NoiseEffect at(double noise_m) const;  // linear between the measured strengths
 };
-MeasuredNoise measured_noise(const FigureContext& context);
+MeasuredNoise measured_noise(FigureContext& context);
 Table effect_table(const MeasuredNoise& noise);
 
 // The map of Fig 4.13 with the noise of another seed: every update of every lift, and which lifts survived.
@@ -37,6 +37,6 @@ struct LiftMap {
   Table map;  // noise, acceleration, survived
   std::vector<LiftUpdates> updates;
 };
-LiftMap lift_map(const FigureContext& context, int seed);
+LiftMap lift_map(FigureContext& context, int seed);
 
 }  // namespace remote_touch

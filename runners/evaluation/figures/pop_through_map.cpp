@@ -20,7 +20,7 @@ std::string noise_setting(double noise) {
   return "scenario.noise_sigma_m=" + std::to_string(noise * kContactRadius_m);
 }
 
-double survived_share(const FigureContext& context, const std::vector<Experiment>& lifts) {
+double survived_share(FigureContext& context, const std::vector<Experiment>& lifts) {
   return 1 - mean(context.measure(lifts, popped_through));
 }
 

@@ -21,7 +21,7 @@ inline constexpr int kRiseFrames = 15;
 std::string seed_setting(int seed);
 std::string noise_setting(double noise);
 // Returns the share of the lifts that did not pop through.
-double survived_share(const FigureContext& context, const std::vector<Experiment>& lifts);
+double survived_share(FigureContext& context, const std::vector<Experiment>& lifts);
 
 inline const ColumnName kNoiseColumn{"noise", "r_c", "standard deviation of the noise"},
     kAccelerationColumn{"acceleration", "r_c/s^2", "acceleration of the lift"};

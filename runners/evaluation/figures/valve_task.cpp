@@ -70,7 +70,7 @@ std::vector<std::size_t> shown_points(const PointCloud& cloud) {
 
 }  // namespace
 
-std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks) {
+std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedTask>& tasks) {
   std::vector<Experiment> experiments;
   for (const NamedTask& task : tasks)
     experiments.push_back(Experiment::load(task.experiment, task.overrides));

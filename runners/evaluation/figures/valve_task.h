@@ -25,7 +25,7 @@ struct NamedTask {
 };
 
 // Runs the tasks in parallel. tank is null for other scenarios.
-std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks);
+std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedTask>& tasks);
 
 // Returns the distance from the tool's mesh to the true surface of a valve. It is measured at the vertices
 // and at the centres of the triangles, so it can be too large by a few hundredths of a millimetre. pre: there

@@ -14,6 +14,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -157,10 +158,12 @@ std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector
   std::vector<Item> items;
   std::set<std::string> taken;
   for (const std::string& wanted : names) {
-    const auto [name, json] = found(stored, wanted, kind);
-    if (!taken.insert(name).second)
-      throw InputError(std::string(kind) + " " + name, "appears twice: expected once");
-    items.push_back(read(name, json));
+    const std::pair<std::string, std::string> text = found(stored, wanted, kind);
+    if (!taken.insert(text.first).second)
+      throw InputError(std::string(kind) + " " + text.first, "appears twice: expected once");
+    const auto item = [&](const std::vector<std::string>&) { return read(text.first, text.second); };
+    items.push_back(is_stored(stored, wanted) ? item({}) : read_text_of(wanted, {}, item));
+    if (!is_stored(stored, wanted)) items.back().file = wanted;
   }
   if (!names.empty()) return items;
   for (const EmbeddedText& text : stored) items.push_back(read(text.name, text.json));
@@ -247,31 +250,52 @@ void bring_tool(const Json& tool, const std::string& scene, const std::string& m
   renderer.update(tool);
 }
 
-}  // namespace
-
-Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
-  const std::string label = "scene " + name + " with " + method.name;
-  Json run = parse_json(experiment, label);
+// Returns the sweep of BenchmarkScene::sweep(). label: names it in errors.
+Sweep sweep_of(const BenchmarkScene& scene, const Method& method, int replicates, const std::string& label) {
+  const std::string& name = scene.name;
+  Json run = parse_json(scene.experiment, label);
   if (run.contains("renderer"))
     throw InputError("scene " + name + ": experiment.renderer",
                      "set: expected none, because methods define it");
   if (run.contains("seed"))
     throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);
-  if (!tool.empty()) bring_tool(parse_json(tool, label), name, method.name, run["renderer"]);
+  if (!scene.tool.empty()) bring_tool(parse_json(scene.tool, label), name, method.name, run["renderer"]);
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis. If the scene has its own noise, the axis is the seed with one value. There are
   // then as many runs as other scenes have with noise, so that the same number of pairs decides.
-  const bool own_noise = noise.empty();
+  const bool own_noise = scene.noise.empty();
   const auto noisy_levels = static_cast<int>(scorecard_noise_m().size()) - 1;
   const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
-  return Sweep::from_json(Json{{"title", name + " with " + method.name + ": " + title},
-                               {"experiment", run},
-                               {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
-                               {"replicates", own_noise ? noisy_levels * replicates : replicates},
-                               {"measures", measured(*this)}}
-                              .dump(),
-                          label);
+  return Sweep::from_json(
+      Json{{"title", name + " with " + method.name + ": " + scene.title},
+           {"experiment", run},
+           {"axes", {{{"parameter", own_noise ? "seed" : scene.noise}, {"values", levels}}}},
+           {"replicates", own_noise ? noisy_levels * replicates : replicates},
+           {"measures", measured(scene)}}
+          .dump(),
+      label);
+}
+
+// Returns the file whose text a refusal is about; empty if that text is stored.
+const std::string& file_of(const std::string& line, const BenchmarkScene& scene, const Method& method) {
+  return line.starts_with("renderer") || line.starts_with("method ") ? method.file : scene.file;
+}
+
+}  // namespace
+
+Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
+  const std::string label = "scene " + name + " with " + method.name;
+  try {
+    return sweep_of(*this, method, replicates, label);
+  } catch (const FileRefusal&) {
+    throw;
+  } catch (const InputError& error) {
+    const std::string line = without_subject(label, error.what());
+    const std::string& wrong = file_of(line, *this, method);
+    if (wrong.empty()) throw;
+    throw FileRefusal(wrong, line);
+  }
 }
 
 std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,

@@ -6,11 +6,21 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
 
-bool is_for_tools(const Method& method) {
+namespace {
+
+// Returns of(method), which reads its renderer. A refusal begins with the file of the method.
+template <class Of>
+bool answer_of(const Method& method, Of of) {
+  if (method.file.empty()) return of(method);
+  return read_text_of(method.file, {}, [&](const std::vector<std::string>&) { return of(method); });
+}
+
+bool has_renderer_for_tools(const Method& method) {
   const std::string label = "method " + method.name + ": renderer";
   const Json renderer = parse_json(method.renderer, label);
   if (!renderer.contains("name") || !renderer["name"].is_string())
@@ -18,8 +28,6 @@ bool is_for_tools(const Method& method) {
   const std::string name = renderer["name"];
   return find_entry(renderers(), name, label + ".name").degrees_of_freedom == DegreesOfFreedom::six;
 }
-
-namespace {
 
 bool has_known_contact(const Method& method) {
   const Json renderer = parse_json(method.renderer, "method " + method.name);
@@ -41,7 +49,7 @@ bool judges_contact(const BenchmarkScene& scene) {
 // would count as failures.
 void require_known_contact(const Benchmark& chosen) {
   for (const Method& method : chosen.methods) {
-    if (is_for_tools(method) || has_known_contact(method)) continue;
+    if (is_for_tools(method) || answer_of(method, has_known_contact)) continue;
     for (const BenchmarkScene& scene : chosen.scenes)
       if (judges_contact(scene))
         throw InputError("method " + method.name,
@@ -52,6 +60,10 @@ void require_known_contact(const Benchmark& chosen) {
 }
 
 }  // namespace
+
+bool is_for_tools(const Method& method) {
+  return answer_of(method, has_renderer_for_tools);
+}
 
 Benchmark chosen_benchmark(const std::vector<std::string>& methods, const std::vector<std::string>& scenes,
                            int replicates, const std::string& folder) {

@@ -12,6 +12,7 @@
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
@@ -48,7 +49,11 @@ Experiment Experiment::load(const std::string& name_or_file, const std::vector<s
   const std::string text = has_result_header(name_or_file)
                                ? session_experiment(name_or_file)
                                : embedded_or_file(embedded_experiments(), name_or_file, "an experiment's");
-  return from_json(text, name_or_file, overrides);
+  const auto read = [&](const std::vector<std::string>& settings) {
+    return from_json(text, name_or_file, settings);
+  };
+  return is_stored(embedded_experiments(), name_or_file) ? read(overrides)
+                                                         : read_text_of(name_or_file, overrides, read);
 }
 
 std::string Experiment::to_json() const {

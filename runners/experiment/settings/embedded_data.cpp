@@ -1,8 +1,15 @@
 #include "runners/experiment/settings/embedded_data.h"
 
+#include <algorithm>
+
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
+
+bool is_stored(std::span<const EmbeddedText> stored, const std::string& name) {
+  return std::any_of(stored.begin(), stored.end(),
+                     [&](const EmbeddedText& text) { return name == text.name; });
+}
 
 std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,
                              const std::string& kind) {

@@ -19,6 +19,8 @@ std::span<const EmbeddedText> embedded_scenes();
 // Numbers of tests/second_implementation, by chapter.
 std::span<const EmbeddedText> embedded_second_implementation();
 
+bool is_stored(std::span<const EmbeddedText> stored, const std::string& name);
+
 // Returns the stored text of that name, or the text of that file. Throws InputError if there is neither.
 // kind: words for its message, such as "an experiment's".
 std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,

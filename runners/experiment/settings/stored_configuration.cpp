@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
@@ -150,19 +151,65 @@ void use_present_names(const std::string& key, Json& value) {
   if (!name_of(value).empty()) value = with_present_names(key, value);
 }
 
+// Returns null for a text that is not JSON.
+Json configuration_in(const std::string& text) {
+  try {
+    return parse_json(text, "config");
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+Json translated(Json configuration) {
+  convert_to_seconds(configuration);
+  use_present_names("", configuration);
+  return configuration;
+}
+
+// --- what was translated ---
+
+std::vector<std::string> keys_of(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return keys;
+}
+
+// Returns the key in `now`, the translated object, of a key in `before`; nothing if there is none.
+std::optional<std::string> translated_key(const std::string& key, const Json& before, const Json& now) {
+  return now.contains(key) ? key : new_name(key, keys_of(now), name_of(before));
+}
+
+// Adds the keys and texts of `before` that are others in `now`. A flag that has become a text has a new key,
+// too.
+void add_translated(const Json& before, const Json& now, std::set<std::string>& names) {
+  if (before.is_object() && now.is_object()) {
+    for (const auto& item : before.items()) {
+      const std::optional<std::string> key = translated_key(item.key(), before, now);
+      if (!key) continue;
+      if (*key != item.key()) names.insert(item.key() + " to " + *key);
+      add_translated(item.value(), now.at(*key), names);
+    }
+  } else if (before.is_array() && now.is_array()) {
+    for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i)
+      add_translated(before[i], now[i], names);
+  } else if (before.is_string() && now.is_string() && before != now) {
+    names.insert(before.get<std::string>() + " to " + now.get<std::string>());
+  }
+}
+
 }  // namespace
 
 std::string stored_configuration(const std::string& text) {
-  Json configuration;
-  try {
-    configuration = parse_json(text, "config");
-  } catch (const InputError&) {
-    return text;
-  }
-  const Json before = configuration;
-  convert_to_seconds(configuration);
-  use_present_names("", configuration);
-  return configuration == before ? text : configuration.dump();
+  const Json before = configuration_in(text);
+  const Json now = translated(before);
+  return now == before ? text : now.dump();
+}
+
+std::vector<std::string> translated_names(const std::string& text) {
+  const Json before = configuration_in(text);
+  std::set<std::string> names;
+  add_translated(before, translated(before), names);
+  return {names.begin(), names.end()};
 }
 
 TextAttributes present_attributes(TextAttributes attributes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/storage/hdf5_file.h"
 
@@ -12,6 +13,10 @@ namespace remote_touch {
 // the configuration's frame rate, and the motion keeps its bits. Settings and values that schema /2 had under
 // other names (renamed_names.h) have their present names, also on axes. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
+
+// Returns the names that stored_configuration() replaces in the text, each once: "contact_rule to
+// contact_motion".
+std::vector<std::string> translated_names(const std::string& text);
 
 // Root attribute of what was made of a result of an earlier schema: that schema. The names in it were
 // translated, so the program that its other attributes name cannot read them.

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/parameters/input_error.h"
+#include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/interfaces/cli/other_kinds.h"
@@ -117,6 +118,13 @@ void add_merge_and_replay(Subcommands& commands) {
                   "a note on the run is an error: exit code 2, and nothing is written");
 }
 
+std::vector<std::string> quick_figures() {
+  std::vector<std::string> names;
+  for (const FigureEntry& entry : figures())
+    if (entry.quick_coarse > 1) names.emplace_back(entry.name);
+  return names;
+}
+
 void add_figure(Subcommands& commands) {
   auto [command, figure] = commands.add(
       "figure", "reproduce figures and check their claims; writes HDF5 files and claims.json", make_figures);
@@ -127,7 +135,7 @@ void add_figure(Subcommands& commands) {
                    "maps: use only every Nth value of each axis; claims about a whole map then stay open")
       ->check(CLI::Range(1, 10));
   command->add_flag("--quick", figure->quick,
-                    "--coarse only for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
+                    "--coarse only for the maps that take minutes: " + joined(quick_figures(), ", "));
 }
 
 }  // namespace

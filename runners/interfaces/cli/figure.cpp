@@ -29,7 +29,7 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
 
 // A missing recording is no failure of the method: the figure gets a claim that says so, and the others are
 // made.
-Figure made_or_not_run(const FigureEntry& entry, const FigureContext& context) {
+Figure made_or_not_run(const FigureEntry& entry, FigureContext& context) {
   try {
     return entry.make(context);
   } catch (const MissingRecording& error) {

@@ -29,7 +29,7 @@ std::vector<FigureRun> quickest_first(const std::vector<FigureRun>& runs) {
 }
 
 void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
-                  const std::function<Figure(const FigureEntry&, const FigureContext&)>& make,
+                  const std::function<Figure(const FigureEntry&, FigureContext&)>& make,
                   const std::function<void(std::size_t, const FigureContext&, Figure)>& finish,
                   const std::function<void(const FigureProgress&)>& report) {
   const int threads = omp_get_max_threads();
@@ -42,7 +42,7 @@ void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
     jobs.emplace_back([&, i] {
       try {
         if (line.stop && *line.stop) throw Interrupted{};
-        const FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces);
+        FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces);
         Figure figure = make(*runs[i].entry, context);
         const std::lock_guard lock(one_at_a_time);
         finish(i, context, std::move(figure));

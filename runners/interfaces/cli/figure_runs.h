@@ -34,7 +34,7 @@ std::vector<FigureRun> quickest_first(const std::vector<FigureRun>& runs);
 // thrown, in the order of the runs.
 void make_figures(
     const CommandLine& line, const std::vector<FigureRun>& runs,
-    const std::function<Figure(const FigureEntry& entry, const FigureContext& context)>& make,
+    const std::function<Figure(const FigureEntry& entry, FigureContext& context)>& make,
     const std::function<void(std::size_t run, const FigureContext& context, Figure figure)>& finish,
     const std::function<void(const FigureProgress& progress)>& report);
 

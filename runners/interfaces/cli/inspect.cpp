@@ -4,14 +4,18 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/renamed_columns.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/unfinished_session.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
 
 namespace remote_touch {
@@ -145,6 +149,34 @@ void print_attributes(const std::string& file, const TextAttributes& attributes)
   }
 }
 
+std::string last_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+// Returns the names in a result of an earlier schema that are replaced when it is used.
+std::vector<std::string> replaced_names(const Hdf5Content& content) {
+  std::vector<std::string> names = translated_names(attribute(content.attributes, "config"));
+  std::set<std::string> of_columns;
+  for (const auto& dataset : content.datasets) {
+    const std::string& path = dataset.first;
+    if (path.starts_with("/tables/") && present_column(path) != path)
+      of_columns.insert(last_name(path) + " to " + last_name(present_column(path)));
+  }
+  names.insert(names.end(), of_columns.begin(), of_columns.end());
+  return names;
+}
+
+// Prints one line for a result of an earlier schema, because the names below it are the old ones.
+void print_earlier_schema(const Hdf5Content& content) {
+  const std::string schema = attribute(content.attributes, "schema");
+  if (!is_earlier_schema(schema)) return;
+  const std::vector<std::string> names = replaced_names(content);
+  const std::string line = "older schema " + schema + "; " +
+                           (names.empty() ? "none of its names has changed"
+                                          : "translated when it is used: " + joined(names, ", "));
+  std::printf("  note         %s\n", printable(line).c_str());
+}
+
 void print_unfinished(const std::string& file) {
   const UnfinishedSession session = read_unfinished(file);
   std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
@@ -172,6 +204,7 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   if (was_opened_for_writing(file))
     std::puts(
         "  note         another program opened it for writing; every value is as it was written (SHA-256)");
+  print_earlier_schema(content);
   print_attributes(file, content.attributes);
   print_datasets(content);
   return kDone;

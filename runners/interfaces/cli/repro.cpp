@@ -226,7 +226,7 @@ class Repro {
     const std::vector<FigureRun> runs = {{&*entry, recipe_ ? std::max(1, recipe_->coarse) : 1}};
     std::vector<Column> columns;
     make_figures(
-        line_, runs, [](const FigureEntry& made, const FigureContext& context) { return made.make(context); },
+        line_, runs, [](const FigureEntry& made, FigureContext& context) { return made.make(context); },
         [&](std::size_t, const FigureContext&, Figure figure) {
           for (Table& table : figure.tables)
             for (Column& column : table.columns) {

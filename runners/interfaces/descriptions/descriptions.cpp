@@ -1,5 +1,6 @@
 #include "runners/interfaces/descriptions/descriptions.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -167,6 +168,18 @@ bool describe_trace(const std::string& name, std::FILE* out) {
   return true;
 }
 
+// Tests read the time and --quick here, so that no other list says which figures are slow.
+bool describe_figure(const std::string& name, std::FILE* out) {
+  const auto is_it = [&](const FigureEntry& entry) { return name == entry.name; };
+  const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
+  if (entry == figures().end()) return false;
+  std::fprintf(out, "%s: a figure: %s\n  about %g s on one core", entry->name, entry->summary,
+               entry->expected_s);
+  if (entry->quick_coarse > 1)
+    std::fprintf(out, "; with --quick one in %d values of each axis of its map", entry->quick_coarse);
+  return std::fputs("\n", out) >= 0;
+}
+
 }  // namespace
 
 void describe(const std::string& name, std::FILE* out) {
@@ -178,8 +191,7 @@ void describe(const std::string& name, std::FILE* out) {
   found |= describe_scene(name, out);
   found |= describe_trace(name, out);
   found |= describe_tool(name, out);
-  for (const FigureEntry& entry : figures())
-    if (name == entry.name) found = std::fprintf(out, "%s: a figure: %s\n", entry.name, entry.summary) > 0;
+  found |= describe_figure(name, out);
   for (const Measure& measure : measures())
     if (name == measure.name)
       found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;

@@ -141,6 +141,44 @@ TEST(Sweeps, AcceptAnExperimentByNameByFileOrInline) {
   EXPECT_HAS(refusal([&] { small({"experiment=moon"}); }), "moon: cannot be read");
 }
 
+TEST(Sweeps, ARefusalOfTheTextOfAFileBeginsWithThatFile) {
+  const TestFolder folder("sweep_file_test");
+  const std::string file = (folder / "sweep.json").string(), own = (folder / "mine.json").string();
+  Json json = Json::parse(kSmall);
+  const auto why = [&](const std::vector<std::string>& overrides = {}) {
+    folder.write("sweep.json", json.dump());
+    return refusal([&] { Sweep::load(file, overrides); });
+  };
+  json["replicates"] = 0;
+  EXPECT_TRUE(why().starts_with(file + ": replicates = 0: expected ")) << why();
+  EXPECT_TRUE(why({"seed=3"}).starts_with(file + ": replicates = 0: "));
+  json["replicates"] = 2;
+  json["set"]["renderer.xi"] = -1;
+  EXPECT_TRUE(why().starts_with(file + ": renderer.xi = -1: expected ")) << why();
+  json["set"].erase("renderer.xi");
+  json["axes"][0]["to"] = 7;
+  EXPECT_TRUE(why().starts_with(file + ": cell 1,0: scenario.noise_sigma_m = 3.5: ")) << why();
+  json["axes"][0]["to"] = 0.01;
+  Json experiment = Json::parse(Experiment::load("fig4.12").to_json());
+  experiment["renderer"]["xi"] = -1;
+  folder.write("mine.json", experiment.dump());
+  json["experiment"] = "mine.json";
+  EXPECT_TRUE(why().starts_with(own + ": renderer.xi = -1")) << why();
+}
+
+TEST(Sweeps, ARefusalOfAnOverrideDoesNotNameTheFile) {
+  const TestFolder folder("sweep_override_test");
+  const std::string file = folder.write("sweep.json", kSmall).string();
+  const auto why = [&](const std::string& assignment) {
+    return refusal([&] { Sweep::load(file, {assignment}); });
+  };
+  EXPECT_TRUE(why("replicates=0").starts_with("replicates = 0: "));
+  EXPECT_TRUE(why("axes.0.count=0").starts_with("axes.0.count = 0: "));
+  EXPECT_TRUE(why("renderer.xi=-1").starts_with("renderer.xi = -1: "));
+  EXPECT_TRUE(why("measures=[]").starts_with("measures: "));
+  EXPECT_TRUE(why("scenario.noise_sigma_m=0").starts_with("--set scenario.noise_sigma_m=0: "));
+}
+
 TEST(Axes, CanBeLinearOrLogarithmic) {
   EXPECT_EQ(numbers(along(R"({"parameter": "frame_latency_s", "from": 0, "to": 1, "count": 5})")),
             (std::vector{0.0, 0.25, 0.5, 0.75, 1.0}));

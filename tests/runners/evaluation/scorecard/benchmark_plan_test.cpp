@@ -150,6 +150,30 @@ TEST(Benchmark, NamesWhatIsWrongInAFile) {
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
 }
 
+TEST(Benchmark, ARefusalOfTheTextOfAFileBeginsWithTheFile) {
+  const TestFolder folder("benchmark_file_test");
+  const std::string scene = (folder / "my-scene.json").string(),
+                    method = (folder / "my-method.json").string();
+  folder.write("my-scene.json", R"({"title": "t"})");
+  EXPECT_TRUE(refusal([&] { chosen_scenes({scene}); }).starts_with(scene + ": scene my-scene: experiment"));
+  folder.write("my-method.json", R"({"title": "t", "renderer": {"name": "moon"}})");
+  EXPECT_TRUE(refusal([&] { chosen_benchmark({method}, {}, 2, "card"); }).starts_with(method + ": "));
+
+  const Json stored = Json::parse(chosen_scenes({"flat-press"}).front().experiment);
+  Json wrong = {
+      {"title", "t"}, {"experiment", stored}, {"measures", Json::object()}, {"success", {{"rule", "held"}}}};
+  wrong["experiment"]["scenario"]["spacing_m"] = 7;
+  folder.write("my-scene.json", wrong.dump());
+  folder.write("my-method.json", R"({"title": "t", "renderer": {"name": "proxy", "xi": -1}})");
+  const BenchmarkScene own_scene = chosen_scenes({scene}).front(),
+                       stored_scene = chosen_scenes({"flat-press"}).front();
+  const Method own_method = chosen_methods({method}).front(), proxy = chosen_methods({"proxy"}).front();
+  const std::string of_scene = refusal([&] { own_scene.sweep(proxy, 2); });
+  EXPECT_TRUE(of_scene.starts_with(scene + ": scenario.spacing_m = 7: expected ")) << of_scene;
+  const std::string of_method = refusal([&] { stored_scene.sweep(own_method, 2); });
+  EXPECT_TRUE(of_method.starts_with(method + ": renderer.xi = -1: expected ")) << of_method;
+}
+
 // The card states each method as it is written, so a scene must not replace its tool.
 TEST(Benchmark, AMethodWithAnotherToolThanTheScenesIsRefused) {
   const BenchmarkScene slot = chosen_scenes({"tool-slot"}).front();

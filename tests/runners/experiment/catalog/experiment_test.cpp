@@ -251,5 +251,37 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
 }
 
+TEST(Experiments, ARefusalOfTheTextOfAFileBeginsWithTheFile) {
+  const TestFolder folder("experiment_file_test");
+  const std::string file = (folder / "mine.json").string();
+  const auto why = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
+    folder.write("mine.json", text);
+    return refusal([&] { Experiment::load(file, overrides); });
+  };
+  const std::string rest = R"("renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"}})";
+  const std::string wrong = R"({"scenario": {"name": "flat-grid", "spacing_m": 7}, )" + rest;
+  EXPECT_TRUE(why(wrong).starts_with(file + ": scenario.spacing_m = 7: expected ")) << why(wrong);
+  EXPECT_TRUE(why(wrong, {"seed=9"}).starts_with(file + ": scenario.spacing_m = 7: expected "));
+  EXPECT_EQ(why(wrong, {"scenario.spacing_m=0.002"}), "no InputError");
+  EXPECT_TRUE(why("{}").starts_with(file + ": scenario: missing"));
+  EXPECT_TRUE(why("[]").starts_with(file + ": not an object"));
+  EXPECT_TRUE(why("{").starts_with(file + ": parse error"));
+}
+
+TEST(Experiments, ARefusalOfAnOverrideDoesNotNameTheFile) {
+  const TestFolder folder("experiment_override_test");
+  const auto why = [&](const std::string& text, const std::string& assignment) {
+    const std::string file = folder.write("mine.json", text).string();
+    return refusal([&] { Experiment::load(file, {assignment}); });
+  };
+  EXPECT_TRUE(why(kSmall, "scenario.spacing_m=7").starts_with("scenario.spacing_m = 7: expected "));
+  EXPECT_TRUE(why(kSmall, "seed=-1").starts_with("seed = -1: expected "));
+  EXPECT_TRUE(why(kSmall, "seed").starts_with("--set seed: expected "));
+  EXPECT_TRUE(why(kSmall, "renderer.r1_m=0.0051").starts_with("renderer.r1_m = "));
+  // Also if the text of the file is wrong, too.
+  EXPECT_TRUE(why("{}", "scenario=3").starts_with("scenario = 3: "));
+  EXPECT_TRUE(why(R"({"seed": 3})", "seed.x=1").starts_with("--set seed.x=1: "));
+}
+
 }  // namespace
 }  // namespace remote_touch::experiment_test

@@ -123,6 +123,23 @@ TEST(StoredConfiguration, NamesOfOtherEntriesAreReturnedAsTheyAre) {
     EXPECT_EQ(stored_configuration(text), text);
 }
 
+TEST(StoredConfiguration, EachTranslatedNameIsListedOnce) {
+  EXPECT_EQ(translated_names(R"([{"scenario": {"name": "sheet"}, "renderer": {"name": "proxy",
+      "contact_rule": "tangent_plane", "view": 1}}, {"renderer": {"name": "proxy", "contact_rule": "regions"}},
+      {"scenario": {"name": "moving-lift", "rise_frames": 15}, "trajectory": {"name": "press", "per_frame": true}}])"),
+            (std::vector<std::string>{"contact_rule to contact_motion", "per_frame to surface",
+                                      "rise_frames to rise_s", "sheet to panel",
+                                      "tangent_plane to tangent-plane"}));
+  EXPECT_EQ(translated_names(R"({"experiment": {"renderer": {"name": "proxy"}},
+      "axes": [{"parameter": "renderer.exit_rule", "values": ["towards_hip"]},
+               {"parameter": "renderer.contact_rule", "values": ["regions"]}]})"),
+            (std::vector<std::string>{"renderer.contact_rule to renderer.contact_motion",
+                                      "towards_hip to towards-hip"}));
+  for (const std::string text :
+       {"", "no JSON", R"({"renderer": {"name": "tool", "contact_rule": "voxels"}})"})
+    EXPECT_TRUE(translated_names(text).empty()) << text;
+}
+
 TEST(StoredConfiguration, AttributesOfAnEarlierSchemaSayThatTheyAreTranslated) {
   const std::string old = R"({"renderer":{"contact_rule":"tangent_plane","name":"proxy"}})",
                     now = R"({"renderer":{"contact_motion":"tangent-plane","name":"proxy"}})";

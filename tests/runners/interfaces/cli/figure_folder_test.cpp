@@ -12,7 +12,7 @@
 namespace remote_touch::figure_folder_test {
 namespace {
 
-Figure nothing(const FigureContext&) {
+Figure nothing(FigureContext&) {
   return {};
 }
 
@@ -44,7 +44,7 @@ Told told(const std::filesystem::path& folder, const Claims& claims) {
     Progress shown("figures", line.quiet);
     make_figures(
         line, kRuns,
-        [&](const FigureEntry& entry, const FigureContext&) {
+        [&](const FigureEntry& entry, FigureContext&) {
           Figure figure{entry.name, entry.summary, "caption"};
           figure.claims = claims.at(entry.name);
           return figure;

@@ -128,6 +128,15 @@ def test_a_file_of_others_that_appears_during_a_run_is_kept(in_python, tmp_path)
     assert (tmp_path / "late.h5").read_text() == "not a result"
 
 
+def test_a_refusal_of_the_text_of_a_file_begins_with_the_file(in_folder):
+    (in_folder / "press.json").write_text(json.dumps(PRESS | {"duration_s": -1}))
+    with pytest.raises(rt.InputError, match="^press.json: duration_s = -1: expected"):
+        rt.run("press.json")
+    (in_folder / "press.json").write_text(json.dumps(PRESS))
+    with pytest.raises(rt.InputError, match="^duration_s = -1: expected"):
+        rt.run("press.json", set={"duration_s": -1})
+
+
 def test_an_input_is_never_replaced(in_folder):
     (in_folder / "press.json").write_text(json.dumps(PRESS))
     with pytest.raises(rt.InputError, match="press.json"):
