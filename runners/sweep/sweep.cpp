@@ -284,7 +284,7 @@ Sweep Sweep::load(const std::string& name_or_file, const std::vector<std::string
     return from_json(text, name_or_file, settings);
   };
   return is_stored(embedded_sweeps(), name_or_file) ? read(overrides)
-                                                    : read_text_of(name_or_file, overrides, read);
+                                                    : with_file_in_refusal(name_or_file, overrides, read);
 }
 
 const std::string& Sweep::title() const {

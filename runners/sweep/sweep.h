@@ -23,8 +23,8 @@ class Sweep {
   // (sweep_statements.h).
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
-  // Reads a sweep of data/sweeps by its name, or a JSON file. A refusal of the text of a file begins with the
-  // file; a refusal of an override does not.
+  // Reads a sweep of data/sweeps by its name, or a JSON file. An error in the text of a file begins with the
+  // name of that file; an error in an override does not name a file.
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;

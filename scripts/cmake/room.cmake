@@ -22,7 +22,7 @@ endfunction()
 #   USES     the rooms whose headers this folder includes
 #   LINKS    libraries from outside; they stay private, since no public header includes one
 #   SOURCES  files beyond the .cpp files of the folder
-#   COLD     no run spends its time in this room: it is compiled with -O1, which takes two thirds of the time
+#   COLD     runs spend little time in this room; -O1 cuts its compile time to two thirds
 function(room)
   cmake_parse_arguments(ROOM COLD "" "USES;LINKS;SOURCES" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})

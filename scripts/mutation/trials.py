@@ -10,7 +10,7 @@ import tempfile
 import time
 
 STAGES = ("unit", "program", "bits")  # in this order; "bits": the stored results
-SLOW_FIGURE_S = 8  # these and slower ones are not tried
+SLOW_FIGURE_S = 8  # figures that take this long or longer are not tried
 # A mistake may ask for all memory or write without end.
 LIMITS = ("prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
 

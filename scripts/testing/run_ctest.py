@@ -167,7 +167,7 @@ def cache_of(build):
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--jobs", default="3")  # some wait: for a browser, a daemon, the end of a time
+    parser.add_argument("--jobs", default="3")  # some tests only wait: for a browser, a daemon or a timeout
     parser.add_argument("--stop-after", type=int, default=10)
     arguments, options = parser.parse_known_args()
     build = arguments.build.resolve()

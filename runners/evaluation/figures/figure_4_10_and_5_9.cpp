@@ -32,9 +32,11 @@ TriangleMesh bar_of(double length_m) {
 Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
   const Vec3 &proxy_W = trace.proxy_position_m[tick], &hip_W = trace.hip_position_m[tick];
   const auto row = [](const Vec3& p, const Vec3& direction) {
-    // The shortest rotation from z to n: the half angle by 1 + cos and z x n. Eigen's needs 6 s to compile.
+    // q is the shortest rotation from z to n: scalar part 1 + z . n, vector part z x n, normalised; a half
+    // turn about x for n = -z. Eigen's FromTwoVectors() takes 6 s to compile.
     const Vec3 n = direction.normalized();
-    const auto q = Eigen::Quaterniond(1 + n.z(), -n.y(), n.x(), 0).normalized();
+    const auto q = n.z() <= -1 ? Eigen::Quaterniond(0, 1, 0, 0)
+                               : Eigen::Quaterniond(1 + n.z(), -n.y(), n.x(), 0).normalized();
     return std::vector<double>{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
   };
   return table_of(name, "of proxy, HIP, normal and force",

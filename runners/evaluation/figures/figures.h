@@ -73,7 +73,8 @@ class FigureContext {
   std::vector<std::string> note_lines() const { return notes_.lines(); }
 
  private:
-  Trace simulated(const Experiment& experiment);  // called by several threads at the same time
+  // Several threads call it at the same time: of the members it changes only notes_, which has a lock.
+  Trace simulated(const Experiment& experiment);
   template <class Work>
   auto collect(std::size_t count, Work&& work) const {
     std::vector<decltype(work(std::size_t{}))> results(count);

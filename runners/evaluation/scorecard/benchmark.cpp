@@ -162,7 +162,7 @@ std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector
     if (!taken.insert(text.first).second)
       throw InputError(std::string(kind) + " " + text.first, "appears twice: expected once");
     const auto item = [&](const std::vector<std::string>&) { return read(text.first, text.second); };
-    items.push_back(is_stored(stored, wanted) ? item({}) : read_text_of(wanted, {}, item));
+    items.push_back(is_stored(stored, wanted) ? item({}) : with_file_in_refusal(wanted, {}, item));
     if (!is_stored(stored, wanted)) items.back().file = wanted;
   }
   if (!names.empty()) return items;
@@ -250,7 +250,7 @@ void bring_tool(const Json& tool, const std::string& scene, const std::string& m
   renderer.update(tool);
 }
 
-// Returns the sweep of BenchmarkScene::sweep(). label: names it in errors.
+// Does the work of BenchmarkScene::sweep(). label: the subject of its errors.
 Sweep sweep_of(const BenchmarkScene& scene, const Method& method, int replicates, const std::string& label) {
   const std::string& name = scene.name;
   Json run = parse_json(scene.experiment, label);
@@ -277,7 +277,7 @@ Sweep sweep_of(const BenchmarkScene& scene, const Method& method, int replicates
       label);
 }
 
-// Returns the file whose text a refusal is about; empty if that text is stored.
+// Returns the file whose text the refusal `line` is about; empty if that text is not from a file.
 const std::string& file_of(const std::string& line, const BenchmarkScene& scene, const Method& method) {
   return line.starts_with("renderer") || line.starts_with("method ") ? method.file : scene.file;
 }
@@ -292,9 +292,9 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
     throw;
   } catch (const InputError& error) {
     const std::string line = without_subject(label, error.what());
-    const std::string& wrong = file_of(line, *this, method);
-    if (wrong.empty()) throw;
-    throw FileRefusal(wrong, line);
+    const std::string& refused_file = file_of(line, *this, method);
+    if (refused_file.empty()) throw;
+    throw FileRefusal(refused_file, line);
   }
 }
 

@@ -24,7 +24,7 @@ inline constexpr int kScorecardSeed = 301;
 struct Method {
   std::string name, title;
   std::string renderer;   // JSON
-  std::string file = {};  // the file that states it; empty: it is stored
+  std::string file = {};  // the JSON file that it was read from; empty: data/methods or a renderer's defaults
 };
 
 struct BenchmarkScene {
@@ -40,12 +40,12 @@ struct BenchmarkScene {
   std::vector<Bound> success;
   std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
   std::string tool = {};  // JSON: settings of the renderers that define their tool; empty: for a HIP
-  std::string file = {};  // the file that states it; empty: it is stored
+  std::string file = {};  // the JSON file that it was read from; empty: from data/scenes
 
   // Returns the sweep of a method. It varies only noise level and replicate, so that cell and replicate, the
   // keys of all noise, are the same for every method. A scene with its own noise has as many runs as others
-  // have with noise. Throws InputError if the method cannot be run, which begins with the file of the scene
-  // or of the method if its text is wrong.
+  // have with noise. Throws InputError if the method cannot be run. If the text of a scene or method file is
+  // wrong, the message begins with the name of that file.
   Sweep sweep(const Method& method, int replicates) const;
 };
 

@@ -13,11 +13,12 @@ namespace remote_touch {
 
 namespace {
 
-// Returns of(method), which reads its renderer. A refusal begins with the file of the method.
+// Returns of(method), which reads the method's renderer. If it throws InputError and the method is from a
+// file, the message begins with the file name.
 template <class Of>
-bool answer_of(const Method& method, Of of) {
+bool with_file_of(const Method& method, Of of) {
   if (method.file.empty()) return of(method);
-  return read_text_of(method.file, {}, [&](const std::vector<std::string>&) { return of(method); });
+  return with_file_in_refusal(method.file, {}, [&](const std::vector<std::string>&) { return of(method); });
 }
 
 bool has_renderer_for_tools(const Method& method) {
@@ -49,7 +50,7 @@ bool judges_contact(const BenchmarkScene& scene) {
 // would count as failures.
 void require_known_contact(const Benchmark& chosen) {
   for (const Method& method : chosen.methods) {
-    if (is_for_tools(method) || answer_of(method, has_known_contact)) continue;
+    if (is_for_tools(method) || with_file_of(method, has_known_contact)) continue;
     for (const BenchmarkScene& scene : chosen.scenes)
       if (judges_contact(scene))
         throw InputError("method " + method.name,
@@ -62,7 +63,7 @@ void require_known_contact(const Benchmark& chosen) {
 }  // namespace
 
 bool is_for_tools(const Method& method) {
-  return answer_of(method, has_renderer_for_tools);
+  return with_file_of(method, has_renderer_for_tools);
 }
 
 Benchmark chosen_benchmark(const std::vector<std::string>& methods, const std::vector<std::string>& scenes,

@@ -53,9 +53,9 @@ class Subject {
   bool is_for(const MetamorphicScene& scene) const {
     if (!is_tool()) return true;
     const ContactModel& model = entry_.contact_model;
-    if (model.feels_only_regions && scene.views.front().cloud.fixture_radius_m.empty()) return false;
-    if (model.needs_resting_cloud && !scene.cloud_rests) return false;
-    return !(model.rounds_creases && scene.has_crease);
+    if (model.renders_only_regions && scene.views.front().cloud.fixture_radius_m.empty()) return false;
+    if (model.motion_amplifies_rounding && !scene.cloud_rests) return false;
+    return !(model.smooths_creases && scene.has_crease);
   }
   DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
   bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
@@ -67,7 +67,7 @@ class Subject {
     Variation run{scene, outputs, &kernels_};
     run.reach_m = max_length_m(parameters);
     run.contact_model = entry_.contact_model;
-    run.can_be_mirrored = !is_tool() || (!run.contact_model.feels_only_regions && !names_a_tool());
+    run.can_be_mirrored = !is_tool() || (!run.contact_model.renders_only_regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }

@@ -98,7 +98,7 @@ bool use_other_grid(Variation& run) {
 }
 
 bool shuffle(Variation& run) {
-  if (run.contact_model.order_matters || needs_its_images(run)) return false;
+  if (run.contact_model.depends_on_point_order || needs_its_images(run)) return false;
   replace_search(run, 0);
   reorder(run, [](int size) {
     std::vector<int> order(static_cast<std::size_t>(size));
@@ -111,7 +111,7 @@ bool shuffle(Variation& run) {
 }
 
 bool add_missing(Variation& run) {
-  if (run.contact_model.order_matters || needs_its_images(run)) return false;
+  if (run.contact_model.depends_on_point_order || needs_its_images(run)) return false;
   replace_search(run, run.scene.cell_m);
   reorder(run, [](int size) {
     std::vector<int> order{-1};

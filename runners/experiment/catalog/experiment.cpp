@@ -52,8 +52,9 @@ Experiment Experiment::load(const std::string& name_or_file, const std::vector<s
   const auto read = [&](const std::vector<std::string>& settings) {
     return from_json(text, name_or_file, settings);
   };
-  return is_stored(embedded_experiments(), name_or_file) ? read(overrides)
-                                                         : read_text_of(name_or_file, overrides, read);
+  return is_stored(embedded_experiments(), name_or_file)
+             ? read(overrides)
+             : with_file_in_refusal(name_or_file, overrides, read);
 }
 
 std::string Experiment::to_json() const {

@@ -34,7 +34,8 @@ class Experiment {
                               const std::vector<std::string>& overrides = {});
   static Experiment from_json(const nlohmann::ordered_json& configuration);
   // Reads an experiment of data/experiments by its name, a JSON file, or a recorded live session, which is
-  // run again. A refusal of the text of a file begins with the file.
+  // run again. An error in the text of a file begins with the name of that file; an error in an override does
+  // not name a file.
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const RunSettings& settings() const { return configuration_.run; }

@@ -98,32 +98,38 @@ struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
 // Degrees of freedom that a renderer uses: six if its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };
 
-// What the contract tests and `verify` may ask of a renderer. Runs do not depend on it. All values are false
+// What the contract tests and `verify` may ask of a renderer. It does not change runs. All values are false
 // for a proxy that is held by all points of a cloud and by the forbidden regions around them: every check
-// applies to it. Each value that is true changes or omits checks.
+// applies to it. Each true value changes or omits checks.
 struct ContactModel {
-  bool feels_only_regions = false;     // the checks give it points with r_f above 0, and mirror no tool
-  bool lets_a_deep_hand_pass = false;  // points only push: the contract tests press less deep
-  bool may_lose_contact = false;       // `touch` asks for a force in 2 % of the ticks, not in half of them
-  bool order_matters = false;          // the points keep their rows and columns
-  bool uses_camera = false;            // clouds keep their images, which give the direction to the sensor
-  bool depends_on_axes = false;        // the scene is not moved, mirrored or sent more often
-  bool rounds_creases = false;         // a tool gets no scene in which walls meet
-  bool needs_resting_cloud = false;    // a tool gets no cloud that moves
+  // The contract tests give every point a region; `verify` gives a tool only scenes with regions, and mirrors
+  // none.
+  bool renders_only_regions = false;
+  // Points only push: three contract tests hold the HIP 2 to 3 mm above the points.
+  bool pressed_hip_passes_through = false;
+  bool may_lose_contact = false;        // `touch` asks for a force in 2 % of the ticks, not in half of them
+  bool depends_on_point_order = false;  // `verify` does not reorder the points
+  bool uses_camera = false;      // `verify` keeps the image layout, which gives the direction to the sensor
+  bool depends_on_axes = false;  // `verify` does not move or mirror the scene, or double the frame rate
+  bool smooths_creases = false;  // `verify` gives a tool no scene in which walls meet
+  // `verify` gives a tool no moving cloud, because rounding decides when the surface passes through the tool.
+  bool motion_amplifies_rounding = false;
 
-  // The models that have a name, by what holds the proxy. remote_touch_plugin.h gives the reasons.
+  // The named models. The name says what holds the proxy; runners/interfaces/plugins/remote_touch_plugin.h
+  // gives reasons.
   static const ContactModel points, regions, mesh, sheet, nothing, oriented, resting_points;
 };
 inline constexpr ContactModel ContactModel::points{};
-inline constexpr ContactModel ContactModel::regions{.feels_only_regions = true};
-inline constexpr ContactModel ContactModel::mesh{.may_lose_contact = true, .order_matters = true};
-inline constexpr ContactModel ContactModel::sheet{.depends_on_axes = true, .rounds_creases = true};
-inline constexpr ContactModel ContactModel::nothing{.lets_a_deep_hand_pass = true, .may_lose_contact = true};
+inline constexpr ContactModel ContactModel::regions{.renders_only_regions = true};
+inline constexpr ContactModel ContactModel::mesh{.may_lose_contact = true, .depends_on_point_order = true};
+inline constexpr ContactModel ContactModel::sheet{.depends_on_axes = true, .smooths_creases = true};
+inline constexpr ContactModel ContactModel::nothing{.pressed_hip_passes_through = true,
+                                                    .may_lose_contact = true};
 inline constexpr ContactModel ContactModel::oriented{
     .may_lose_contact = true, .uses_camera = true, .depends_on_axes = true};
-inline constexpr ContactModel ContactModel::resting_points{.needs_resting_cloud = true};
+inline constexpr ContactModel ContactModel::resting_points{.motion_amplifies_rounding = true};
 
-// The models by their numbers in plug-ins. Python has their names in the same order.
+// The named models, indexed by their number in plug-ins. Python lists the names in the same order.
 inline constexpr ContactModel kContactModels[] = {
     ContactModel::points,  ContactModel::regions,  ContactModel::mesh,          ContactModel::sheet,
     ContactModel::nothing, ContactModel::oriented, ContactModel::resting_points};

@@ -19,6 +19,7 @@ std::span<const EmbeddedText> embedded_scenes();
 // Numbers of tests/second_implementation, by chapter.
 std::span<const EmbeddedText> embedded_second_implementation();
 
+// True if one of the texts has this name.
 bool is_stored(std::span<const EmbeddedText> stored, const std::string& name);
 
 // Returns the stored text of that name, or the text of that file. Throws InputError if there is neither.

@@ -1,4 +1,4 @@
-// Refusals of the text of a file, such as that of an experiment. Their line begins with the file.
+// Errors in the text of a file, such as an experiment. The message begins with the name of the file.
 #pragma once
 
 #include <string>
@@ -8,23 +8,24 @@
 
 namespace remote_touch {
 
-// A refusal that begins with the file whose text is wrong.
+// An error in the text of a file. It begins with the name of that file.
 class FileRefusal : public InputError {
  public:
   using InputError::InputError;
 };
 
-// Returns the line of a refusal without the subject at its beginning; the line as it is if it has another.
+// Returns the line without its subject if that is `subject`; otherwise the whole line.
 std::string without_subject(const std::string& subject, const std::string& line);
 
 // True if the line refuses a setting of one of the overrides "key=value".
-bool is_of_override(const std::string& line, const std::vector<std::string>& overrides);
+bool refuses_override(const std::string& line, const std::vector<std::string>& overrides);
 
-// Returns read(overrides), which reads the text of the file with overrides on top of it. If it throws
-// InputError, the refusal begins with the file. It does not if an override is wrong: the refused setting is
-// that of an override, or the text alone is not refused.
+// Returns read(overrides), which reads the text of the file with overrides on top of it. An error in the text
+// begins with the name of that file. A refusal of an override does not name the file. A refusal counts as
+// that of an override if its line begins with the path of one, or if read() accepts the text without
+// overrides.
 template <class Read>
-auto read_text_of(const std::string& file, const std::vector<std::string>& overrides, Read&& read) {
+auto with_file_in_refusal(const std::string& file, const std::vector<std::string>& overrides, Read&& read) {
   const auto is_refused_alone = [&] {
     try {
       read(std::vector<std::string>());
@@ -35,11 +36,11 @@ auto read_text_of(const std::string& file, const std::vector<std::string>& overr
   };
   try {
     return read(overrides);
-  } catch (const FileRefusal&) {  // the text names another file, which is wrong
+  } catch (const FileRefusal&) {  // the error is in another file, which this text names
     throw;
   } catch (const InputError& error) {
     const std::string line = without_subject(file, error.what());
-    if (overrides.empty() || (!is_of_override(line, overrides) && is_refused_alone()))
+    if (overrides.empty() || (!refuses_override(line, overrides) && is_refused_alone()))
       throw FileRefusal(file, line);
     throw InputError(line);
   }

@@ -179,8 +179,8 @@ std::optional<std::string> translated_key(const std::string& key, const Json& be
   return now.contains(key) ? key : new_name(key, keys_of(now), name_of(before));
 }
 
-// Adds the keys and texts of `before` that are others in `now`. A flag that has become a text has a new key,
-// too.
+// Adds the keys and texts of `before` that differ in `now`. A flag that became a text also has a new key, so
+// the key lists it.
 void add_translated(const Json& before, const Json& now, std::set<std::string>& names) {
   if (before.is_object() && now.is_object()) {
     for (const auto& item : before.items()) {

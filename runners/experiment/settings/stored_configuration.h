@@ -14,8 +14,8 @@ namespace remote_touch {
 // other names (renamed_names.h) have their present names, also on axes. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
 
-// Returns the names that stored_configuration() replaces in the text, each once: "contact_rule to
-// contact_motion".
+// Returns the names and text values that stored_configuration() replaces, sorted, each once, as "old to new":
+// "contact_rule to contact_motion". Empty if the text is not JSON.
 std::vector<std::string> translated_names(const std::string& text);
 
 // Root attribute of what was made of a result of an earlier schema: that schema. The names in it were

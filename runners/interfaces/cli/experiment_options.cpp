@@ -118,7 +118,7 @@ void add_merge_and_replay(Subcommands& commands) {
                   "a note on the run is an error: exit code 2, and nothing is written");
 }
 
-std::vector<std::string> quick_figures() {
+std::vector<std::string> figures_thinned_by_quick() {
   std::vector<std::string> names;
   for (const FigureEntry& entry : figures())
     if (entry.quick_coarse > 1) names.emplace_back(entry.name);
@@ -135,7 +135,8 @@ void add_figure(Subcommands& commands) {
                    "maps: use only every Nth value of each axis; claims about a whole map then stay open")
       ->check(CLI::Range(1, 10));
   command->add_flag("--quick", figure->quick,
-                    "--coarse only for the maps that take minutes: " + joined(quick_figures(), ", "));
+                    "use only every second to fourth value of each axis of the maps that take minutes: " +
+                        joined(figures_thinned_by_quick(), ", "));
 }
 
 }  // namespace

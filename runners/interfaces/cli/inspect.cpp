@@ -153,8 +153,8 @@ std::string last_name(const std::string& path) {
   return path.substr(path.rfind('/') + 1);
 }
 
-// Returns the names in a result of an earlier schema that are replaced when it is used.
-std::vector<std::string> replaced_names(const Hdf5Content& content) {
+// Returns the names in a result of an earlier schema that are translated when the result is used.
+std::vector<std::string> translated_names_in(const Hdf5Content& content) {
   std::vector<std::string> names = translated_names(attribute(content.attributes, "config"));
   std::set<std::string> of_columns;
   for (const auto& dataset : content.datasets) {
@@ -170,10 +170,11 @@ std::vector<std::string> replaced_names(const Hdf5Content& content) {
 void print_earlier_schema(const Hdf5Content& content) {
   const std::string schema = attribute(content.attributes, "schema");
   if (!is_earlier_schema(schema)) return;
-  const std::vector<std::string> names = replaced_names(content);
-  const std::string line = "older schema " + schema + "; " +
-                           (names.empty() ? "none of its names has changed"
-                                          : "translated when it is used: " + joined(names, ", "));
+  const std::vector<std::string> names = translated_names_in(content);
+  const std::string line =
+      "earlier schema " + schema + "; " +
+      (names.empty() ? "none of its names has changed"
+                     : "these names are translated when the result is used: " + joined(names, ", "));
   std::printf("  note         %s\n", printable(line).c_str());
 }
 

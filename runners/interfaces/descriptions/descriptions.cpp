@@ -168,7 +168,7 @@ bool describe_trace(const std::string& name, std::FILE* out) {
   return true;
 }
 
-// Tests read the time and --quick here, so that no other list says which figures are slow.
+// Tests read the time and --quick from this line, so that they keep no list of slow figures of their own.
 bool describe_figure(const std::string& name, std::FILE* out) {
   const auto is_it = [&](const FigureEntry& entry) { return name == entry.name; };
   const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
@@ -176,7 +176,7 @@ bool describe_figure(const std::string& name, std::FILE* out) {
   std::fprintf(out, "%s: a figure: %s; about %g s on one core", entry->name, entry->summary,
                entry->expected_s);
   if (entry->quick_coarse > 1)
-    std::fprintf(out, ", with --quick one in %d values of each axis of its map", entry->quick_coarse);
+    std::fprintf(out, "; --quick uses one in %d values of each axis of its map", entry->quick_coarse);
   return std::fputs("\n", out) >= 0;
 }
 

@@ -12,12 +12,12 @@ namespace remote_touch {
 
 namespace {
 
-static_assert(kContactModels[REMOTE_TOUCH_REGIONS].feels_only_regions &&
-              kContactModels[REMOTE_TOUCH_MESH].order_matters &&
-              kContactModels[REMOTE_TOUCH_NOTHING].lets_a_deep_hand_pass &&
-              kContactModels[REMOTE_TOUCH_SHEET].rounds_creases &&
+static_assert(kContactModels[REMOTE_TOUCH_REGIONS].renders_only_regions &&
+              kContactModels[REMOTE_TOUCH_MESH].depends_on_point_order &&
+              kContactModels[REMOTE_TOUCH_NOTHING].pressed_hip_passes_through &&
+              kContactModels[REMOTE_TOUCH_SHEET].smooths_creases &&
               kContactModels[REMOTE_TOUCH_ORIENTED].uses_camera &&
-              kContactModels[REMOTE_TOUCH_RESTING_POINTS].needs_resting_cloud &&
+              kContactModels[REMOTE_TOUCH_RESTING_POINTS].motion_amplifies_rounding &&
               REMOTE_TOUCH_ENTRENCHED == static_cast<int>(ContactState::entrenched) &&
               REMOTE_TOUCH_DEVICE_NOT_FINITE == static_cast<int>(RenderStatus::device_not_finite));
 

@@ -83,29 +83,32 @@ typedef struct {
   double tool_penetration_m;
 } remote_touch_output;
 
-/* What holds the proxy. Runs do not depend on it. It says what `verify` and the contract tests may ask of the
- * renderer; if touch is relaxed, a force in 2 % of the ticks is enough, not in half of them. */
+/* The contact model, named by what holds the proxy. This value does not change runs: it says what `verify`
+ * and the contract tests may ask of the renderer. The check `touch` of `verify` asks for a force in half of
+ * the ticks; where it is relaxed, in 2 %. */
 enum {
   /* All points of a cloud, and the forbidden regions around them. All checks apply. */
   REMOTE_TOUCH_POINTS = 0,
-  /* Only the regions of points with a radius above 0. The contract tests give all points a region. A tool
-   * gets only scenes with regions, which are not mirrored. */
+  /* Only the regions of points with a radius above 0. The contract tests give all points a region. `verify`
+   * gives a tool only scenes with regions, and does not mirror them. */
   REMOTE_TOUCH_REGIONS = 1,
-  /* Triangles between neighbours in an organised frame. The points keep their order. Touch is relaxed,
-   * because a moving mesh leaves the HIP behind it. */
+  /* Triangles between neighbours in an organised frame. `verify` does not reorder the points. Touch is
+   * relaxed, because a moving mesh leaves the HIP behind it. */
   REMOTE_TOUCH_MESH = 2,
-  /* A surface fitted in cells along the world's axes. The scene is not moved, mirrored or sent more often,
-   * because the outputs are then only similar. A tool gets no scene in which walls meet. */
+  /* A surface fitted in cells along the world's axes. `verify` does not move or mirror the scene, or double
+   * its frame rate, because the outputs are then only similar. It gives a tool no scene in which walls
+   * meet. */
   REMOTE_TOUCH_SHEET = 3,
-  /* Nothing: points only push, and a HIP that is pressed deeper passes them. The contract tests press less
-   * deep. Touch is relaxed. */
+  /* Nothing: points only push, and a HIP that is pressed deeper passes them. Three contract tests hold the
+   * HIP 2 to 3 mm above the points. Touch is relaxed. */
   REMOTE_TOUCH_NOTHING = 4,
-  /* All points, and the direction to the sensor: from the image of a frame, which it keeps, or else from a
-   * setting in the world's axes. The scene is not moved, mirrored or sent more often. Touch is relaxed,
-   * because forbidden regions are ignored: only the points in their middle are met. */
+  /* All points, and the direction to the sensor: from the image layout of a frame, which `verify` keeps, or
+   * else from a setting in the world's axes. `verify` does not move or mirror the scene, or double its frame
+   * rate. Touch is relaxed, because the proxy ignores forbidden regions and meets only the points in their
+   * middle. */
   REMOTE_TOUCH_ORIENTED = 5,
-  /* All points, but those that a new frame puts into the tool stay in it. A tool gets only clouds that rest,
-   * because rounding decides when a moving surface passes through it. */
+  /* All points, but points that a new frame puts into the tool stay in it. `verify` gives a tool only clouds
+   * at rest, because rounding decides when a moving surface passes through the tool. */
   REMOTE_TOUCH_RESTING_POINTS = 6
 };
 

@@ -141,7 +141,7 @@ TEST(Sweeps, AcceptAnExperimentByNameByFileOrInline) {
   EXPECT_HAS(refusal([&] { small({"experiment=moon"}); }), "moon: cannot be read");
 }
 
-TEST(Sweeps, ARefusalOfTheTextOfAFileBeginsWithThatFile) {
+TEST(Sweeps, AnErrorInAFileBeginsWithItsName) {
   const TestFolder folder("sweep_file_test");
   const std::string file = (folder / "sweep.json").string(), own = (folder / "mine.json").string();
   Json json = Json::parse(kSmall);

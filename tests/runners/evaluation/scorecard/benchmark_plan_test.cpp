@@ -150,7 +150,7 @@ TEST(Benchmark, NamesWhatIsWrongInAFile) {
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
 }
 
-TEST(Benchmark, ARefusalOfTheTextOfAFileBeginsWithTheFile) {
+TEST(Benchmark, AnErrorInAFileBeginsWithItsName) {
   const TestFolder folder("benchmark_file_test");
   const std::string scene = (folder / "my-scene.json").string(),
                     method = (folder / "my-method.json").string();

@@ -251,7 +251,7 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
 }
 
-TEST(Experiments, ARefusalOfTheTextOfAFileBeginsWithTheFile) {
+TEST(Experiments, AnErrorInAFileBeginsWithItsName) {
   const TestFolder folder("experiment_file_test");
   const std::string file = (folder / "mine.json").string();
   const auto why = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -278,7 +278,7 @@ TEST(Experiments, ARefusalOfAnOverrideDoesNotNameTheFile) {
   EXPECT_TRUE(why(kSmall, "seed=-1").starts_with("seed = -1: expected "));
   EXPECT_TRUE(why(kSmall, "seed").starts_with("--set seed: expected "));
   EXPECT_TRUE(why(kSmall, "renderer.r1_m=0.0051").starts_with("renderer.r1_m = "));
-  // Also if the text of the file is wrong, too.
+  // This holds even if the text of the file is wrong.
   EXPECT_TRUE(why("{}", "scenario=3").starts_with("scenario = 3: "));
   EXPECT_TRUE(why(R"({"seed": 3})", "seed.x=1").starts_with("--set seed.x=1: "));
 }
