@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
+#include <typeinfo>
 
 #include "analysis/measures/settled_contact_measures.h"
 #include "core/parameters/input_error.h"
@@ -279,6 +280,9 @@ Sweep sweep_of(const BenchmarkScene& scene, const Method& method, int replicates
 
 // Returns the file whose text the refusal `line` is about; empty if that text is not from a file.
 const std::string& file_of(const std::string& line, const BenchmarkScene& scene, const Method& method) {
+  const Json tool = scene.tool.empty() ? Json::object() : parse_json(scene.tool, scene.name);
+  for (const auto& item : tool.items())
+    if (line.starts_with("renderer." + item.key() + " ")) return scene.file;
   return line.starts_with("renderer") || line.starts_with("method ") ? method.file : scene.file;
 }
 
@@ -288,12 +292,11 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   const std::string label = "scene " + name + " with " + method.name;
   try {
     return sweep_of(*this, method, replicates, label);
-  } catch (const FileRefusal&) {
-    throw;
   } catch (const InputError& error) {
+    if (typeid(error) != typeid(InputError)) throw;
     const std::string line = without_subject(label, error.what());
     const std::string& refused_file = file_of(line, *this, method);
-    if (refused_file.empty()) throw;
+    if (refused_file.empty() || line.starts_with("replicates")) throw;
     throw FileRefusal(refused_file, line);
   }
 }

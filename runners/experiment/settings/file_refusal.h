@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include "core/parameters/input_error.h"
@@ -17,31 +18,27 @@ class FileRefusal : public InputError {
 // Returns the line without its subject if that is `subject`; otherwise the whole line.
 std::string without_subject(const std::string& subject, const std::string& line);
 
-// True if the line refuses a setting of one of the overrides "key=value".
-bool refuses_override(const std::string& line, const std::vector<std::string>& overrides);
-
-// Returns read(overrides), which reads the text of the file with overrides on top of it. An error in the text
-// begins with the name of that file. A refusal of an override does not name the file. A refusal counts as
-// that of an override if its line begins with the path of one, or if read() accepts the text without
-// overrides.
+// Returns read(overrides), which reads the text of the file with overrides "key=value" on top of it. If
+// read() throws InputError because the text is wrong, the message begins with the name of the file. The text
+// is wrong if read() refuses it in the same words without overrides. A class of its own derived from
+// InputError, such as that of a problem in Python, passes unchanged.
 template <class Read>
 auto with_file_in_refusal(const std::string& file, const std::vector<std::string>& overrides, Read&& read) {
-  const auto is_refused_alone = [&] {
+  const auto line_of = [&](const InputError& error) { return without_subject(file, error.what()); };
+  const auto is_refused_alone = [&](const std::string& line) {
     try {
       read(std::vector<std::string>());
       return false;
-    } catch (const InputError&) {
-      return true;
+    } catch (const InputError& alone) {
+      return line_of(alone) == line;
     }
   };
   try {
     return read(overrides);
-  } catch (const FileRefusal&) {  // the error is in another file, which this text names
-    throw;
   } catch (const InputError& error) {
-    const std::string line = without_subject(file, error.what());
-    if (overrides.empty() || (!refuses_override(line, overrides) && is_refused_alone()))
-      throw FileRefusal(file, line);
+    if (typeid(error) != typeid(InputError)) throw;
+    const std::string line = line_of(error);
+    if (overrides.empty() || is_refused_alone(line)) throw FileRefusal(file, line);
     throw InputError(line);
   }
 }

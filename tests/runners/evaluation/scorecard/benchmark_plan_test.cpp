@@ -172,6 +172,15 @@ TEST(Benchmark, AnErrorInAFileBeginsWithItsName) {
   EXPECT_TRUE(of_scene.starts_with(scene + ": scenario.spacing_m = 7: expected ")) << of_scene;
   const std::string of_method = refusal([&] { stored_scene.sweep(own_method, 2); });
   EXPECT_TRUE(of_method.starts_with(method + ": renderer.xi = -1: expected ")) << of_method;
+
+  wrong["experiment"] = stored;
+  wrong["tool"] = {{"tool_mesh", "moon.xyz"}};
+  folder.write("my-scene.json", wrong.dump());
+  folder.write("my-method.json", R"({"title": "t", "renderer": {"name": "tool"}})");
+  const BenchmarkScene with_tool = chosen_scenes({scene}).front();
+  const Method own_tool = chosen_methods({method}).front();
+  const std::string of_tool = refusal([&] { with_tool.sweep(own_tool, 2); });
+  EXPECT_TRUE(of_tool.starts_with(scene + ": renderer.tool_mesh = ")) << of_tool;
 }
 
 // The card states each method as it is written, so a scene must not replace its tool.

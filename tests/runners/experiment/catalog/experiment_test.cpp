@@ -280,6 +280,7 @@ TEST(Experiments, ARefusalOfAnOverrideDoesNotNameTheFile) {
   EXPECT_TRUE(why(kSmall, "renderer.r1_m=0.0051").starts_with("renderer.r1_m = "));
   // This holds even if the text of the file is wrong.
   EXPECT_TRUE(why("{}", "scenario=3").starts_with("scenario = 3: "));
+  EXPECT_TRUE(why("{}", "=3").starts_with("--set =3: "));
   EXPECT_TRUE(why(R"({"seed": 3})", "seed.x=1").starts_with("--set seed.x=1: "));
 }
 

@@ -152,6 +152,22 @@ print(json.dumps(said))
         assert has_cause == bool(re.search(r": \w*(Error|Exit): ", line)), (source, line)
 
 
+def test_an_error_in_a_class_keeps_its_cause_if_the_experiment_is_a_file(in_python):
+    source, expected = next(each for each in ERRORS if "(rt.Scenario)" in each[0])
+    line, has_cause = json.loads(in_python(COMMON + f'''
+exec({source!r})
+rt.register(A, "a")
+with open("press.json", "w") as file:
+    json.dump({{**PRESS, "trajectory": {{"name": "waypoints", "waypoints": [[0, 0, 0, 0], [0, 0, 0.1, 0.1]]}}}}, file)
+try:
+    rt.run("press.json", set={{"scenario": {{"name": "a"}}}}, output="a.h5")
+except rt.InputError as error:
+    print(json.dumps([str(error), error.__cause__ is not None]))
+'''))
+    assert line.startswith(expected)
+    assert has_cause == bool(re.search(r": \w*(Error|Exit): ", line)), line
+
+
 # What cannot be registered, and how the line begins that says so.
 REFUSED = [entry.split("\n-> ") for entry in '''
 rt.register(rt.Renderer)
