@@ -5,6 +5,7 @@
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 

@@ -117,6 +117,7 @@ struct ContactModel {
 
   // The named models. The name says what holds the proxy; runners/interfaces/plugins/remote_touch_plugin.h
   // gives reasons.
+  // NOLINTNEXTLINE(readability-identifier-naming): these are the names of plug-ins and Python.
   static const ContactModel points, regions, mesh, sheet, nothing, oriented, resting_points;
 };
 inline constexpr ContactModel ContactModel::points{};
