@@ -296,7 +296,8 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
     if (typeid(error) != typeid(InputError)) throw;
     const std::string line = without_subject(label, error.what());
     const std::string& refused_file = file_of(line, *this, method);
-    if (refused_file.empty() || line.starts_with("replicates")) throw;
+    const bool is_of_caller = line.starts_with("replicates");
+    if (refused_file.empty() || is_of_caller) throw;
     throw FileRefusal(refused_file, line);
   }
 }

@@ -98,9 +98,9 @@ struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
 // Degrees of freedom that a renderer uses: six if its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };
 
-// What the contract tests and `verify` may ask of a renderer. It does not change runs. All values are false
-// for a proxy that is held by all points of a cloud and by the forbidden regions around them: every check
-// applies to it. Each true value changes or omits checks.
+// A contact model says which checks of the contract tests and of `verify` apply to a renderer. It does not
+// change runs. All values are false for a proxy that is held by all points of a cloud and by the forbidden
+// regions around them: every check applies to it. Each true value changes or omits checks.
 struct ContactModel {
   // The contract tests give every point a region; `verify` gives a tool only scenes with regions, and mirrors
   // none.

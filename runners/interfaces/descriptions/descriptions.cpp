@@ -173,7 +173,7 @@ bool describe_figure(const std::string& name, std::FILE* out) {
   const auto is_it = [&](const FigureEntry& entry) { return name == entry.name; };
   const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
   if (entry == figures().end()) return false;
-  std::fprintf(out, "%s: a figure: %s; about %g s on one core", entry->name, entry->summary,
+  std::fprintf(out, "%s: a figure: %s; about %g s on one fast core", entry->name, entry->summary,
                entry->expected_s);
   if (entry->quick_coarse > 1)
     std::fprintf(out, "; --quick uses one in %d values of each axis of its map", entry->quick_coarse);
