@@ -1,6 +1,5 @@
 #include "analysis/measures/force_change_measures.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/measures/no_value.h"
@@ -13,6 +12,7 @@ namespace {
 // Change of a column of vectors from one tick to the next.
 struct Change {
   double max = 0, squares = 0, count = 0;
+  double tick = kNoValue;  // of the first change that is the maximum; NaN if all are 0
 
   double max_or_none() const { return count == 0 ? kNoValue : max; }
   double rms_or_none() const { return count == 0 ? kNoValue : std::sqrt(squares / count); }
@@ -25,7 +25,8 @@ Change change(const Trace& trace, const std::vector<Vec3>& rows, bool at_updates
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (trace.frame_update(i) != at_updates || (rows[i].isZero(0) && rows[i - 1].isZero(0))) continue;
     const double squared = (rows[i] - rows[i - 1]).squaredNorm();
-    found.max = std::max(found.max, std::sqrt(squared));
+    if (const double size = std::sqrt(squared); size > found.max)
+      found.max = size, found.tick = static_cast<double>(i);
     found.squares += squared, ++found.count;
   }
   return found;
@@ -35,6 +36,10 @@ Change change(const Trace& trace, const std::vector<Vec3>& rows, bool at_updates
 
 double max_force_jump_N(const Trace& trace) {
   return change(trace, trace.force_N, true).max_or_none();
+}
+
+double max_force_jump_tick(const Trace& trace) {
+  return change(trace, trace.force_N, true).tick;
 }
 
 double rms_force_jump_N(const Trace& trace) {

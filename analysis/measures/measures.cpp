@@ -6,6 +6,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/contact_point.h"
+#include "analysis/measures/event_times.h"
 #include "analysis/measures/force_change_measures.h"
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/no_value.h"
@@ -84,6 +85,19 @@ constexpr Row kMeasures[] = {
      all, neither, mean_energy_per_update_J},
     {"max_energy_per_update", "J", "maximum work on the hand from one frame update to the next, with force",
      all, neither, max_energy_per_update_J},
+    {"first_contact_time", "s", "time of the first tick with a contact", all, neither, first_contact_time_s},
+    {"first_contact_tick", "1", "number of the first tick with a contact, from 0", all, neither,
+     first_contact_tick},
+    {"first_pop_through_time", "s",
+     "time of the first tick in which the proxy or tool passes through the true surface", all, neither,
+     first_pop_through_time_s},
+    {"first_pop_through_tick", "1",
+     "number of the first tick in which the proxy or tool passes through the true surface, from 0", all,
+     neither, first_pop_through_tick},
+    {"max_force_jump_time", "s", "time of the maximum change of the force at a frame update", all, neither,
+     max_force_jump_time_s},
+    {"max_force_jump_tick", "1", "number of the tick with the maximum change of the force at a frame update",
+     all, neither, max_force_jump_tick},
 
     {"max_contact_error", "m",
      "maximum distance of the contact point from the true surface, above or below it, in settled ticks",

@@ -39,8 +39,10 @@ struct Sweep::Definition {
 
   // Returns the experiment of one run. It has the values that the result states for its cell.
   Experiment run(std::size_t cell, int replicate) const;
+  std::size_t noise_cell(std::vector<std::size_t> indices) const;
   std::string title_of_run(const std::vector<std::size_t>& indices) const;
   void refuse_other_entry(const SweepAxis& axis, const std::string& label) const;
+  void refuse_other_parameters(const SweepAxis& axis, const std::string& label) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
   void check_cells(const std::string& label);
@@ -103,7 +105,7 @@ std::string title_over(const Json& experiment, const std::vector<ChangedSetting>
   for (const ChangedSetting& change : changes)
     if (is_of_sweep(change.first)) of_sweep.push_back(change);
   std::string over;
-  for (const SweepAxis& axis : axes) over += (over.empty() ? ", over " : " and ") + axis.parameter;
+  for (const SweepAxis& axis : axes) over += (over.empty() ? ", over " : " and ") + axis.subject();
   return changed_title(title, of_sweep) + over;
 }
 
@@ -147,34 +149,54 @@ Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
   const std::vector<std::size_t> indices = grid.axis_indices(cell);
   Json json = experiment;
   for (std::size_t i = 0; i < axes.size(); ++i)
-    set_value(json, axes[i].parameter, axes[i].values[indices[i]], axes[i].parameter);
+    for (const auto& [path, value] : axes[i].settings[indices[i]]) set_value(json, path, value, path);
   json["title"] = title_of_run(indices);
-  json["cell"] = cell;
+  json["cell"] = noise_cell(indices);
   json["replicate"] = static_cast<std::uint64_t>(replicate);
   Experiment made = Experiment::from_json(json);
   for (std::size_t i = 0; i < axes.size(); ++i)
-    require_run(made, axes[i].parameter, axes[i].values[indices[i]]);
+    for (const auto& [path, value] : axes[i].settings[indices[i]]) require_run(made, path, value);
   return made;
+}
+
+// Returns the cell whose noise a run has: the first one on each axis with common noise.
+std::size_t Sweep::Definition::noise_cell(std::vector<std::size_t> indices) const {
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (axes[i].common_noise) indices[i] = 0;
+  return grid.cell_at(indices);
 }
 
 // Returns the title of the experiment with the values of the cell.
 std::string Sweep::Definition::title_of_run(const std::vector<std::size_t>& indices) const {
   std::vector<ChangedSetting> changes;
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    changes.emplace_back(axes[i].parameter, axes[i].values[indices[i]]);
+  for (std::size_t i = 0; i < axes.size(); ++i) changes.push_back(axes[i].stated(indices[i]));
   return changed_title(experiment.value("title", std::string()), changes);
 }
 
 // Throws InputError for an axis that only changes the name of the renderer, scenario or trajectory. The
 // experiment has the settings of its own entry, and another entry may not have them.
 void Sweep::Definition::refuse_other_entry(const SweepAxis& axis, const std::string& label) const {
-  const std::vector<std::string> keys = path_keys(axis.parameter);
-  if (keys.size() != 2 || keys[1] != "name" || !experiment.contains(keys[0])) return;
-  for (const Json& value : axis.values)
-    if (const Json* const own = find_value(experiment, keys); own && value != *own)
-      throw InputError(label + ": axis " + axis.parameter + " = " + shown(value),
-                       "expected the axis " + keys[0] + ", with values like {\"name\": " + shown(value) +
-                           "} that may also have settings");
+  for (const std::vector<ChangedSetting>& row : axis.settings)
+    for (const auto& [path, value] : row) {
+      const std::vector<std::string> keys = path_keys(path);
+      if (keys.size() != 2 || keys[1] != "name" || !experiment.contains(keys[0])) continue;
+      if (const Json* const own = find_value(experiment, keys); own && value != *own)
+        throw InputError(label + ": axis " + path + " = " + shown(value),
+                         "expected " + std::string(axis.is_joint ? "" : "the axis ") + keys[0] +
+                             ", with values like {\"name\": " + shown(value) +
+                             "} that may also have settings");
+    }
+}
+
+// Throws InputError for an axis that sets what is not a parameter of its runs.
+void Sweep::Definition::refuse_other_parameters(const SweepAxis& axis, const std::string& label) const {
+  for (const std::string& path : axis.paths()) {
+    if (path == "cell" || path == "replicate" || path == "title")
+      throw InputError(label + ": axis " + path, "set by the sweep: expected another parameter");
+    if (const std::string section = path_keys(path).front(); section == "live" || section == "safety")
+      throw InputError(label + ": axis " + path,
+                       "only live runs use section " + section + ": expected another parameter");
+  }
 }
 
 void Sweep::Definition::check_axes(const std::string& label) const {
@@ -182,17 +204,12 @@ void Sweep::Definition::check_axes(const std::string& label) const {
   for (const Measure& measure : measures) names.insert(measure.name);
   std::size_t runs = static_cast<std::size_t>(refine ? refine->max_replicates : replicates);
   for (const SweepAxis& axis : axes) {
-    if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
-      throw InputError(label + ": axis " + axis.parameter, "set by the sweep: expected another parameter");
-    if (const std::string section = path_keys(axis.parameter).front();
-        section == "live" || section == "safety")
-      throw InputError(label + ": axis " + axis.parameter,
-                       "only live runs use section " + section + ": expected another parameter");
+    refuse_other_parameters(axis, label);
     refuse_other_entry(axis, label);
-    if (!names.insert(axis.name()).second)
-      throw InputError(label + ": axis " + axis.parameter,
-                       "another axis or measure has the name " + axis.name() + ": expected different names");
-    runs *= axis.values.size();
+    if (const std::string& name = axis.coordinate.name; !names.insert(name).second)
+      throw InputError(label + ": axis " + axis.subject(),
+                       "another axis or measure has the name " + name + ": expected different names");
+    runs *= axis.length();
     if (runs > kMaxRuns)
       throw InputError(
           label, "more than " + std::to_string(kMaxRuns) + " runs: expected fewer values or replicates");
@@ -202,7 +219,7 @@ void Sweep::Definition::check_axes(const std::string& label) const {
 void Sweep::Definition::check_budget(const std::string& label) const {
   if (!refine) return;
   auto first_round = static_cast<std::uint64_t>(replicates);
-  for (const SweepAxis& axis : axes) first_round *= (axis.values.size() - 1) / axis.stride + 1;
+  for (const SweepAxis& axis : axes) first_round *= (axis.length() - 1) / axis.stride + 1;
   if (refine->budget < first_round)
     throw InputError(label + ": refine.budget = " + std::to_string(refine->budget),
                      "expected at least the " + std::to_string(first_round) + " runs of the first round");
@@ -271,7 +288,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   if (definition->title.empty()) definition->title = label;
   definition->check_axes(label);
   definition->check_budget(label);
-  for (const SweepAxis& axis : definition->axes) definition->grid.axes.push_back(axis.column());
+  for (const SweepAxis& axis : definition->axes) definition->grid.axes.push_back(axis.coordinate);
   definition->check_cells(label);
   Sweep sweep;
   sweep.definition_ = std::move(definition);
@@ -354,7 +371,7 @@ std::optional<RefinementRule> Sweep::refinement() const {
 std::string Sweep::to_json() const {
   Json json = {{"title", definition_->title}, {"experiment", definition_->experiment}};
   for (const SweepAxis& axis : definition_->axes)
-    json["axes"].push_back(parse_json(axis.definition, axis.parameter));
+    json["axes"].push_back(parse_json(axis.definition, axis.subject()));
   json["replicates"] = definition_->replicates;
   for (const Measure& measure : definition_->measures) json["measures"].push_back(measure.name);
   if (definition_->refine) {
@@ -367,17 +384,7 @@ std::string Sweep::to_json() const {
 
 Sweep Sweep::thinned(int every) const {
   Json json = parse_json(to_json(), title());
-  for (Json& axis : json["axes"]) {
-    if (const auto count = axis.find("count"); count != axis.end()) {
-      *count = (count->get<int>() - 1) / every + 1;
-      continue;
-    }
-    Json kept = Json::array();
-    const Json& values = axis["values"];
-    for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(every))
-      kept.push_back(values[i]);
-    axis["values"] = kept;
-  }
+  for (Json& axis : json["axes"]) axis = thinned_axis(axis, static_cast<std::size_t>(every));
   return from_json(json.dump(), title());
 }
 

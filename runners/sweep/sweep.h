@@ -31,8 +31,9 @@ class Sweep {
   // Returns a result without values. The runs of the shard in the first round are pending, and those of other
   // shards are `elsewhere`.
   SweepResult plan(const Shard& shard = {}) const;
-  // Returns the experiment of one run, with its own noise: cell and replicate are part of the noise key. It
-  // has the values that the result states for its cell; throws InputError otherwise.
+  // Returns the experiment of one run. It has the values that the result states for its cell; throws
+  // InputError otherwise. Each run has its own noise, because cell and replicate are part of the noise key.
+  // On an axis with common noise, the cell of the first value is taken.
   Experiment experiment(std::size_t cell, int replicate) const;
   // Throws InputError, with the name of the file, for a stored result with other axes, measures or
   // replicates: none of its runs belongs to this sweep.

@@ -5,18 +5,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core/parameters/input_error.h"
 #include "core/parameters/unit.h"
 #include "runners/experiment/catalog/sections.h"
+#include "runners/sweep/joint_axis.h"
 
 namespace remote_touch {
 
 namespace {
 
 constexpr double kMaxValue = 1e12;
-constexpr int kMaxValues = 100000;
 
 enum class Scale { linear, log };
 
@@ -32,7 +33,7 @@ Parameters parameters(RangeAxis& axis) {
       {"parameter", &axis.parameter, 0, 0, "path of the parameter, for example scenario.noise_sigma_m"},
       {"from", &axis.from, -kMaxValue, kMaxValue, "first value"},
       {"to", &axis.to, -kMaxValue, kMaxValue, "last value"},
-      {"count", &axis.count, 1, kMaxValues, "number of values"},
+      {"count", &axis.count, 1, kMaxAxisValues, "number of values"},
       {"scale", choice(axis.scale, {"linear", "log"}), 0, 0, "equal steps or equal ratios"},
   };
 }
@@ -58,6 +59,17 @@ Json value_of(const RangeAxis& axis, std::size_t i, std::size_t count) {
   return value;
 }
 
+// Returns the axis of one parameter with these values. Its name is the last part of the path.
+SweepAxis axis_of(const std::string& parameter, const std::vector<Json>& values, const std::string& label) {
+  const std::string name = parameter.substr(parameter.rfind('.') + 1);
+  if (name.empty())
+    throw InputError(label + ".parameter = \"" + parameter + "\"", "expected the path of a parameter");
+  SweepAxis axis;
+  axis.coordinate = coordinate_of(name, unit_of_path(parameter), parameter, values, label + ".values");
+  for (const Json& value : values) axis.settings.push_back({{parameter, value}});
+  return axis;
+}
+
 SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   RangeAxis axis;
   for (const char* needed : {"from", "to", "count"})
@@ -68,20 +80,38 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
     throw InputError(label + ".to = " + Json(axis.to).dump(), "expected a value different from \"from\"");
   if (axis.scale == Scale::log && !(axis.from > 0 && axis.to > 0))
     throw InputError(label + ".scale = \"log\"", "expected \"from\" and \"to\" above 0");
-  SweepAxis result{axis.parameter, {}, std::size_t{1} << levels, {}};
-  const std::size_t count = static_cast<std::size_t>(axis.count - 1) * result.stride + 1;
-  if (count > kMaxValues)
+  const std::size_t stride = std::size_t{1} << levels;
+  const std::size_t count = static_cast<std::size_t>(axis.count - 1) * stride + 1;
+  if (count > kMaxAxisValues)
     throw InputError(label + ".count",
-                     "more than " + std::to_string(kMaxValues) + " values after refinement");
+                     "more than " + std::to_string(kMaxAxisValues) + " values after refinement");
+  std::vector<Json> values;
   for (std::size_t i = 0; i < count; ++i) {
-    result.values.push_back(value_of(axis, i, count));
-    if (i > 0 && result.values[i] == result.values[i - 1])
+    values.push_back(value_of(axis, i, count));
+    if (i > 0 && values[i] == values[i - 1])
       throw InputError(label + ".count = " + std::to_string(axis.count),
                        "neighbouring values are equal: expected fewer between from and to");
   }
+  SweepAxis result = axis_of(axis.parameter, values, label);
+  result.stride = stride;
   Json definition = Json::object();
   write_parameters(parameters(axis), definition);
   result.definition = definition.dump();
+  return result;
+}
+
+SweepAxis list_axis(const Json& json, const std::string& label) {
+  std::string parameter;
+  Json rest = json;
+  rest.erase("values");
+  const Parameters known = {{"parameter", &parameter, 0, 0, "path of the parameter"}};
+  read_parameters(rest, known, label);
+  const Json& values = json["values"];
+  if (!values.is_array() || values.empty() || values.size() > kMaxAxisValues)
+    throw InputError(label + ".values",
+                     "expected a list of 1 to " + std::to_string(kMaxAxisValues) + " values");
+  SweepAxis result = axis_of(parameter, std::vector<Json>(values.begin(), values.end()), label);
+  result.definition = Json({{"parameter", parameter}, {"values", values}}).dump();
   return result;
 }
 
@@ -95,25 +125,16 @@ bool is_double(const Json& value) {
   return value.is_number() && (value.is_number_float() || std::abs(value.get<double>()) < kMaxInteger);
 }
 
-SweepAxis list_axis(const Json& json, const std::string& label) {
-  std::string parameter;
-  Json rest = json;
-  rest.erase("values");
-  const Parameters known = {{"parameter", &parameter, 0, 0, "path of the parameter"}};
-  read_parameters(rest, known, label);
-  const Json& values = json["values"];
-  if (!values.is_array() || values.empty() || values.size() > kMaxValues)
-    throw InputError(label + ".values", "expected a list of 1 to " + std::to_string(kMaxValues) + " values");
-  std::set<std::string> names;  // a result states names, or numbers: 1 and 1.0 are one value
+// A result states names, or numbers: 1 and 1.0 are one value.
+void refuse_repeated(const std::vector<Json>& values, const std::string& label) {
+  std::set<std::string> names;
   std::set<double> numbers;
   for (const Json& value : values) {
     const std::string name = text_of(value);
-    if (name.empty()) throw InputError(label + ".values", value.dump() + " is empty: expected names");
+    if (name.empty()) throw InputError(label, value.dump() + " is empty: expected names");
     if (!names.insert(name).second || (is_double(value) && !numbers.insert(value.get<double>()).second))
-      throw InputError(label + ".values", value.dump() + " appears twice: expected once");
+      throw InputError(label, value.dump() + " appears twice: expected once");
   }
-  const Json definition = {{"parameter", parameter}, {"values", values}};
-  return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }
 
 bool is_index(const std::string& key) {
@@ -138,19 +159,20 @@ std::string column_of_rows(const std::vector<std::string>& keys) {
   return {};
 }
 
-// Returns the unit of the parameter; that of an element of a vector ends the vector's name.
-std::string unit_of_path(const std::string& parameter) {
-  const std::vector<std::string> keys = path_keys(parameter);
+}  // namespace
+
+std::string unit_of_path(const std::string& path) {
+  const std::vector<std::string> keys = path_keys(path);
   std::string named = column_of_rows(keys);
   if (named.empty()) named = is_index(keys.back()) && keys.size() > 1 ? keys[keys.size() - 2] : keys.back();
   const Unit* const unit = unit_of(named);
   return unit ? unit->text : "1";
 }
 
-}  // namespace
-
-Column SweepAxis::column() const {
-  Column column{name(), unit_of_path(parameter), parameter, {}, 1, {}};
+Column coordinate_of(const std::string& name, const std::string& unit, const std::string& long_name,
+                     const std::vector<Json>& values, const std::string& label) {
+  refuse_repeated(values, label);
+  Column column{name, unit, long_name, {}, 1, {}};
   if (std::all_of(values.begin(), values.end(), is_double)) {
     std::vector<double> numbers;
     for (const Json& value : values) numbers.push_back(value.get<double>());
@@ -166,14 +188,65 @@ Column SweepAxis::column() const {
   return column;
 }
 
-SweepAxis read_axis(const Json& json, const std::string& label, int levels) {
+std::vector<std::string> SweepAxis::paths() const {
+  std::vector<std::string> all;
+  std::set<std::string> seen;
+  for (const std::vector<ChangedSetting>& row : settings)
+    for (const ChangedSetting& setting : row)
+      if (seen.insert(setting.first).second) all.push_back(setting.first);
+  return all;
+}
+
+ChangedSetting SweepAxis::stated(std::size_t i) const {
+  if (!is_joint) return settings[i].front();
+  if (const auto* numbers = std::get_if<std::vector<double>>(&coordinate.values))
+    return {coordinate.name, (*numbers)[i]};
+  return {coordinate.name, coordinate.value_names[i]};
+}
+
+namespace {
+
+SweepAxis read_any_axis(const Json& json, const std::string& label, int levels) {
+  if (is_joint(json)) return read_joint_axis(json, label);
   if (!json.is_object() || !json.contains("parameter"))
     throw InputError(label,
                      "expected {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...} or values");
-  SweepAxis axis = json.contains("values") ? list_axis(json, label) : range_axis(json, label, levels);
-  if (axis.parameter.empty() || axis.name().empty())
-    throw InputError(label + ".parameter = \"" + axis.parameter + "\"", "expected the path of a parameter");
+  return json.contains("values") ? list_axis(json, label) : range_axis(json, label, levels);
+}
+
+}  // namespace
+
+SweepAxis read_axis(const Json& json, const std::string& label, int levels) {
+  Json rest = json;
+  std::optional<bool> common_noise;
+  if (json.is_object() && json.contains("common_noise")) {
+    if (!json["common_noise"].is_boolean())
+      throw InputError(label + ".common_noise = " + shown(json["common_noise"]), "expected true or false");
+    common_noise = json["common_noise"].get<bool>();
+    rest.erase("common_noise");
+  }
+  SweepAxis axis = read_any_axis(rest, label, levels);
+  if (!common_noise) return axis;
+  axis.common_noise = *common_noise;
+  Json definition = parse_json(axis.definition, label);
+  definition["common_noise"] = *common_noise;
+  axis.definition = definition.dump();
   return axis;
+}
+
+Json thinned_axis(Json definition, std::size_t every) {
+  if (const auto count = definition.find("count"); count != definition.end()) {
+    *count = (count->get<std::size_t>() - 1) / every + 1;
+    return definition;
+  }
+  for (const char* const list : {"values", "labels", "variants"}) {
+    const auto found = definition.find(list);
+    if (found == definition.end()) continue;
+    Json kept = Json::array();
+    for (std::size_t i = 0; i < found->size(); i += every) kept.push_back((*found)[i]);
+    *found = kept;
+  }
+  return definition;
 }
 
 }  // namespace remote_touch

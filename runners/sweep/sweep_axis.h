@@ -1,4 +1,4 @@
-// One axis of a sweep: a parameter and its values.
+// One axis of a sweep: its coordinate, and the settings that a run gets for each value of it.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,25 +6,53 @@
 #include <vector>
 
 #include "analysis/trace/column.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
 
 struct SweepAxis {
-  std::string parameter;     // a path, as for --set
-  std::vector<Json> values;  // values of the first round, and those between them that refinement may add
-  std::size_t stride = 1;    // index step between values of the first round
-  std::string definition;    // complete JSON, as in a file
+  // The dimension scale: numbers, or an enumeration of names. long_name is the path of the parameter, or the
+  // paths of all parameters with ", " between them.
+  Column coordinate;
+  // For each value the settings of a run: paths, as for --set, and values. These are the values of the first
+  // round, and those between them that refinement may add.
+  std::vector<std::vector<ChangedSetting>> settings;
+  std::size_t stride = 1;     // index step between values of the first round
+  bool is_joint = false;      // true: it sets several parameters, see joint_axis.h
+  bool common_noise = false;  // true: the runs that differ on this axis only have the same noise
+  std::string definition;     // complete JSON, as in a file
 
-  // The dimension scale: numbers, or an enumeration of the values' texts. Its name is the last part of the
-  // path, its unit the one that ends the name of the parameter (or of its column, in a list of rows).
-  Column column() const;
-  std::string name() const { return parameter.substr(parameter.rfind('.') + 1); }
+  std::size_t length() const { return settings.size(); }
+  // Returns the paths that the axis sets, each once, in the order in which they appear.
+  std::vector<std::string> paths() const;
+  // Returns what messages and titles call the axis: its name if it is joint, else the path.
+  const std::string& subject() const { return is_joint ? coordinate.name : coordinate.long_name; }
+  // Returns one value as a title states it: the subject, and the value or its name.
+  ChangedSetting stated(std::size_t i) const;
 };
 
-// Reads an axis: {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"} or
-// {"parameter": PATH, "values": [...]}. Refinement may halve the steps of the first form `levels` times.
-// label names the axis in InputErrors.
+// Reads an axis in one of three forms. label names the axis in InputErrors.
+//   {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"}: refinement may halve
+//   the steps `levels` times
+//   {"parameter": PATH, "values": [...]}
+//   several parameters together, see joint_axis.h
+// Each form may have "common_noise": true or false.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
+
+// Returns the definition of an axis with every every-th value; a range, whose steps may not divide evenly, is
+// thinned approximately.
+Json thinned_axis(Json definition, std::size_t every);
+
+// Returns the dimension scale of values: numbers if each one can be stored as a number, else an enumeration
+// of their texts. Throws InputError, about label, for a value that appears twice or is empty.
+Column coordinate_of(const std::string& name, const std::string& unit, const std::string& long_name,
+                     const std::vector<Json>& values, const std::string& label);
+
+// Returns the unit of the parameter at the path; "1" for a pure number. A parameter's unit ends its name; the
+// columns of a list of rows have units of their own.
+std::string unit_of_path(const std::string& path);
+
+inline constexpr int kMaxAxisValues = 100000;
 
 }  // namespace remote_touch

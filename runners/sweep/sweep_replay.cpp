@@ -6,6 +6,7 @@
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 

@@ -58,6 +58,11 @@ Statement option(Statement::Of of, const std::string& assignment, const std::str
   return {of, name + "=" + shown(value), name, normalised_keys(path), std::move(value)};
 }
 
+// Returns "the axis renderer.r1_m", or "the axis r_c (renderer.r1_m)" of a joint axis.
+std::string name_of(const SweepAxis& axis, const std::string& path) {
+  return "the axis " + axis.subject() + (axis.is_joint ? " (" + path + ")" : std::string());
+}
+
 std::vector<Statement> statements_of(const Json& json, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& of_experiment,
                                      const std::vector<SweepAxis>& axes, const std::string& label) {
@@ -72,7 +77,8 @@ std::vector<Statement> statements_of(const Json& json, const std::vector<std::st
                      item.value()});
   for (const std::string& assignment : of_experiment) all.push_back(option(Of::option, assignment, ""));
   for (const SweepAxis& axis : axes)
-    all.push_back({Of::axis, "", "the axis " + axis.parameter, normalised_keys(axis.parameter), {}});
+    for (const std::string& path : axis.paths())
+      all.push_back({Of::axis, "", name_of(axis, path), normalised_keys(path), {}});
   return all;
 }
 
@@ -98,14 +104,19 @@ bool states(const Json& stated, const Json& run) {
 }  // namespace
 
 void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label) {
-  for (std::size_t later = 0; later < axes.size(); ++later)
-    for (std::size_t i = 0; i < later; ++i) {
-      const Keys a = normalised_keys(axes[i].parameter), b = normalised_keys(axes[later].parameter);
-      if (!is_within(a, b) && !is_within(b, a)) continue;
-      throw InputError(label + ": axes." + std::to_string(later) + " " + axes[later].parameter,
-                       "overlaps axes." + std::to_string(i) + " " + axes[i].parameter +
-                           ": expected each parameter once, and none that contains another");
-    }
+  std::vector<std::pair<std::size_t, std::string>> earlier;  // axis and path
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const std::vector<std::string> paths = axes[i].paths();
+    for (const std::string& path : paths)
+      for (const auto& [other, other_path] : earlier) {
+        const Keys a = normalised_keys(other_path), b = normalised_keys(path);
+        if (!is_within(a, b) && !is_within(b, a)) continue;
+        throw InputError(label + ": axes." + std::to_string(i) + " " + path,
+                         "overlaps axes." + std::to_string(other) + " " + other_path +
+                             ": expected each parameter once, and none that contains another");
+      }
+    for (const std::string& path : paths) earlier.emplace_back(i, path);
+  }
 }
 
 void refuse_overwritten(const Json& json, const std::vector<std::string>& overrides,

@@ -11,7 +11,8 @@
 
 namespace remote_touch {
 
-// Throws InputError, with both paths, for two axes of one parameter, or if one contains the other.
+// Throws InputError, with both paths, if two axes set one parameter, or if a parameter of one contains that
+// of another.
 void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label);
 
 // Throws InputError, with both paths, if a later statement replaces a value of `set` or of --set. The order

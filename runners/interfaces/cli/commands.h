@@ -101,6 +101,16 @@ struct MergeRequest {
 };
 int command_merge(const CommandLine& line, const MergeRequest& request);
 
+// See SweepQuestion in runners/sweep/sweep_answer.h.
+struct AnalyseRequest {
+  std::string sweep;
+  std::string limit, along, between;  // empty: chosen
+  double threshold = 0.5, level = 0.5;
+  std::vector<std::string> means, differences, by;
+  std::string output;  // .h5 or .csv; empty: none
+};
+int command_analyse(const CommandLine& line, const AnalyseRequest& request);
+
 struct ReplayRequest {
   std::string map;
   std::string cell;  // "3,4"

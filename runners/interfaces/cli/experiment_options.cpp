@@ -118,6 +118,32 @@ void add_merge_and_replay(Subcommands& commands) {
                   "a note on the run is an error: exit code 2, and nothing is written");
 }
 
+void add_analyse(Subcommands& commands) {
+  auto [command, analyse] =
+      commands.add("analyse", "answer questions about a sweep: limits, means, differences", command_analyse);
+  command->add_option("sweep", analyse->sweep, "the result of a sweep")->required();
+  const auto add_list = [&command = command](const char* option, std::vector<std::string>& list,
+                                             const char* meaning) {
+    command->add_option(option, list, meaning)->delimiter(',')->allow_extra_args(false);
+  };
+  command->add_option("--limit", analyse->limit,
+                      "measure of an event (default: popped_through): where does it become probable?");
+  command->add_option("--along", analyse->along, "axis of the limit (default: the last axis of numbers)");
+  command->add_option("--above", analyse->threshold, "the event happens above this value (default 0.5)");
+  command
+      ->add_option("--level", analyse->level,
+                   "probability of the event at the limit, between 0 and 1 (default 0.5)")
+      ->check(between(0, 1));
+  add_list("--mean", analyse->means, "measure whose means are wanted; may be given several times");
+  add_list("--by", analyse->by, "axes of the means and differences, A,B (default: all); others are pooled");
+  add_list("--difference", analyse->differences, "measure whose differences between variants are wanted");
+  command->add_option(
+      "--between", analyse->between,
+      "axis of the variants; the first value is the reference (default: the first axis of names)");
+  command->add_option("-o,--output", analyse->output,
+                      "file for the tables: .h5 (also for scripts/plot) or .csv");
+}
+
 std::vector<std::string> figures_thinned_by_quick() {
   std::vector<std::string> names;
   for (const FigureEntry& entry : figures())
@@ -146,6 +172,7 @@ void add_commands_of_experiments(Subcommands& commands) {
   add_run(commands);
   add_sweep(commands);
   add_merge_and_replay(commands);
+  add_analyse(commands);
   add_figure(commands);
 }
 

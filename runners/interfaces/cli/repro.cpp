@@ -22,6 +22,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -128,6 +129,10 @@ class Repro {
   }
 
   void print_figure_command() const {
+    if (of("figure") == kAnswerName) {
+      std::printf("%s -o again.h5\n", of("command").c_str());
+      return;
+    }
     if (!recipe_ || (recipe_->action != "figure" && recipe_->action != "compare"))
       return comment("not made by a command of this program");
     const bool is_plot = recipe_->action == "compare";

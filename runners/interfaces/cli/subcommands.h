@@ -58,7 +58,7 @@ CLI::Validator between(double low, double high);
 
 void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning);
 
-// list, describe, view, export, inspect, run, sweep, merge, replay, figure.
+// list, describe, view, export, inspect, run, sweep, merge, replay, analyse, figure.
 void add_commands_of_experiments(Subcommands& commands);
 // scorecard, compare, hashes, baseline, repro, verify.
 void add_commands_of_comparisons(Subcommands& commands);

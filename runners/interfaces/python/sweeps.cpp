@@ -1,4 +1,4 @@
-// Runs a sweep, in memory or into a file.
+// Runs a sweep, in memory or into a file, and analyses it.
 #include <pybind11/stl.h>
 
 #include <atomic>
@@ -15,7 +15,10 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/sweep_arrays.h"
+#include "runners/sweep/answer_panels.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
@@ -63,6 +66,51 @@ py::dict run_sweep_of(const std::string& subject, const std::optional<std::strin
   return to_python(std::move(stored));
 }
 
+// parts: axes and measures as lists of columns, the states of the runs, and the number of replicates.
+SweepResult result_of(const py::tuple& parts) {
+  SweepResult result;
+  for (const py::handle& axis : parts[0]) result.axes.push_back(column_of(axis));
+  for (const py::handle& measure : parts[1]) result.measures.push_back(column_of(measure));
+  for (const auto state : parts[2].cast<std::vector<std::int32_t>>())
+    result.state.push_back(static_cast<RunState>(state));
+  result.replicates = parts[3].cast<int>();
+  bool fits = result.state.size() == result.run_count();
+  for (const Column& measure : result.measures)
+    fits &= measure.length() == result.run_count() &&
+            std::holds_alternative<std::vector<double>>(measure.values);
+  if (!fits) throw InputError("the data set", "expected what rt.sweep returned");
+  return result;
+}
+
+// file: of a sweep, or empty for one in memory.
+py::dict analyse(const std::string& file, const py::tuple& parts, const SweepQuestion& question,
+                 const std::string& title) {
+  StoredSweep stored;
+  if (file.empty()) stored.result = result_of(parts);
+  Figure answer;
+  {
+    const py::gil_scoped_release without_lock;
+    if (!file.empty()) {
+      const FileTurn turn;
+      stored = read_stored_sweep(file);
+    }
+    answer = sweep_answer(stored.result, question,
+                          file.empty() ? title : attribute(stored.attributes, "title"));
+  }
+  std::vector<Column> columns;
+  for (const Table& table : answer.tables) {
+    if (is_of_curve(answer, table)) continue;
+    for (Column column : table.columns) {
+      column.name = table.name + "/" + column.name;
+      columns.push_back(std::move(column));
+    }
+  }
+  py::dict all;
+  all["columns"] = to_python(std::move(columns));
+  all["attributes"] = to_python(TextAttributes{{"title", answer.title}, {"caption", answer.caption}});
+  return all;
+}
+
 }  // namespace
 
 py::dict to_python(StoredSweep stored) {
@@ -98,6 +146,15 @@ void bind_sweeps(py::module_& module) {
   module.def("sweep", &run_sweep_of, py::arg("subject"), py::arg("text"), py::arg("overrides"),
              py::arg("threads"), py::arg("output"), py::arg("report"),
              "Runs a sweep: axes, and measures over them.");
+  using Names = std::vector<std::string>;
+  module.def(
+      "analyse",
+      [](const std::string& file, const py::tuple& parts, const std::string& title, const std::string& limit,
+         const std::string& along, double above, double level, const Names& mean, const Names& by,
+         const Names& difference, const std::string& between) {
+        return analyse(file, parts, {limit, along, above, level, mean, by, difference, between}, title);
+      },
+      "Limits, means and differences of a sweep, as tables.");
 }
 
 }  // namespace remote_touch

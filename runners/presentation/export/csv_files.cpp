@@ -89,7 +89,10 @@ std::string csv_rows(const Table& table, std::size_t first, std::size_t end) {
 }
 
 void write_csv(const ExportJob& job) {
-  const std::vector<Table> tables = result_tables(job.result);
+  write_csv(result_tables(job.result), job);
+}
+
+void write_csv(const std::vector<Table>& tables, const ExportJob& job) {
   for (const Table& table : tables) {
     const std::string header = csv_header(table);
     job.begin(tables.size() == 1 ? job.output : beside(job.output, table.name), header);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/trace/column.h"
 #include "runners/presentation/export/export_job.h"
@@ -11,6 +12,8 @@ namespace remote_touch {
 // Writes x.csv, or x_NAME.csv for each of several tables, with one line of names. Also writes x_columns.csv
 // with a line for each of these names: table, column, unit, meaning. Lines end with a line feed.
 void write_csv(const ExportJob& job);
+// The same with these tables instead of those of the result.
+void write_csv(const std::vector<Table>& tables, const ExportJob& job);
 
 // Returns the line of names. The names of a vector are name_x, name_y, name_z.
 std::string csv_header(const Table& table);

@@ -51,20 +51,46 @@ struct Statement {
   std::string path, value;
 };
 
+// rows: for each value what it sets; a range has none. paths: those of all rows.
+struct RandomAxis {
+  std::vector<std::vector<Statement>> rows;
+  std::vector<std::string> paths;
+  bool is_joint = false;
+
+  void add(const std::vector<Statement>& row) {
+    rows.push_back(row);
+    for (const Statement& each : row) paths.push_back(each.path);
+  }
+  // True if no row sets a parameter twice.
+  bool has_disjoint_rows() const {
+    for (const std::vector<Statement>& row : rows)
+      for (const Statement& a : row)
+        for (const Statement& b : row)
+          if (&a != &b && is_within(a.path, b.path)) return false;
+    return true;
+  }
+};
+
 struct RandomSweep {
-  std::vector<std::string> axes;  // paths
+  std::vector<RandomAxis> axes;
   std::vector<Statement> set, options;
   bool has_changes = false;
   std::string text;
 
   // True if no two of its parts overlap.
   bool is_disjoint() const {
-    std::vector<std::string> paths = axes;
-    for (const Statement& each : set) paths.push_back(each.path);
-    for (const Statement& each : options) paths.push_back(each.path);
-    for (std::size_t i = 0; i < paths.size(); ++i)
-      for (std::size_t j = 0; j < paths.size(); ++j)
-        if (i != j && is_within(paths[i], paths[j])) return false;
+    std::vector<std::vector<std::string>> parts;
+    for (const RandomAxis& axis : axes) {
+      if (!axis.has_disjoint_rows()) return false;
+      parts.push_back(axis.paths);
+    }
+    for (const Statement& each : set) parts.push_back({each.path});
+    for (const Statement& each : options) parts.push_back({each.path});
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (std::size_t j = 0; j < parts.size(); ++j)
+        for (const std::string& a : parts[i])
+          for (const std::string& b : parts[j])
+            if (i != j && is_within(a, b)) return false;
     return !has_changes;
   }
   std::vector<std::string> overrides() const {
@@ -83,21 +109,17 @@ class Chance {
     const Choice& choice = kChoices[below(std::size(kChoices))];
     return {choice.path, choice.values[below(choice.values.size())]};
   }
-  Plain axis() {
-    const Choice& choice = kChoices[below(std::size(kChoices))];
-    Plain list = Plain::array();
-    for (const char* value : choice.values)
-      if (list.size() < 2 || below(2) == 0) list.push_back(Plain::parse(value));
-    std::shuffle(list.begin(), list.end(), random_);
-    if (&choice != kChoices || below(2) == 0) return {{"parameter", choice.path}, {"values", list}};
-    return {{"parameter", choice.path}, {"from", 0.001}, {"to", 0.004}, {"count", 1 + below(3)}};
+  Plain axis(RandomAxis& made) {
+    const std::size_t kind = below(4);
+    made.is_joint = kind < 2;
+    return kind == 0 ? parameters_axis(made) : kind == 1 ? variants_axis(made) : plain_axis(made);
   }
   RandomSweep sweep() {
     RandomSweep made;
     Plain json = {{"experiment", "fig4.12"}, {"measures", {"mean_steps"}}, {"set", Plain::object()}};
     for (std::size_t i = below(3) + 1; i > 0; --i) {
-      json["axes"].push_back(axis());
-      made.axes.push_back(json["axes"].back()["parameter"]);
+      json["axes"].push_back(axis(made.axes.emplace_back()));
+      if (json["axes"].back().contains("name")) json["axes"].back()["name"] = "axis" + std::to_string(i);
     }
     for (std::size_t i = below(3); i > 0; --i) {
       const Statement each = statement();
@@ -114,6 +136,45 @@ class Chance {
   }
 
  private:
+  Plain plain_axis(RandomAxis& made) {
+    const Choice& choice = kChoices[below(std::size(kChoices))];
+    std::vector<const char*> list;
+    for (const char* value : choice.values)
+      if (list.size() < 2 || below(2) == 0) list.push_back(value);
+    std::shuffle(list.begin(), list.end(), random_);
+    if (&choice == kChoices && below(2) == 0) {
+      made.paths.emplace_back(choice.path);
+      return {{"parameter", choice.path}, {"from", 0.001}, {"to", 0.004}, {"count", 1 + below(3)}};
+    }
+    Plain values = Plain::array();
+    for (const char* value : list) made.add({{choice.path, value}}), values.push_back(Plain::parse(value));
+    return {{"parameter", choice.path}, {"values", values}};
+  }
+  Plain parameters_axis(RandomAxis& made) {
+    const Statement first = statement(), second = statement();
+    const Plain values = {Plain::parse(first.value), Plain::parse(second.value)};
+    made.add({first, second});
+    return {{"name", ""},
+            {"parameters", {first.path, second.path}},
+            {"values", Plain::array({values})},
+            {"labels", {below(2) == 0 ? Plain(0.5) : Plain("both")}}};
+  }
+  Plain variants_axis(RandomAxis& made) {
+    Plain variants = Plain::array();
+    for (const char* const name : {"a", "b"}) {
+      std::vector<Statement> row;
+      Plain set = Plain::object();
+      for (std::size_t i = below(2) + 1; i > 0; --i) {
+        const Statement each = statement();
+        if (set.contains(each.path)) continue;
+        set[each.path] = Plain::parse(each.value), row.push_back(each);
+      }
+      made.add(row);
+      variants.push_back({{"name", name}, {"set", set}});
+    }
+    return {{"name", ""}, {"variants", variants}};
+  }
+
   std::mt19937 random_;
 };
 
@@ -150,8 +211,13 @@ void expect_true(const RandomSweep& made, const Sweep& sweep) {
     const Plain configuration = Plain::parse(experiment.to_json());
     const Plain run = at_start(configuration, experiment);
     for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-      const Plain stated = stated_by(plan.axes[i], plan.axis_indices(cell)[i]);
-      EXPECT_TRUE(has(run, plan.axes[i].long_name, stated)) << made.text << " cell " << cell << " axis " << i;
+      const std::size_t row = plan.axis_indices(cell)[i];
+      for (const auto& [path, value] :
+           made.axes[i].rows.empty() ? std::vector<Statement>() : made.axes[i].rows[row])
+        EXPECT_TRUE(has(run, path, Plain::parse(value))) << made.text << " cell " << cell << " axis " << i;
+      if (made.axes[i].is_joint) continue;  // the file has names of their own
+      EXPECT_TRUE(has(run, plan.axes[i].long_name, stated_by(plan.axes[i], row)))
+          << made.text << " cell " << cell << " axis " << i;
     }
     const auto expect_kept = [&](const Statement& statement, const std::vector<std::string>& later) {
       for (const std::string& path : later)
@@ -181,8 +247,9 @@ TEST(Statements, RandomSweepsAreRefusedOrRunWhatTheyState) {
       continue;
     }
     EXPECT_FALSE(made.is_disjoint()) << made.text << ": " << problem;
-    const bool is_named = std::any_of(made.axes.begin(), made.axes.end(), [&](const std::string& path) {
-      return problem.find(path) != std::string::npos;
+    const bool is_named = std::any_of(made.axes.begin(), made.axes.end(), [&](const RandomAxis& axis) {
+      return std::any_of(axis.paths.begin(), axis.paths.end(),
+                         [&](const std::string& path) { return problem.find(path) != std::string::npos; });
     });
     overlapping += is_named;
   }

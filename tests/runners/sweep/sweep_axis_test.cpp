@@ -8,7 +8,7 @@ namespace remote_touch::sweep_axis_test {
 namespace {
 
 std::string unit_over(const std::string& parameter) {
-  return read_axis({{"parameter", parameter}, {"values", {1, 2}}}, "test", 0).column().units;
+  return read_axis({{"parameter", parameter}, {"values", {1, 2}}}, "test", 0).coordinate.units;
 }
 
 TEST(SweepAxis, StatesTheUnitOfEveryKindOfParameter) {

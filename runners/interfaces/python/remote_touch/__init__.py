@@ -3,7 +3,7 @@
     import remote_touch as rt
     lift = rt.run("fig4.12", seed=7, set={"scenario.noise_sigma_m": 0.003})   # an xarray.Dataset
 
-run, sweep, replay, compare, describe, list, scorecard and open do what the commands of remote-touch of the same name do.
+run, sweep, replay, analyse, compare, describe, list, scorecard and open do what the commands of remote-touch of the same name do.
 Renderer, Scenario and Trajectory are base classes of your own ones; register() puts them into the catalog.
 All bad input is an InputError, a ValueError of one line.
 """
@@ -11,12 +11,12 @@ import os as _os
 
 from remote_touch import _core
 from remote_touch._core import Cloud, Device, Frame, InputError, NoiseKey, Output, Scene
-from remote_touch.calls import Comparison, compare, describe, list, open, replay, run, scorecard, sweep
+from remote_touch.calls import Comparison, analyse, compare, describe, list, open, replay, run, scorecard, sweep
 from remote_touch.classes import Renderer, Scenario, Setting, Trajectory, register, scene
 
 __version__ = _core.version()
 __all__ = ["Cloud", "Comparison", "Device", "Frame", "InputError", "NoiseKey", "Output", "Renderer", "Scenario", "Scene",
-           "Setting", "Trajectory", "compare", "describe", "list", "open", "register", "replay", "run", "scene",
+           "Setting", "Trajectory", "analyse", "compare", "describe", "list", "open", "register", "replay", "run", "scene",
            "scorecard", "sweep"]
 
 InputError.__module__ = __name__  # where users find it

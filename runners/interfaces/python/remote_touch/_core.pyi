@@ -132,6 +132,19 @@ def sweep(
 def scorecard(
     methods: _List[_Text], scenes: _List[_Text], seeds: int, threads: int, folder: _Text, report: _Report
 ) -> tuple[int, str]: ...
+def analyse(
+    file: _Text,
+    parts: tuple[Any, ...],
+    title: str,
+    limit: _Text,
+    along: _Text,
+    above: float,
+    level: float,
+    mean: _List[_Text],
+    by: _List[_Text],
+    difference: _List[_Text],
+    between: _Text,
+) -> dict[str, Any]: ...
 def open(file: _Text) -> dict[str, Any]: ...
 def compare_files(
     baseline: _Text, candidate: _Text, tolerances: dict[str, tuple[float, float]], paired: bool

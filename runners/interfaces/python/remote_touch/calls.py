@@ -59,6 +59,25 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     return dataset.of_trace(result)
 
 
+def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None):
+    """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE.
+
+    sweep: a file, or what sweep() returned. limit: the measure of an event, which happens above the value `above`: where
+    along the axis `along` does it become more probable than `level`? mean: measures whose means are wanted, by the axes
+    `by` (all if empty). difference: measures whose differences between the first and each other value of the axis
+    `between` are wanted. Without a question: the limit of popped_through, and all means. The intervals are of 95 %.
+    """
+    from remote_touch import dataset
+    file, parts, title = b"", (), ""
+    if isinstance(sweep, (str, os.PathLike)):
+        file = _native(sweep)
+    else:
+        parts, title = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("title", ""))
+    return dataset.of_figure(_core.analyse(file, parts, title, _name(limit), _name(along), _number("above", above),
+                                           _number("level", level), _names(mean), _names(by), _names(difference),
+                                           _name(between)))
+
+
 def open(path):
     """Reads a result: a trace or a sweep as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
 
@@ -165,6 +184,22 @@ def _method(method, folder):
 def _open_text(file):
     import io
     return io.open(file, "w", encoding="utf-8")
+
+
+def _name(name):
+    return b"" if name is None else _native(name)
+
+
+def _names(names):
+    """A name stands for a list of it."""
+    return [_native(name) for name in ([names] if isinstance(names, str) else names)]
+
+
+def _number(name, value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {value!r}: expected a number") from None
 
 
 def _native(text):

@@ -37,6 +37,18 @@ def replay(
     force: bool = False,
     progress: _Progress = None,
 ) -> xarray.Dataset: ...
+def analyse(
+    sweep: _Path | xarray.Dataset,
+    *,
+    limit: str | None = None,
+    along: str | None = None,
+    above: float = 0.5,
+    level: float = 0.5,
+    mean: str | Iterable[str] = (),
+    by: str | Iterable[str] = (),
+    difference: str | Iterable[str] = (),
+    between: str | None = None,
+) -> dict[str, xarray.Dataset]: ...
 def open(path: _Path) -> Any: ...
 
 class Comparison:

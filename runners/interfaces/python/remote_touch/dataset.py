@@ -101,3 +101,21 @@ def columns_of(trace):
         columns.append((name, variable.attrs.get("units", "1"), variable.attrs.get("long_name", ""),
                         variable.values, variable.attrs.get("flag_meanings", "").split()))
     return [columns, [(name, value) for name, value in trace.attrs.items() if isinstance(value, str)]]
+
+
+def parts_of_sweep(sweep):
+    """The axes, measures, states and replicates of a sweep that of_sweep() made, for an analysis."""
+    if not isinstance(sweep, xr.Dataset) or not {"state", "replicate"} <= {*sweep.variables}:
+        raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
+    dimensions = [*sweep["state"].dims]
+    axes = []
+    for name in dimensions[:-1]:
+        values, names = sweep[name].values, []
+        if values.dtype.kind in "UO":
+            names, values = [str(value) for value in values], np.arange(values.size, dtype=np.int32)
+        axes.append((name, sweep[name].attrs.get("units", "1"), sweep[name].attrs.get("long_name", ""), values, names))
+    measures = [(name, variable.attrs.get("units", "1"), variable.attrs.get("long_name", ""),
+                 np.ascontiguousarray(variable.transpose(*dimensions).values).ravel(), [])
+                for name, variable in sweep.data_vars.items()
+                if variable.dtype == np.float64 and {*variable.dims} == {*dimensions}]
+    return axes, measures, sweep["state"].values.ravel().tolist(), sweep.sizes["replicate"]

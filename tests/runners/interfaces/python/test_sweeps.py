@@ -116,3 +116,43 @@ def test_a_figure_is_a_dict_of_tables(command_line, tmp_path):
         assert table.attrs["figure"] and table.sizes["row"] > 0
         for variable in table.data_vars.values():
             assert variable.attrs["units"]
+
+
+METHODS = {"name": "method", "variants": [{"name": "printed"}, {"name": "slow", "set": {"renderer.steps_per_tick": 1}}]}
+
+
+def test_joint_axes_are_coordinates():
+    radii = {"name": "r_c", "unit": "m", "parameters": ["renderer.r1_m", "renderer.r2_m"],
+             "values": [[0.00399, 0.00401], [0.00499, 0.00501]], "labels": [0.004, 0.005]}
+    sweep = rt.sweep({**SWEEP, "axes": [radii, METHODS]})
+    assert sweep.max_force.dims == ("r_c", "method", "replicate")
+    assert [*sweep.r_c.values] == [0.004, 0.005] and sweep.r_c.attrs["units"] == "m"
+    assert [*sweep.method.values] == ["printed", "slow"]
+    run = rt.replay(sweep, cell={"r_c": 0.005, "method": "slow"}, replicate=1)
+    assert float(run.max_force) == float(sweep.max_force.sel(r_c=0.005, method="slow", replicate=1))
+
+
+def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
+    file = tmp_path / "map.h5"
+    sweep = rt.sweep({**SWEEP, "axes": [SWEEP["axes"][0], METHODS]}, output=file)
+    question = {"limit": "max_force", "above": float(sweep.max_force.median()), "mean": ["max_force"], "by": "noise_sigma_m",
+                "difference": "max_force"}
+    stored, given = rt.analyse(file, **question), rt.analyse(sweep, **question)
+    assert [*stored] == ["limits", "mean_max_force", "difference_max_force"]
+    for name, table in stored.items():
+        assert table.drop_attrs().identical(given[name].drop_attrs()) if hasattr(table, "drop_attrs") else table.equals(given[name])
+    means = sweep.max_force.mean(["method", "replicate"])
+    assert np.allclose(stored["mean_max_force"]["mean"], means, rtol=1e-12)
+    differences = (sweep.max_force.sel(method="slow") - sweep.max_force.sel(method="printed")).mean("replicate")
+    assert np.allclose(stored["difference_max_force"]["mean"], differences, rtol=1e-12)
+
+
+@pytest.mark.parametrize("question, problem", [
+    ({"limit": "force"}, "limit force: expected one of max_force, popped_through"),
+    ({"along": "x"}, "along x: expected one of noise_sigma_m"),
+    ({"limit": "popped_through", "level": 2}, "level 2"),
+    ({"level": "half"}, "level = 'half': expected a number"),
+])
+def test_a_wrong_question_is_refused_in_one_line(question, problem):
+    with pytest.raises(rt.InputError, match=problem):
+        rt.analyse(rt.sweep({**SWEEP, "axes": SWEEP["axes"][:1]}), **question)

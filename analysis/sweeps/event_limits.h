@@ -1,0 +1,34 @@
+// Where an event becomes more probable than a level along an axis of a sweep, such as half of the runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+// The event happens in a run if its measure is above the threshold.
+struct LimitQuestion {
+  std::string measure;
+  double threshold = 0.5;
+  std::size_t along = 0;  // number of an axis; pre: its values are numbers
+  double level = 0.5;     // probability of the event at the limit, in (0, 1)
+};
+
+// Returns a table with a row for each combination of the other axes: their values, `limit`, `limit_low` and
+// `limit_high` in the unit of the axis, `place` and `runs`.
+//
+// At each value of the axis the share of finished runs with the event has a 95 % Wilson interval. The curve
+// that is nearest to the shares and only falls, or only rises, along the axis crosses the level at `limit`,
+// with linear interpolation (isotonic_regression.h). The curves of the two ends of the intervals cross it at
+// limit_low and limit_high. They are NaN if the curve crosses the level outside the values of the axis;
+// `place` then states on which side the limit is. All rows have one direction: that in which the shares
+// change over the whole sweep. Values without a finished run are left out; a run whose measure is NaN counts
+// as a run without the event, as in tally().
+Table event_limits(const SweepResult& result, const LimitQuestion& question);
+
+// True if the event becomes more probable along the axis: the direction of event_limits().
+bool event_rises(const SweepResult& result, const LimitQuestion& question);
+
+}  // namespace remote_touch

@@ -1,0 +1,86 @@
+// Answers questions about a finished sweep: limits, means and differences, as text, CSV or HDF5.
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/figures/result_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/provenance/shell_command.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/presentation/export/csv_files.h"
+#include "runners/sweep/answer_panels.h"
+#include "runners/sweep/answer_text.h"
+#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_answer.h"
+#include "runners/sweep/sweep_notes.h"
+
+namespace remote_touch {
+
+namespace {
+
+SweepQuestion question_of(const AnalyseRequest& request) {
+  return {request.limit, request.along, request.threshold,   request.level,
+          request.means, request.by,    request.differences, request.between};
+}
+
+// Returns the command without the output.
+std::string command_of(const AnalyseRequest& request) {
+  std::vector<std::string> words = program_words();
+  words.insert(words.end(), {"analyse", request.sweep});
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  const auto add_number = [&](const char* option, double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    if (value != 0.5) add(option, text);
+  };
+  add("--limit", request.limit), add("--along", request.along);
+  add_number("--above", request.threshold), add_number("--level", request.level);
+  for (const std::string& measure : request.means) add("--mean", measure);
+  for (const std::string& axis : request.by) add("--by", axis);
+  for (const std::string& measure : request.differences) add("--difference", measure);
+  add("--between", request.between);
+  return shell_command(words);
+}
+
+void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const StoredSweep& stored,
+                const Figure& answer) {
+  const FileLock lock = lock_output(line, request.output, {request.sweep});
+  TextAttributes attributes = provenance(attribute(stored.attributes, "config"), command_of(request), "");
+  attributes.emplace_back("sweep_digest", digest(stored.result));
+  write_figure(request.output, answer, attributes);
+}
+
+// Writes the tables without those of single curves, whose rows the others have, too.
+void write_tables(const CommandLine& line, const AnalyseRequest& request, const Figure& answer) {
+  std::vector<Table> tables = answer.tables;
+  std::erase_if(tables, [&](const Table& table) { return is_of_curve(answer, table); });
+  const FileLock lock(request.output);
+  NewFiles files("the tables");
+  const auto require_allowed = [&](const std::filesystem::path& file, const std::string& opening) {
+    require_export(line, file.string(), {request.sweep}, opening);
+  };
+  const Hdf5Reader sweep(request.sweep);
+  write_csv(tables, {sweep, request.output, files, require_allowed, line.kernels, line.stop});
+  files.finish();
+}
+
+}  // namespace
+
+int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
+  const std::string ending = std::filesystem::path(request.output).extension().string();
+  if (!request.output.empty() && ending != ".h5" && ending != ".csv")
+    throw InputError("--output " + request.output, "expected a file that ends with .h5 or .csv");
+  const StoredSweep stored = read_stored_sweep(request.sweep);
+  const std::string title = attribute(stored.attributes, "title");
+  const Figure answer = sweep_answer(stored.result, question_of(request), title);
+  if (ending == ".h5") write_hdf5(line, request, stored, answer);
+  if (ending == ".csv") write_tables(line, request, answer);
+  std::fputs(answer_text(answer, stored.result).c_str(), stdout);
+  for (const std::string& note : note_lines(stored.result)) std::printf("  note: %s\n", note.c_str());
+  return kDone;
+}
+
+}  // namespace remote_touch

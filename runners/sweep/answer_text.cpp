@@ -1,0 +1,71 @@
+#include "runners/sweep/answer_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/parameters/input_error.h"
+#include "runners/sweep/answer_panels.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMostRows = 60;
+
+std::string number_text(double value) {
+  if (std::isnan(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+std::string text_in(const Column& column, std::size_t row) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
+    return number_text((*numbers)[row]);
+  const std::int32_t number = std::get<std::vector<std::int32_t>>(column.values)[row];
+  return column.value_names.empty() ? std::to_string(number)
+                                    : printable(column.value_names[static_cast<std::size_t>(number)]);
+}
+
+// Returns the texts of a column: its name, its unit and the values.
+std::vector<std::string> texts_of(const Column& column, std::size_t rows) {
+  std::vector<std::string> texts = {column.name, column.units == "1" ? "" : column.units};
+  for (std::size_t row = 0; row < rows; ++row) texts.push_back(text_in(column, row));
+  return texts;
+}
+
+std::string table_text(const Table& table) {
+  const std::size_t all = table.columns.front().length(), rows = std::min(all, kMostRows);
+  std::vector<std::string> lines(rows + 2, "  ");
+  for (const Column& column : table.columns) {
+    const std::vector<std::string> texts = texts_of(column, rows);
+    std::size_t width = 0;
+    for (const std::string& text : texts) width = std::max(width, text.size());
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      lines[i].append(texts[i]).append(width + 2 - texts[i].size(), ' ');
+  }
+  std::string text = table.title + "\n";
+  for (std::string& line : lines) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  if (all > rows) text += "  and " + std::to_string(all - rows) + " more rows: -o FILE.csv writes all\n";
+  return text;
+}
+
+}  // namespace
+
+std::string answer_text(const Figure& answer, const SweepResult& sweep) {
+  std::string text = answer.caption.empty() ? "" : answer.caption + "\n";
+  for (const Table& table : answer.tables)
+    if (!is_of_curve(answer, table)) text += table_text(table);
+  const std::size_t done = sweep.runs_in(RunState::done).size();
+  const std::size_t asked = sweep.run_count() - sweep.runs_in(RunState::not_sampled).size();
+  if (done < asked)
+    text += "  note: " + std::to_string(asked - done) + " of " + std::to_string(asked) +
+            " runs are not finished and are left out\n";
+  return text;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,144 @@
+#include "runners/sweep/sweep_answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/sweeps/event_limits.h"
+#include "analysis/sweeps/sweep_means.h"
+#include "core/parameters/input_error.h"
+#include "runners/sweep/answer_panels.h"
+
+namespace remote_touch {
+
+namespace {
+
+bool has_numbers(const Column& axis) {
+  return std::holds_alternative<std::vector<double>>(axis.values);
+}
+
+// Returns the number of the column with this name. Throws InputError, about the part of the question.
+std::size_t number_of_column(const std::vector<Column>& columns, const std::string& name, const char* part) {
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == name; });
+  if (found == columns.end())
+    throw InputError(std::string(part) + " " + printable(name),
+                     "expected one of " + joined(names_of(columns), ", "));
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+// Returns the axis along which a limit is looked for.
+std::size_t axis_along(const SweepResult& result, const std::string& along) {
+  if (!along.empty()) {
+    const std::size_t axis = number_of_column(result.axes, along, "along");
+    if (has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
+    throw InputError("along " + along, "expected an axis of at least two numbers");
+  }
+  for (std::size_t axis = result.axes.size(); axis-- > 0;)
+    if (has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
+  throw InputError("along", "no axis has two numbers: expected a sweep with one, or no limit");
+}
+
+std::size_t axis_between(const SweepResult& result, const std::string& between) {
+  if (!between.empty()) {
+    const std::size_t axis = number_of_column(result.axes, between, "between");
+    if (result.axes[axis].length() > 1) return axis;
+    throw InputError("between " + between, "expected an axis of at least two values");
+  }
+  for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
+    if (!has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
+  throw InputError("between", "no axis has names: expected one of " + joined(names_of(result.axes), ", "));
+}
+
+// Returns the numbers of the axes `by`, in the order of the sweep; all if none is named.
+std::vector<std::size_t> axes_by(const SweepResult& result, const std::vector<std::string>& by) {
+  std::vector<std::size_t> axes;
+  for (const std::string& name : by) axes.push_back(number_of_column(result.axes, name, "by"));
+  if (by.empty())
+    for (std::size_t axis = 0; axis < result.axes.size(); ++axis) axes.push_back(axis);
+  std::sort(axes.begin(), axes.end());
+  axes.erase(std::unique(axes.begin(), axes.end()), axes.end());
+  return axes;
+}
+
+std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit) {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "Limit: the %s at which %s is above %.6g in %.6g %% of the runs; along the axis this becomes "
+                "%s probable. ",
+                result.axes[limit.along].name.c_str(), limit.measure.c_str(), limit.threshold,
+                100 * limit.level, event_rises(result, limit) ? "more" : "less");
+  return text;
+}
+
+void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& question,
+                const std::string& event) {
+  number_of_column(result.measures, event, "limit");
+  if (!(question.level > 0 && question.level < 1))
+    throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
+  const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
+  figure.caption += limit_sentence(result, limit);
+  const Table table = event_limits(result, limit);
+  figure.tables.push_back(table);
+  add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
+}
+
+void add_means(Figure& figure, const SweepResult& result, const std::vector<std::string>& measures,
+               const std::vector<std::size_t>& by) {
+  for (const std::string& measure : measures) {
+    number_of_column(result.measures, measure, "mean");
+    const Table table = sweep_means(result, measure, by);
+    figure.tables.push_back(table);
+    add_answer_panel(figure, {table, by.size(), "mean", "low", "high"});
+  }
+}
+
+void add_differences(Figure& figure, const SweepResult& result, const SweepQuestion& question) {
+  const std::size_t between = axis_between(result, question.between);
+  std::vector<std::size_t> by = axes_by(result, question.by);
+  std::erase(by, between);
+  const Column& axis = result.axes[between];
+  figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) + ", in pairs of runs. ";
+  for (const std::string& measure : question.differences) {
+    number_of_column(result.measures, measure, "difference");
+    const Table table = sweep_differences(result, measure, between, by);
+    figure.tables.push_back(table);
+    add_answer_panel(figure, {table, by.size() + 1, "mean", "low", "high"});
+  }
+}
+
+}  // namespace
+
+std::string default_event(const SweepResult& result) {
+  for (const Column& measure : result.measures) {
+    if (measure.name != "popped_through" && measure.name != "tool_popped_through") continue;
+    const auto& values = std::get<std::vector<double>>(measure.values);
+    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
+      return measure.name;
+  }
+  return {};
+}
+
+Figure sweep_answer(const SweepResult& result, const SweepQuestion& question, const std::string& title) {
+  if (result.runs_in(RunState::done).empty())
+    throw InputError("the sweep", "has no finished run: expected at least one");
+  Figure figure{kAnswerName, title, {}};
+  const bool is_open = question.limit.empty() && question.means.empty() && question.differences.empty();
+  const bool can_have_limit = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {
+    return has_numbers(axis) && axis.length() > 1;
+  });
+  std::string event = question.limit;
+  if (event.empty() && (!question.along.empty() || (is_open && can_have_limit)))
+    event = default_event(result);
+  if (event.empty() && !question.along.empty())
+    throw InputError("along " + printable(question.along),
+                     "no run has popped_through: expected the measure of an event as limit");
+  if (!event.empty()) add_limits(figure, result, question, event);
+  add_means(figure, result, is_open ? names_of(result.measures) : question.means,
+            axes_by(result, question.by));
+  if (!question.differences.empty()) add_differences(figure, result, question);
+  if (!figure.caption.empty()) figure.caption.pop_back();
+  return figure;
+}
+
+}  // namespace remote_touch

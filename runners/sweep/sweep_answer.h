@@ -1,0 +1,44 @@
+// Answers to the usual questions about a finished sweep, as a figure: tables and curves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/figures/figure.h"
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+// Measures and axes by name. A question that names no measure asks for the limit of the event that
+// default_event() finds and for the means of all measures.
+struct SweepQuestion {
+  // Where does an event become more probable than `level` along an axis? Empty `along`: the last axis of at
+  // least two numbers. See event_limits.h.
+  std::string limit;
+  std::string along;
+  double threshold = 0.5;
+  double level = 0.5;
+  // What are the means of these measures for each combination of the axes `by`? Empty `by`: all axes; then a
+  // mean is that of one cell. See sweep_means.h.
+  std::vector<std::string> means;
+  std::vector<std::string> by;
+  // How do these measures differ between the first value of the axis `between` and each other value, for each
+  // combination of the axes `by`? Empty `between`: the first axis whose values are names.
+  std::vector<std::string> differences;
+  std::string between;
+};
+
+// Returns popped_through or tool_popped_through if the sweep has it and it is known in a run; else an empty
+// text.
+std::string default_event(const SweepResult& result);
+
+// The name of such a figure.
+inline constexpr const char* kAnswerName = "analysis";
+
+// Returns a figure with the tables `limits`, `mean_MEASURE` and `difference_MEASURE`, and with a panel for
+// each of them whose rows fit into at most 8 curves over one axis of numbers. The caption states the
+// questions. Throws InputError for a name that the sweep does not have, an axis that does not fit, and a
+// sweep without a finished run.
+Figure sweep_answer(const SweepResult& result, const SweepQuestion& question, const std::string& title);
+
+}  // namespace remote_touch

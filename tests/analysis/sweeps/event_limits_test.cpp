@@ -1,0 +1,125 @@
+// Limits of an event along an axis, on results made by hand.
+#include "analysis/sweeps/event_limits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch::event_limits_test {
+namespace {
+
+constexpr int kRuns = 100;
+
+// A sweep over two methods and these values of x; events[method][i] of 100 runs of a cell have the event.
+SweepResult sweep_of(const std::vector<double>& x, const std::vector<std::vector<int>>& events) {
+  SweepResult result;
+  std::vector<std::int32_t> places;
+  std::vector<std::string> names;
+  for (std::size_t method = 0; method < events.size(); ++method)
+    places.push_back(static_cast<std::int32_t>(method)), names.push_back("m" + std::to_string(method));
+  result.axes = {{"method", "1", "", places, 1, names}, {"x", "m", "", x}};
+  result.replicates = kRuns;
+  result.measures = {{"event", "1", "", {}}};
+  result.start(false);
+  auto& values = std::get<std::vector<double>>(result.measures[0].values);
+  for (std::size_t method = 0; method < events.size(); ++method)
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int replicate = 0; replicate < kRuns; ++replicate) {
+        const std::size_t run = result.run(result.cell_at({method, i}), replicate);
+        result.state[run] = RunState::done;
+        values[run] = replicate < events[method][i] ? 1 : 0;
+      }
+  return result;
+}
+
+Table limits_of(const SweepResult& result, double level = 0.5, double threshold = 0.5) {
+  return event_limits(result, {"event", threshold, 1, level});
+}
+
+std::string place(const Table& table, std::size_t row) {
+  for (const Column& column : table.columns)
+    if (column.name == "place")
+      return column
+          .value_names[static_cast<std::size_t>(std::get<std::vector<std::int32_t>>(column.values)[row])];
+  return {};
+}
+
+TEST(EventLimits, AreWhereTheShareCrossesTheLevel) {
+  const Table table = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}, {20, 60, 100}}));
+  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3);
+  EXPECT_DOUBLE_EQ(numbers(table, "limit")[1], 1.75);
+  EXPECT_EQ(place(table, 0), "inside");
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}), 0.1), "limit")[0], 1.4);
+}
+
+TEST(EventLimits, AnEventMayBecomeLessProbable) {
+  const SweepResult result = sweep_of({1, 2, 4}, {{75, 25, 0}});
+  EXPECT_FALSE(event_rises(result, {"event", 0.5, 1, 0.5}));
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result), "limit")[0], 1.5);
+  EXPECT_TRUE(event_rises(sweep_of({1, 2, 4}, {{0, 25, 75}}), {"event", 0.5, 1, 0.5}));
+}
+
+// The share of events at the ends of the interval is that of Wilson: 25 of 100 and 75 of 100.
+TEST(EventLimits, HaveTheIntervalOfTheWilsonCurves) {
+  const Table table = limits_of(sweep_of({1, 2}, {{25, 75}}));
+  const auto [low, high] = wilson_interval(25, kRuns);
+  const auto [next_low, next_high] = wilson_interval(75, kRuns);
+  EXPECT_NEAR(numbers(table, "limit_low")[0], 1 + (0.5 - high) / (next_high - high), 1e-12);
+  EXPECT_NEAR(numbers(table, "limit_high")[0], 1 + (0.5 - low) / (next_low - low), 1e-12);
+  EXPECT_LT(numbers(table, "limit_low")[0], numbers(table, "limit")[0]);
+}
+
+// The shares 0.4 and 0.2 are pooled to 0.3, because the event can only become more probable.
+TEST(EventLimits, IgnoreAStepBack) {
+  const Table table = limits_of(sweep_of({1, 2, 3, 4}, {{0, 40, 20, 70}}));
+  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3.5);
+}
+
+TEST(EventLimits, OutsideTheValuesAreNotKnown) {
+  const Table table = limits_of(sweep_of({1, 2}, {{0, 10}, {90, 100}, {0, 100}}));
+  EXPECT_TRUE(std::isnan(numbers(table, "limit")[0]));
+  EXPECT_EQ(place(table, 0), "above the last value");
+  EXPECT_TRUE(std::isnan(numbers(table, "limit")[1]));
+  EXPECT_EQ(place(table, 1), "below the first value");
+  EXPECT_EQ(place(table, 2), "inside");
+}
+
+TEST(EventLimits, DoNotDependOnTheOrderOfTheValues) {
+  const Table sorted = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}));
+  const Table mixed = limits_of(sweep_of({4, 1, 2}, {{75, 0, 25}}));
+  EXPECT_EQ(numbers(mixed, "limit"), numbers(sorted, "limit"));
+  EXPECT_EQ(numbers(mixed, "limit_high"), numbers(sorted, "limit_high"));
+}
+
+TEST(EventLimits, UseFinishedRunsOnly) {
+  SweepResult result = sweep_of({1, 2, 4}, {{0, 25, 75}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 1}), replicate)] = RunState::failed;
+  const Table table = limits_of(result);
+  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3);  // between 1 and 4
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(table.columns.back().values)[0], 2 * kRuns);
+  for (RunState& state : result.state) state = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "no runs");
+}
+
+TEST(EventLimits, AnEventIsAMeasureAboveTheThreshold) {
+  SweepResult result = sweep_of({1, 2}, {{0, 100}});
+  for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 3 + 2 * value;
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result, 0.5, 4), "limit")[0], 1.5);
+  EXPECT_EQ(place(limits_of(result, 0.5, 6), 0), "above the last value");
+}
+
+TEST(EventLimits, HaveTheValuesOfTheOtherAxes) {
+  const Table table = limits_of(sweep_of({1, 2}, {{0, 100}, {0, 100}}));
+  EXPECT_EQ(table.columns[0].name, "method");
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(table.columns[0].values), (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(table.columns[0].value_names[1], "m1");
+  EXPECT_EQ(table.columns[1].units, "m");
+}
+
+}  // namespace
+}  // namespace remote_touch::event_limits_test

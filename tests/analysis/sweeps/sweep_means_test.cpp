@@ -1,0 +1,115 @@
+// Means and paired differences of a sweep, on results made by hand.
+#include "analysis/sweeps/sweep_means.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/statistics/paired_test.h"
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch::sweep_means_test {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// Two values of x and two methods, the second running fastest; values[cell] has the measure of each
+// replicate.
+SweepResult sweep_of(const std::vector<std::vector<double>>& values) {
+  SweepResult result;
+  result.axes = {{"x", "m", "", std::vector<double>{0.1, 0.2}},
+                 {"method", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"old", "new"}}};
+  result.replicates = static_cast<int>(values.front().size());
+  result.measures = {{"depth", "m", "depth of it", {}}};
+  result.start(false);
+  auto& all = std::get<std::vector<double>>(result.measures[0].values);
+  for (std::size_t cell = 0; cell < values.size(); ++cell)
+    for (int replicate = 0; replicate < result.replicates; ++replicate) {
+      result.state[result.run(cell, replicate)] = RunState::done;
+      all[result.run(cell, replicate)] = values[cell][static_cast<std::size_t>(replicate)];
+    }
+  return result;
+}
+
+std::vector<std::int32_t> counts(const Table& table, const char* name) {
+  for (const Column& column : table.columns)
+    if (column.name == name) return std::get<std::vector<std::int32_t>>(column.values);
+  return {};
+}
+
+// The 97.5 % point of Student's t with 2 degrees of freedom is 4.30265, with 4 it is 2.77645.
+TEST(SweepMeans, HaveStudentsIntervalOfEachCell) {
+  const Table table = sweep_means(sweep_of({{1, 2, 3}, {5, 5, 5}, {0, 4, 8}, {1, 1, 4}}), "depth", {0, 1});
+  EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{2, 5, 4, 2}));
+  EXPECT_NEAR(numbers(table, "high")[0], 2 + 4.30265 / std::sqrt(3.0), 1e-5);
+  EXPECT_NEAR(numbers(table, "low")[2], 4 - 4 * 4.30265 / std::sqrt(3.0), 1e-4);
+  EXPECT_EQ(numbers(table, "low")[1], 5);
+  EXPECT_EQ(numbers(table, "x"), (std::vector<double>{0.1, 0.1, 0.2, 0.2}));
+  EXPECT_EQ(counts(table, "runs"), (std::vector<std::int32_t>{3, 3, 3, 3}));
+}
+
+// The scatter is that within the cells, not that between them.
+TEST(SweepMeans, PoolTheAxesThatAreNotNamed) {
+  const Table table = sweep_means(sweep_of({{1, 2, 3}, {11, 12, 13}, {0, 0, 0}, {0, 0, 0}}), "depth", {0});
+  EXPECT_EQ(numbers(table, "mean")[0], 7);
+  EXPECT_NEAR(numbers(table, "high")[0], 7 + 2.77645 / std::sqrt(6.0), 1e-5);
+  EXPECT_EQ(counts(table, "runs")[0], 6);
+  const Table whole = sweep_means(sweep_of({{1, 2, 3}, {11, 12, 13}, {0, 0, 0}, {0, 0, 0}}), "depth", {});
+  EXPECT_EQ(numbers(whole, "mean"), (std::vector<double>{3.5}));
+}
+
+TEST(SweepMeans, OfAnEventHaveWilsonsInterval) {
+  const Table table =
+      sweep_means(sweep_of({{0, 1, 1, 1}, {0, 0, 0, 0}, {1, 1, 1, 1}, {0, 1, 0, 1}}), "depth", {0, 1});
+  const auto [low, high] = wilson_interval(3, 4);
+  EXPECT_EQ(numbers(table, "mean")[0], 0.75);
+  EXPECT_EQ(numbers(table, "low")[0], low);
+  EXPECT_EQ(numbers(table, "high")[0], high);
+}
+
+TEST(SweepMeans, LeaveOutWhatHasNoValue) {
+  SweepResult result = sweep_of({{1, 2, kUnknown}, {kUnknown, kUnknown, kUnknown}, {4, 6, 8}, {1, 1, 4}});
+  result.state[result.run(2, 0)] = RunState::failed;
+  const Table table = sweep_means(result, "depth", {0, 1});
+  EXPECT_EQ(numbers(table, "mean")[0], 1.5);
+  EXPECT_TRUE(std::isnan(numbers(table, "mean")[1]));
+  EXPECT_EQ(numbers(table, "mean")[2], 7);
+  EXPECT_EQ(counts(table, "runs"), (std::vector<std::int32_t>{2, 0, 2, 3}));
+}
+
+TEST(SweepDifferences, AreThoseOfPairs) {
+  const SweepResult result = sweep_of({{1, 2, 3}, {2, 4, 3}, {10, 20, 30}, {11, 21, 31}});
+  const Table table = sweep_differences(result, "depth", 1, {0});
+  EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{1, 1}));
+  EXPECT_EQ(counts(table, "pairs"), (std::vector<std::int32_t>{3, 3}));
+  EXPECT_NEAR(numbers(table, "high")[0], 1 + 4.30265 / std::sqrt(3.0), 1e-5);
+  EXPECT_EQ(numbers(table, "high")[1], 1);  // the pairs differ alike, although their values scatter
+  EXPECT_EQ(table.columns[1].name, "method");
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(table.columns[1].values), (std::vector<std::int32_t>{1, 1}));
+}
+
+TEST(SweepDifferences, OfAnEventCountThePairsThatDiffer) {
+  const SweepResult result =
+      sweep_of({{0, 0, 0, 0, 0, 1}, {1, 1, 1, 1, 0, 1}, {0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}});
+  const Table table = sweep_differences(result, "depth", 1, {0});
+  const auto [low, high] = paired_difference_interval(4, 0, 6);
+  EXPECT_DOUBLE_EQ(numbers(table, "mean")[0], 4.0 / 6);
+  EXPECT_EQ(numbers(table, "low")[0], low);
+  EXPECT_EQ(numbers(table, "high")[0], high);
+  EXPECT_EQ(numbers(table, "p")[0], 0.125);  // 2 / 2^4
+  EXPECT_EQ(numbers(table, "adjusted_p")[0], 0.25);
+  EXPECT_EQ(numbers(table, "p")[1], 1);
+}
+
+TEST(SweepDifferences, SkipPairsOfWhichOneHasNoValue) {
+  SweepResult result = sweep_of({{1, 2, 3}, {2, kUnknown, 3}, {0, 0, 2}, {1, 1, 2}});
+  result.state[result.run(2, 2)] = RunState::failed;
+  const Table table = sweep_differences(result, "depth", 1, {0});
+  EXPECT_EQ(counts(table, "pairs"), (std::vector<std::int32_t>{2, 2}));
+  EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{0.5, 1}));
+}
+
+}  // namespace
+}  // namespace remote_touch::sweep_means_test
