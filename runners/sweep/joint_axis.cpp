@@ -128,7 +128,7 @@ Row read_variant(const Json& json, std::string& name, const std::string& label) 
 
 SweepAxis variants_axis(const Json& json, const std::string& label) {
   std::string name;
-  read_parameters(json, {{"name", &name, 0, 0, "name of the coordinate, for example method"}}, label,
+  read_parameters(json, {{"name", &name, 0, 0, "name of the coordinate, for example variant"}}, label,
                   {"variants"});
   require_identifier(name, label);
   SweepAxis axis;

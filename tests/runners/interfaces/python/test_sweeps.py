@@ -118,18 +118,18 @@ def test_a_figure_is_a_dict_of_tables(command_line, tmp_path):
             assert variable.attrs["units"]
 
 
-METHODS = {"name": "method", "variants": [{"name": "printed"}, {"name": "slow", "set": {"renderer.steps_per_tick": 1}}]}
+METHODS = {"name": "variant", "variants": [{"name": "printed"}, {"name": "slow", "set": {"renderer.steps_per_tick": 1}}]}
 
 
 def test_joint_axes_are_coordinates():
     radii = {"name": "r_c", "unit": "m", "parameters": ["renderer.r1_m", "renderer.r2_m"],
              "values": [[0.00399, 0.00401], [0.00499, 0.00501]], "labels": [0.004, 0.005]}
     sweep = rt.sweep({**SWEEP, "axes": [radii, METHODS]})
-    assert sweep.max_force.dims == ("r_c", "method", "replicate")
+    assert sweep.max_force.dims == ("r_c", "variant", "replicate")
     assert [*sweep.r_c.values] == [0.004, 0.005] and sweep.r_c.attrs["units"] == "m"
-    assert [*sweep.method.values] == ["printed", "slow"]
-    run = rt.replay(sweep, cell={"r_c": 0.005, "method": "slow"}, replicate=1)
-    assert float(run.max_force) == float(sweep.max_force.sel(r_c=0.005, method="slow", replicate=1))
+    assert [*sweep["variant"].values] == ["printed", "slow"]
+    run = rt.replay(sweep, cell={"r_c": 0.005, "variant": "slow"}, replicate=1)
+    assert float(run.max_force) == float(sweep.max_force.sel(r_c=0.005, variant="slow", replicate=1))
 
 
 def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
@@ -141,9 +141,9 @@ def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
     assert [*stored] == ["limits", "mean_max_force", "difference_max_force"]
     for name, table in stored.items():
         assert table.drop_attrs().identical(given[name].drop_attrs()) if hasattr(table, "drop_attrs") else table.equals(given[name])
-    means = sweep.max_force.mean(["method", "replicate"])
+    means = sweep.max_force.mean(["variant", "replicate"])
     assert np.allclose(stored["mean_max_force"]["mean"], means, rtol=1e-12)
-    differences = (sweep.max_force.sel(method="slow") - sweep.max_force.sel(method="printed")).mean("replicate")
+    differences = (sweep.max_force.sel(variant="slow") - sweep.max_force.sel(variant="printed")).mean("replicate")
     assert np.allclose(stored["difference_max_force"]["mean"], differences, rtol=1e-12)
 
 
