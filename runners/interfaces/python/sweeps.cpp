@@ -76,8 +76,8 @@ SweepResult result_of(const py::tuple& parts) {
   result.replicates = parts[3].cast<int>();
   bool fits = result.state.size() == result.run_count();
   for (const Column& measure : result.measures)
-    fits &= measure.length() == result.run_count() &&
-            std::holds_alternative<std::vector<double>>(measure.values);
+    fits &=
+        measure.length() == result.run_count() && std::holds_alternative<std::vector<double>>(measure.values);
   if (!fits) throw InputError("the data set", "expected what rt.sweep returned");
   return result;
 }
@@ -94,8 +94,8 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const SweepQue
       const FileTurn turn;
       stored = read_stored_sweep(file);
     }
-    answer = sweep_answer(stored.result, question,
-                          file.empty() ? title : attribute(stored.attributes, "title"));
+    answer =
+        sweep_answer(stored.result, question, file.empty() ? title : attribute(stored.attributes, "title"));
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {
@@ -154,7 +154,9 @@ void bind_sweeps(py::module_& module) {
          const Names& difference, const std::string& between) {
         return analyse(file, parts, {limit, along, above, level, mean, by, difference, between}, title);
       },
-      "Limits, means and differences of a sweep, as tables.");
+      py::arg("file"), py::arg("parts"), py::arg("title"), py::arg("limit"), py::arg("along"),
+      py::arg("above"), py::arg("level"), py::arg("mean"), py::arg("by"), py::arg("difference"),
+      py::arg("between"), "Limits, means and differences of a sweep, as tables.");
 }
 
 }  // namespace remote_touch
