@@ -49,6 +49,13 @@ std::string cpu_name() {
   return {};
 }
 
+std::string commit_text(const TextAttributes& attributes) {
+  std::string commit = attribute(attributes, "git_commit");
+  if (commit == "unknown") return "commit unknown (built without git)";
+  if (attribute(attributes, "git_dirty") == "yes") commit += " with local changes";
+  return "commit " + commit;
+}
+
 TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
                           const std::string& inputs) {
   TextAttributes list = {{"config", config},

@@ -30,6 +30,10 @@ const ProgramIdentity& program_identity();
 std::vector<std::string> program_words();
 std::string program_text();  // the same for a shell
 
+// Returns "commit HASH", "commit HASH with local changes" or "commit unknown (built without git)", from the
+// attributes git_commit and git_dirty that provenance() writes.
+std::string commit_text(const TextAttributes& attributes);
+
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON. isa may be
 // empty, for results that several machines made together; it is then left out. inputs: the text of
 // input_hashes.h; empty if nothing was read, and then left out.

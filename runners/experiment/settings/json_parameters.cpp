@@ -177,14 +177,6 @@ std::string without_label(const std::string& prefix) {
   return colon == std::string::npos ? prefix : prefix.substr(colon + 2);
 }
 
-[[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
-                             const std::string& prefix, const std::optional<std::string>& entry) {
-  if (known.empty()) throw InputError(prefix + key, "unknown; no parameters here");
-  const std::optional<std::string> renamed = new_name(key, known, entry);
-  const std::string hint = renamed ? "unknown; it is now " : "unknown; did you mean ";
-  throw InputError(prefix + key, hint + without_label(prefix) + renamed.value_or(nearest_key(key, known)));
-}
-
 // Returns what a refusal of the value expects.
 std::string expected_text(const Parameter& p, const Json& value) {
   const bool lacks_number = std::holds_alternative<double*>(p.value) && !value.is_number();
@@ -201,6 +193,14 @@ std::string rename_hint(const Parameter& p, const Json& value, const std::option
 }
 
 }  // namespace
+
+void refuse_key(const std::string& key, const std::vector<std::string>& known, const std::string& prefix,
+                const std::optional<std::string>& entry) {
+  if (known.empty()) throw InputError(prefix + key, "unknown; no parameters here");
+  const std::optional<std::string> renamed = new_name(key, known, entry);
+  const std::string hint = renamed ? "unknown; it is now " : "unknown; did you mean ";
+  throw InputError(prefix + key, hint + without_label(prefix) + renamed.value_or(nearest_key(key, known)));
+}
 
 std::string allowed(const Parameter& parameter) {
   return std::visit(Allowed{parameter}, parameter.value);

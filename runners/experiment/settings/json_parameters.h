@@ -19,6 +19,11 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
                      const std::vector<std::string>& elsewhere = {},
                      const std::optional<std::string>& entry = {});
 
+// Throws InputError for a key that is none of the known ones: "PREFIXKEY: unknown; did you mean
+// PREFIXNEAREST", or "it is now" if the key was renamed. entry: for hints about old names, see new_name().
+[[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
+                             const std::string& prefix, const std::optional<std::string>& entry = {});
+
 // Writes all parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);
 

@@ -30,11 +30,13 @@ struct CommandLine {
 // that an error stays one line; command_live() calls it before its loop.
 void print_replaced(const std::vector<std::string>& overrides);
 
-struct ListRequest {};
+struct ListRequest {
+  std::vector<std::string> kind;  // words of a kind, such as {"fixture", "rules"}; empty: all kinds
+};
 int command_list(const CommandLine& line, const ListRequest& request);
 
 struct DescribeRequest {
-  std::string name;
+  std::string name;  // a name, or NAME.PARAMETER
 };
 int command_describe(const CommandLine& line, const DescribeRequest& request);
 
@@ -44,6 +46,7 @@ struct RunRequest {
   std::string output;
   bool timing = false;
   bool strict = false;
+  bool all = false;  // prints all measures
 };
 int command_run(const CommandLine& line, const RunRequest& request);
 
@@ -159,6 +162,11 @@ struct ReproRequest {
   std::string config;  // a file to write the configuration to; empty: none
 };
 int command_repro(const CommandLine& line, const ReproRequest& request);
+
+struct CiteRequest {
+  std::string file;  // empty: the program itself
+};
+int command_cite(const CommandLine& line, const CiteRequest& request);
 
 struct HashesRequest {
   std::string trace;

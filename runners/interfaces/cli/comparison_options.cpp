@@ -133,7 +133,7 @@ void add_baseline(Subcommands& commands) {
   other->add_option("--folder", bless->folder, "folder of the baselines")->capture_default_str();
 }
 
-void add_repro_and_verify(Subcommands& commands) {
+void add_repro_cite_and_verify(Subcommands& commands) {
   auto [command, repro] = commands.add(
       "repro", "print the command that reproduces a result; with --run, run it and compare", command_repro);
   command->add_option("file", repro->file, "a trace, sweep or figure")->required();
@@ -142,6 +142,13 @@ void add_repro_and_verify(Subcommands& commands) {
       "run it again from the stored configuration and compare; exit code 0: the same, 1: different, 2: not "
       "comparable");
   command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
+
+  auto [citing, cite] = commands.add(
+      "cite", "print BibTeX entries of this program, or of a result and the program that made it",
+      command_cite);
+  citing->add_option(
+      "file", cite->file,
+      "a trace, sweep, figure, scorecard or recorded live session (default: none, the program)");
 
   auto [other, verify] = commands.add(
       "verify", "metamorphic checks: relations that must hold when a scene is transformed", command_verify);
@@ -157,7 +164,7 @@ void add_commands_of_comparisons(Subcommands& commands) {
   add_scorecard(commands);
   add_compare(commands);
   add_baseline(commands);
-  add_repro_and_verify(commands);
+  add_repro_cite_and_verify(commands);
 }
 
 }  // namespace remote_touch

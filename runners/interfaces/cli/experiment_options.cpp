@@ -32,15 +32,19 @@ int make_figures(const CommandLine& line, const FigureRequest& request) {
 }
 
 void add_lists(Subcommands& commands) {
-  commands.add(
+  auto [list, listed] = commands.add(
       "list",
       "list the names of scenarios, renderers, trajectories, experiments, sweeps, tools, figures, measures",
       command_list);
+  list->add_option("kind", listed->kind, "list only this kind, for example renderers (default: all)");
   auto [describe, described] = commands.add(
       "describe",
       "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",
       command_describe);
-  describe->add_option("name", described->name, "a name from `remote-touch list`, or trace")->required();
+  describe
+      ->add_option("name", described->name,
+                   "a name from `remote-touch list`, or trace; or one parameter: proxy.r1_m, trace.force")
+      ->required();
   auto [view, viewed] = commands.add(
       "view", "make a page that shows a trace, two of them, or a sweep, in 3-D and over time", command_view);
   view->add_option("results", viewed->results, "a trace, two traces to compare, or a sweep")
@@ -76,6 +80,7 @@ void add_run(Subcommands& commands) {
   add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
   command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
   command->add_flag("--timing", run->timing, "also store the duration of each tick");
+  command->add_flag("--all", run->all, "print all measures, not only those that matter most for this run");
   command->add_flag("--strict", run->strict,
                     "a note on the run is an error: exit code 2, and nothing is written");
 }

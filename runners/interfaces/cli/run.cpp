@@ -9,6 +9,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/main_measures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
@@ -38,6 +39,17 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
                   entry.angle_rad / kRadiansPerDegree);
     std::puts("");
   }
+}
+
+// Prints a line for each measure: value, unit, meaning.
+void print_measures(const Experiment& experiment, const Trace& trace, bool print_all) {
+  const std::vector<MeasuredValue> all = measured_values(measures(), trace);
+  const Fixtures fixtures = experiment.build_fixtures().empty() ? Fixtures::none : Fixtures::some;
+  const std::vector<MeasuredValue> printed = print_all ? all : main_measures(all, fixtures);
+  for (const auto& [measure, value] : printed)
+    std::printf("  %-23s %12.6g %-13s  %s\n", measure->name.c_str(), value,
+                unit_in_words(measure->unit).c_str(), measure->meaning.c_str());
+  if (printed.size() < all.size()) std::printf("  (%zu more with --all)\n", all.size() - printed.size());
 }
 
 }  // namespace
@@ -71,9 +83,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), trace.length(),
               trace_digest.c_str());
   std::fputs(text_of(report).c_str(), stdout);
-  for (const Measure& measure : measures())
-    if (applies(measure, trace))
-      std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.compute(trace), measure.unit.c_str());
+  print_measures(experiment, trace, request.all);
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }

@@ -6,8 +6,8 @@
 namespace remote_touch {
 
 int usual_threads(const std::string& command) {
-  for (const char* idle : {"list", "describe", "inspect", "merge", "analyse", "recover", "hashes", "devices",
-                           "cache", "jitter", "summary"})
+  for (const char* idle : {"list", "describe", "inspect", "cite", "merge", "analyse", "recover", "hashes",
+                           "devices", "cache", "jitter", "summary"})
     if (command == idle) return -1;
   return 0;
 }

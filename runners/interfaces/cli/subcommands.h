@@ -60,7 +60,7 @@ void add_set(CLI::App* command, std::vector<std::string>& overrides, const char*
 
 // list, describe, view, export, inspect, run, sweep, merge, replay, analyse, figure.
 void add_commands_of_experiments(Subcommands& commands);
-// scorecard, compare, hashes, baseline, repro, verify.
+// scorecard, compare, hashes, baseline, repro, cite, verify.
 void add_commands_of_comparisons(Subcommands& commands);
 // live, recover, devices, jitter, cache.
 void add_commands_of_machines(Subcommands& commands);

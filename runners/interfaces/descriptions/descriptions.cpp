@@ -16,6 +16,7 @@
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/tool_files/loaded_spheres.h"
 #include "runners/experiment/tool_files/mesh_file.h"
+#include "runners/interfaces/descriptions/parameter_description.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {
@@ -53,7 +54,7 @@ bool describe_entry(const std::string& name, std::FILE* out) {
   bool found = false;
   for (const ExperimentSection& section : experiment_sections())
     for (const SectionEntry& entry : section.entries()) {
-      if (name != entry.name) continue;
+      if (name.empty() || name != entry.name) continue;  // a section without a catalog has a nameless entry
       std::fprintf(out, "%s: a \"%s\" of an experiment: %s\n", name.c_str(), section.key,
                    entry.summary.c_str());
       print(entry.make()->settings(), out);
@@ -130,25 +131,9 @@ bool describe_tool(const std::string& name, std::FILE* out) {
   return true;
 }
 
-const char* runs_with(TracePart part) {
-  switch (part) {
-    case TracePart::always:
-      break;
-    case TracePart::tool:
-      return "In a run with a tool:";
-    case TracePart::guidance:
-      return "In a run with guidance or a sequence:";
-    case TracePart::hand:
-      return "In a run with an operator or a device:";
-  }
-  return "In every run:";
-}
-
 void print(const TraceColumn& column, std::FILE* out) {
-  std::string meaning = column.meaning;
-  for (std::size_t i = 0; i < column.value_names.size(); ++i)
-    meaning += (i == 0 ? ": " : ", ") + std::to_string(i) + " " + column.value_names[i];
-  std::fprintf(out, "  %-24s %-4s x %d  %s\n", column.name, column.unit, column.width, meaning.c_str());
+  std::fprintf(out, "  %-24s %-4s x %d  %s\n", column.name, column.unit, column.width,
+               meaning_of(column).c_str());
   if (std::string_view(column.meaning) != column.meaning_with_tool)
     std::fprintf(out, "  %-24s            with a tool: %s\n", "", column.meaning_with_tool);
 }
@@ -161,7 +146,7 @@ bool describe_trace(const std::string& name, std::FILE* out) {
       out);
   std::optional<TracePart> part;
   for (const TraceColumn& column : trace_columns()) {
-    if (part != column.part) std::fprintf(out, "%s\n", runs_with(column.part));
+    if (part != column.part) std::fprintf(out, "In %s:\n", runs_with(column.part));
     part = column.part;
     print(column, out);
   }
@@ -195,11 +180,12 @@ void describe(const std::string& name, std::FILE* out) {
   for (const Measure& measure : measures())
     if (name == measure.name)
       found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;
-  if (found) return;
+  if (found || describe_parameter(name, out)) return;
   for (const char* section : {"scenario", "trajectory"})
     if (const auto renamed = renamed_entry(section, name))
       throw InputError(name, "unknown; it is now " + *renamed);
-  throw InputError(name, "unknown: expected a name from `remote-touch list`");
+  throw InputError(
+      name, "unknown: expected a name from `remote-touch list`, or NAME.PARAMETER, such as proxy.r1_m");
 }
 
 }  // namespace remote_touch

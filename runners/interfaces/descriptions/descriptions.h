@@ -10,7 +10,8 @@
 namespace remote_touch {
 
 // Prints all parameters of an entry of a catalog, the configuration of an experiment, and so on, for every
-// kind that has the name. Throws InputError if no kind has it, and then writes nothing.
+// kind that has the name. NAME.PARAMETER prints one parameter, see parameter_description.h. Throws InputError
+// if no kind has the name, and then writes nothing.
 void describe(const std::string& name, std::FILE* out);
 
 // Returns the meaning, the unit, the better direction, and the runs that have the measure.
@@ -26,5 +27,7 @@ struct NamedKind {
 };
 // Returns the names of every kind, in the order in which `list` prints the kinds.
 std::vector<NamedKind> named_kinds();
+// Returns the kind of this name: "renderers". Throws InputError, which names all kinds, if there is none.
+NamedKind named_kind(const std::string& name);
 
 }  // namespace remote_touch

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/catalog/catalog.h"
@@ -54,6 +55,15 @@ std::vector<NamedKind> named_kinds() {
   auto& numbers = add("measures");
   for (const auto& measure : measures()) numbers.push_back({measure.name, summary_of(measure)});
   return all;
+}
+
+NamedKind named_kind(const std::string& name) {
+  std::string known;
+  for (NamedKind& kind : named_kinds()) {
+    if (kind.kind == name) return std::move(kind);
+    known.append(known.empty() ? "" : ", ").append(kind.kind);
+  }
+  throw InputError(name, "is no kind of names: expected " + known);
 }
 
 }  // namespace remote_touch

@@ -39,5 +39,12 @@ TEST_F(Provenance, NamesEachPlugin) {
             "remote-touch --plugin ./a.so --plugin 'b c.so' replay --cell 3,4 --replicate 0");
 }
 
+TEST_F(Provenance, SaysHowWellTheCommitIdentifiesTheSources) {
+  EXPECT_EQ(commit_text({{"git_commit", "12ab"}, {"git_dirty", "no"}}), "commit 12ab");
+  EXPECT_EQ(commit_text({{"git_commit", "12ab"}, {"git_dirty", "yes"}}), "commit 12ab with local changes");
+  EXPECT_EQ(commit_text({{"git_commit", "unknown"}, {"git_dirty", "unknown"}}),
+            "commit unknown (built without git)");
+}
+
 }  // namespace
 }  // namespace remote_touch::provenance_test

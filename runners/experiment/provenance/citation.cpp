@@ -1,0 +1,169 @@
+#include "runners/experiment/provenance/citation.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/provenance/shell_command.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kAuthor = "{{The Remote Touch authors}}";
+constexpr const char* kTitle =
+    "{{Remote Touch}: simulation and evaluation of haptic rendering of streaming point clouds}";
+// The year of this version. README.md and CITATION.cff have the same.
+constexpr const char* kYear = "{2026}";
+
+// BibTeX counts braces even behind a backslash, so a brace is written as a command.
+std::string escaped(char c) {
+  switch (c) {
+    case '\\':
+      return "{\\textbackslash}";
+    case '{':
+      return "{\\textbraceleft}";
+    case '}':
+      return "{\\textbraceright}";
+    case '^':
+      return "{\\textasciicircum}";
+    case '~':
+      return "{\\textasciitilde}";
+    case '<':
+      return "{\\textless}";
+    case '>':
+      return "{\\textgreater}";
+    case '|':
+      return "{\\textbar}";
+    case '\'':
+      return "{\\textquotesingle}";
+    case '`':
+      return "{\\textasciigrave}";
+    case '#':
+    case '$':
+    case '%':
+    case '&':
+    case '_':
+      return {'\\', c};
+    default:
+      return {c};
+  }
+}
+
+std::string braced(const std::string& text) {
+  std::string value = "{";
+  return value.append(bibtex_text(text)).append("}");
+}
+
+std::string typewriter(const std::string& text) {
+  std::string value = "\\texttt";
+  return value.append(braced(text));
+}
+
+// The values have their braces.
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+std::string bibtex_entry(const std::string& kind, const std::string& key, const Fields& fields) {
+  std::size_t width = 0;
+  for (const auto& field : fields) width = std::max(width, field.first.size());
+  std::string text = "@";
+  text.append(kind).append("{").append(key);
+  for (const auto& [name, value] : fields)
+    text.append(",\n  ").append(name).append(width - name.size(), ' ').append(" = ").append(value);
+  return text.append("\n}\n");
+}
+
+// Returns a key that BibTeX accepts.
+std::string key_of(const std::string& name) {
+  std::string key;
+  for (const char c : name) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '_';
+    key += is_plain ? c : '-';
+  }
+  return key.empty() ? "result" : key;
+}
+
+// "version 0.3.0, commit HASH with local changes, sources with SHA-256 HASH"
+std::string build_text(const TextAttributes& attributes) {
+  std::string text = "version ";
+  text.append(attribute(attributes, "version")).append(", ").append(commit_text(attributes));
+  const std::string sources = attribute(attributes, "source_digest");
+  if (attribute(attributes, "git_dirty") != "no" && !sources.empty())
+    text.append(", sources with SHA-256 ").append(sources);
+  return text;
+}
+
+// The program or the plug-ins that have entries of their own; empty if there are none.
+std::string own_programs(const TextAttributes& attributes) {
+  std::string text;
+  if (const std::string program = attribute(attributes, "program"); !program.empty())
+    text.append("; in the program ")
+        .append(program)
+        .append(", SHA-256 ")
+        .append(attribute(attributes, "program_sha256"));
+  if (const std::string plugins = attribute(attributes, "plugins"); !plugins.empty())
+    text.append("; with the plug-ins ").append(plugins);
+  return text;
+}
+
+// Returns the text as TeX.
+std::string how_to_repeat(const CitedResult& result) {
+  std::string commands;
+  for (const std::string& command : result.commands)
+    commands.append(commands.empty() ? "" : "; ").append(command);
+  std::string text;
+  if (commands != printable(commands))
+    text.append("; ")
+        .append(typewriter(shell_command({"remote-touch", "repro", result.file})))
+        .append(" prints the commands that make it again");
+  else if (!commands.empty())
+    text.append("; made again by ").append(typewriter(commands));
+  if (!result.remark.empty()) text.append("; ").append(bibtex_text(result.remark));
+  return text;
+}
+
+}  // namespace
+
+std::string bibtex_text(const std::string& text) {
+  std::string value;
+  char last = ' ';
+  for (const char c : printable(text)) {
+    if (c == '-' && last == '-') value += "{}";
+    value += escaped(c);
+    last = c;
+  }
+  return value;
+}
+
+std::string program_entry(const TextAttributes& attributes) {
+  const std::string version_there = attribute(attributes, "version");
+  const std::string commit = attribute(attributes, "git_commit");
+  std::string key = "remote_touch_";
+  key += key_of(commit.empty() || commit == "unknown" ? version_there : commit.substr(0, 12));
+  Fields fields = {{"author", kAuthor}, {"title", kTitle}, {"version", braced(version_there)}};
+  if (version_there == version()) fields.emplace_back("year", kYear);
+  fields.emplace_back("note", braced(build_text(attributes)));
+  return bibtex_entry("software", key, fields);
+}
+
+std::string result_entry(const CitedResult& result, const TextAttributes& attributes) {
+  const std::filesystem::path file(result.file);
+  const std::string name = file.filename().string();
+  std::string origin = "{";
+  origin.append(bibtex_text(result.kind + " ")).append(typewriter(name));
+  origin.append(bibtex_text(" of Remote Touch, " + build_text(attributes) + own_programs(attributes)));
+  std::string note = "{";
+  note.append(bibtex_text(result.digest)).append(how_to_repeat(result));
+  if (const std::string inputs = attribute(attributes, "input_digests"); !inputs.empty())
+    note.append(bibtex_text("; it read " + inputs));
+  return bibtex_entry("misc", key_of(file.stem().string()),
+                      {{"key", braced(name)},
+                       {"title", braced(result.title.empty() ? name : result.title)},
+                       {"howpublished", origin.append("}")},
+                       {"note", note.append("}")}});
+}
+
+}  // namespace remote_touch
