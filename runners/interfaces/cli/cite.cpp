@@ -4,6 +4,7 @@
 #include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/schema.h"
 #include "analysis/storage/sha256.h"
+#include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/citation.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -45,6 +46,8 @@ void print_session_entries(const std::string& file, const TextAttributes& attrib
 }
 
 void print_result_entries(const StoredResult& result) {
+  if (!result.of("plan_digest").empty())
+    throw InputError(result.file(), "is a sweep in progress: expected a finished one");
   const bool is_figure = result.kind() == "figure";
   CitedResult cited{result.file(), result.kind()};
   if (is_figure) cited.kind += " " + result.of("figure");

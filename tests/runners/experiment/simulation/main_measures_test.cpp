@@ -51,6 +51,7 @@ TEST(MainMeasures, OfAToolHaveItsTorqueAndGuidanceItsGoal) {
   Trace guided;
   RenderOutput out;
   out.guidance.emplace().active = true;
+  out.guidance->goal_W = Vec3(0.01, 0, 0);
   guided.append(0, {}, out, {0.01, 0.01, 0});
   EXPECT_EQ(main_names(guided, Fixtures::some).front(), "min_slave_distance");
   EXPECT_EQ(main_names(guided, Fixtures::some).at(1), "guidance_error");
