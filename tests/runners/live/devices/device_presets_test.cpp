@@ -1,0 +1,91 @@
+// The presets of data/devices: experiments with the limits of a haptic device.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/live/devices/device_placement.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::device_presets_test {
+namespace {
+
+const std::filesystem::path kRoot = REMOTE_TOUCH_SOURCE_DIR;
+
+// The device's limits, as its page states them. half_width_m: of a box inside the workspace. No force: an
+// input device.
+struct Preset {
+  const char* name;
+  const char* page;
+  Vec3 half_width_m;
+  double max_force_N, max_stiffness_N_per_m;
+};
+const Preset kPresets[] = {
+    {"falcon", "force_dimension", {0.051, 0.051, 0.051}, 8.9, 3000},
+    {"inverse3", "haply", {0.23, 0.255, 0.115}, 4, 1000},
+    {"omega", "force_dimension", {0.043, 0.043, 0.043}, 12, 5000},  // the cube in a ball of 75 mm radius
+    {"spacemouse", "spacemouse", {0.15, 0.15, 0.15}, 0, 0},
+    {"touch", "touch", {0.08, 0.06, 0.035}, 3.3, 400},
+};
+
+std::string file_of(const Preset& preset) {
+  return std::string("data/devices/") + preset.name + ".json";
+}
+
+Experiment load(const Preset& preset) {
+  return Experiment::load((kRoot / file_of(preset)).string());
+}
+
+TEST(DevicePresets, AreOneFileForEachDeviceAndAPageNamesIt) {
+  std::set<std::string> files, known;
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot / "data/devices"))
+    files.insert("data/devices/" + entry.path().filename().string());
+  for (const Preset& preset : kPresets) {
+    known.insert(file_of(preset));
+    std::ifstream page(kRoot / "runners/live/hardware" / (std::string(preset.page) + ".md"));
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    EXPECT_NE(text.find(file_of(preset)), std::string::npos) << preset.name;
+  }
+  EXPECT_EQ(files, known);
+}
+
+TEST(DevicePresets, KeepTheHandInTheWorkspace) {
+  for (const Preset& preset : kPresets) {
+    const Experiment experiment = load(preset);
+    const auto scenario = experiment.build_scenario(scenes::kernels());
+    const auto hand = experiment.build_trajectory(*scenario);
+    const DevicePlacement placement(experiment.live());
+    for (int i = 0; i <= 100; ++i) {
+      const double time_s = 0.01 * i * experiment.settings().duration_s;
+      const Vec3 p_D = placement.of_device(hand->at(time_s)).position_m;
+      EXPECT_TRUE((p_D.cwiseAbs().array() <= preset.half_width_m.array()).all())
+          << preset.name << " at " << time_s << " s: " << p_D.transpose();
+    }
+    EXPECT_LE(hand->duration_s(), experiment.settings().duration_s) << preset.name;
+  }
+}
+
+TEST(DevicePresets, AskForNoMoreThanTheDeviceCanExert) {
+  for (const Preset& preset : kPresets) {
+    const Experiment experiment = load(preset);
+    const auto device = [&](const std::string& name) { return experiment.value_at_start("device." + name); };
+    EXPECT_EQ(device("max_force_N").get<double>(), preset.max_force_N) << preset.name;
+    for (const char* axis : {"x", "y", "z"}) {
+      EXPECT_EQ(device(std::string("force_") + axis).get<bool>(), preset.max_force_N > 0) << preset.name;
+      EXPECT_FALSE(device(std::string("torque_") + axis).get<bool>()) << preset.name;
+    }
+    if (preset.max_force_N == 0) continue;
+    EXPECT_LE(experiment.safety().max_force_N, 0.9 * preset.max_force_N) << preset.name;
+    EXPECT_LE(experiment.max_stiffness_N_per_m() * experiment.live().device_scale,
+              preset.max_stiffness_N_per_m)
+        << preset.name;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::device_presets_test
