@@ -48,7 +48,8 @@ enum class Verdict { pass, fail, open, differs, not_run };
 const char* verdict_name(Verdict verdict);  // the name in claims.json: "pass", "not run"
 
 // One statement of the paper, or of this project, compared with a measurement. A claim that fails stays in
-// the list.
+// the list. claim: a sentence that is understood without the other claims, a colon, and the measured
+// quantity: "without noise, no lift pops through: fraction of 16 that do not".
 struct Claim {
   std::string figure, claim;
   std::string paper;  // the paper's value as text; "-" if it has none

@@ -122,10 +122,10 @@ Figure figure_4_10(FigureContext& context) {
       kContactRadius_m - std::sqrt(kContactRadius_m * kContactRadius_m - spacing_m * spacing_m / 2);
   const double spring_m = (proxy_W - hip_W).norm() - kContactRadius_m;
   const Claims claims(figure);
-  claims.between("height of the proxy's centre over the points", proxy_W.y(),
+  claims.between("the proxy rests on the grid: height of its centre over the points", proxy_W.y(),
                  kContactRadius_m - sinks_m - kShell_4_10_m, kContactRadius_m + kShell_4_10_m, "m",
                  "r_c = 0.005, or less between the points");
-  claims.between("force, against k_s (distance of HIP and proxy - r_c)",
+  claims.between("the force is k_s (|u| - r_c), u from the proxy to the HIP: ratio of the two",
                  trace.force_N[tick].norm() / (kSpring_4_10_N_per_m * spring_m), 1 - 1e-9, 1 + 1e-9, "1",
                  "(4.15), (4.16)");
   return figure;
@@ -149,9 +149,12 @@ Figure figure_5_9(FigureContext& context) {
   figure.panels = {scene_panel("After 12 s", 0, 0, scene)};
   const Claims claims(figure);
   Claims(figure, "", &Claim::set_up)
-      .between("time of the picture", trace.time_s[tick], kInstant_5_9_s, kInstant_5_9_s, "s");
-  claims.between("distance of the proxy's centre to the nearest point - r_f", trace.nearest_distance_m[tick],
-                 kShell_5_9_m[0], kShell_5_9_m[1], "m", "r_1 to r_2");
+      .between("the picture shows the chosen tick: its time", trace.time_s[tick], kInstant_5_9_s,
+               kInstant_5_9_s, "s");
+  claims.between(
+      "the proxy stays at the boundary of the forbidden region: distance of its centre to the nearest "
+      "point, minus r_f",
+      trace.nearest_distance_m[tick], kShell_5_9_m[0], kShell_5_9_m[1], "m", "r_1 to r_2");
   return figure;
 }
 

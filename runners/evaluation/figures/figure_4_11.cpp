@@ -71,14 +71,18 @@ Figure figure_4_11(FigureContext& context) {
                    plot("Height of the contact point", "time (s)", "y (m)",
                         {{"contact", "time", "contact_y", CurveStyle::line, ""}})};
   const Claims claims(figure);
-  claims.between("ripple of the contact point, peak to peak",
+  claims.between("the contact point ripples over the points of the flat grid: height from peak to peak",
                  peak_to_peak(numbers(figure.tables[1], "contact_y")), 4.0e-5, 5.7e-5, "m", "5e-5");
-  claims.at_most("distance of the proxy from contact at the end of the tick of the HIP's jump",
-                 std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "0");
-  claims.at_most("the same after a single proxy step",
-                 std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "1 - 2 steps");
-  claims.between("proxy steps from the HIP's jump until contact", steps_to_contact(single), 1, 2, "steps",
-                 "1 - 2");
+  claims.at_most(
+      "the proxy reaches the surface in the tick in which the HIP jumps: its distance from contact at "
+      "the end of that tick",
+      std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "0");
+  claims.at_most(
+      "with one step per tick the proxy reaches the surface in the tick in which the HIP jumps: its "
+      "distance from contact at the end of that tick",
+      std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "1 - 2 steps");
+  claims.between("the proxy reaches the surface in 1 to 2 steps after the HIP jumps: number of steps",
+                 steps_to_contact(single), 1, 2, "steps", "1 - 2");
   return figure;
 }
 

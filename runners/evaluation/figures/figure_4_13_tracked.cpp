@@ -148,11 +148,13 @@ void add_lateral_claims(const Claims& claims, const std::vector<Slide>& ours,
                    {"tracked sheet", ours, 0.2, {0.034, 0.049}, {0.058, 0.106}},
                    {"tracked sheet", ours, 1, {0.068, 0.097}, {0.113, 0.221}}};
   for (const auto& [who, slides, noise, mean, most] : kMeasured) {
-    const std::string run = std::string(", ") + who + ", noise " + (noise == 1 ? "r_c" : "0.2 r_c");
+    const std::string run = std::string("while the hand slides over a flat cloud with noise of ") +
+                            (noise == 1 ? "r_c" : "0.2 r_c") + ", the force of the " + who +
+                            " has a lateral part: ";
     const Slide& slide = at_noise(slides, noise);
-    claims.between("mean ratio of lateral to normal force" + run, slide.lateral, mean.first, mean.second,
-                   "ratio");
-    claims.between("95th percentile of this ratio" + run, slide.lateral_95, most.first, most.second, "ratio");
+    claims.between(run + "mean ratio to the normal part", slide.lateral, mean.first, mean.second, "ratio");
+    claims.between(run + "95th percentile of the ratio to the normal part", slide.lateral_95, most.first,
+                   most.second, "ratio");
   }
 }
 
@@ -184,25 +186,52 @@ void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, cons
   const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
   const std::string three = ", least of 3 seeds";
   constexpr double kAll = 1e9;
-  map_claims.at_least("success over the whole map" + three, lifts.survived, 0.995, "fraction");
-  map_claims.at_least("success of the worst of 25 regions" + three, lifts.worst_region, 0.98, "fraction");
-  map_claims.at_least("success with noise up to 2 r_c" + three, lifts.survived_to_2, 0.999, "fraction");
-  map_claims.at_least("lifts that end more than r_c / 2 above the surface" + three, lifts.well_above, 0.98,
-                      "fraction");
-  claims.at_most("ticks of fig4.11, without noise, that differ from the proxy of chapter 4",
-                 ticks_that_differ(context, "fig4.11"), 0, "ticks");
-  claims.at_most("ticks of fig4.14, without noise, that differ from the proxy of chapter 4",
-                 ticks_that_differ(context, "fig4.14"), 0, "ticks");
-  claims.at_most("largest mean height over a flat cloud, noise to 3 r_c", max_height(ours), 0.1, "r_c");
-  claims.at_most("height's standard deviation to the proxy's, noise from 0.6 r_c",
-                 max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio", "1");
-  claims.at_most("force jump at updates to the proxy's, noise to 0.2 r_c",
-                 max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio", "1");
-  claims.at_most("force jump at updates to the proxy's, noise from 0.6 r_c",
-                 max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio", "1");
-  claims.at_least("the upper of two sheets 3 r_c apart is held, noise 0.3 r_c, 40 seeds",
-                  success_on_two_sheets(context, 0.3), 0.95, "fraction");
-  claims.at_least("the same, noise 0.4 r_c", success_on_two_sheets(context, 0.4), 0.9, "fraction");
+  map_claims.at_least(
+      "the tracked sheet holds nearly all lifts of the whole map: fraction that do not pop through" + three,
+      lifts.survived, 0.995, "fraction");
+  map_claims.at_least(
+      "the tracked sheet holds nearly all lifts in each of 25 regions of the map: fraction in the worst "
+      "region" +
+          three,
+      lifts.worst_region, 0.98, "fraction");
+  map_claims.at_least(
+      "the tracked sheet holds nearly all lifts with noise up to 2 r_c: fraction that do not pop through" +
+          three,
+      lifts.survived_to_2, 0.999, "fraction");
+  map_claims.at_least(
+      "with the tracked sheet nearly all lifts end more than r_c / 2 above the surface: fraction that do" +
+          three,
+      lifts.well_above, 0.98, "fraction");
+  claims.at_most(
+      "without noise the tracked sheet renders fig4.11 as the proxy of chapter 4 does: ticks that differ",
+      ticks_that_differ(context, "fig4.11"), 0, "ticks");
+  claims.at_most(
+      "without noise the tracked sheet renders fig4.14 as the proxy of chapter 4 does: ticks that differ",
+      ticks_that_differ(context, "fig4.14"), 0, "ticks");
+  claims.at_most(
+      "noise up to 3 r_c hardly raises the contact point of the tracked sheet over a flat cloud: "
+      "largest mean height",
+      max_height(ours), 0.1, "r_c");
+  claims.at_most(
+      "with noise of 0.6 r_c or more the contact point of the tracked sheet moves less than that of the "
+      "proxy: largest ratio of the standard deviations of the height",
+      max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio", "1");
+  claims.at_most(
+      "with noise up to 0.2 r_c the force of the tracked sheet jumps less at updates than that of the "
+      "proxy: largest ratio",
+      max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio", "1");
+  claims.at_most(
+      "with noise of 0.6 r_c or more the force of the tracked sheet jumps less at updates than that of "
+      "the proxy: largest ratio",
+      max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio", "1");
+  claims.at_least(
+      "with noise of 0.3 r_c the tracked sheet holds the upper of two sheets 3 r_c apart: fraction of "
+      "40 runs",
+      success_on_two_sheets(context, 0.3), 0.95, "fraction");
+  claims.at_least(
+      "with noise of 0.4 r_c the tracked sheet holds the upper of two sheets 3 r_c apart: fraction of "
+      "40 runs",
+      success_on_two_sheets(context, 0.4), 0.9, "fraction");
   add_lateral_claims(claims, ours, paper);
 }
 

@@ -68,8 +68,8 @@ Figure figure_4_15(FigureContext& context) {
   figure.panels = {scene_panel("The point cloud", 0, 0,
                                {{0.55, 0.45, 0.62}, {0, -0.02, -0.03}, Vec3::UnitY(), 0.74, 0.62, {points}})};
   Claims(figure).at_most(
-      "rms distance of the points to the true surface, in standard deviations of the "
-      "sensor's error along the ray",
+      "the points lie on the true surface within the sensor's error: rms distance, in standard "
+      "deviations of that error along the ray",
       error_in_sigmas(*scenario, cloud), 1.01, "1");
   return figure;
 }

@@ -59,7 +59,8 @@ void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
   add_side_claim(figure, prefix, trace);
   add_sound_claims(figure, prefix, trace);
   Claims(figure, prefix, &Claim::set_up)
-      .at_least("touching ticks in which the true side is known", known_fraction(trace), 0.7, "fraction");
+      .at_least("the true side of the surface is known in most touching ticks: fraction of them",
+                known_fraction(trace), 0.7, "fraction");
 }
 
 // Returns the limits of an axis around a path, so that points far away do not shrink the path in the picture.
@@ -101,8 +102,9 @@ Figure figure_4_16(FigureContext& context) {
   add_claims(figure, "", trace);
   // The same run with a budget of two steps a tick: the share of the ticks in which two steps are enough.
   const Trace two = context.run(Experiment::load("fig4.16", {"renderer.steps_per_tick=2"}));
-  Claims(figure).differs("ticks that converge (4.8) in two proxy steps", 1 - unconverged_fraction(two), 0.3,
-                         0.5, "fraction", "typically in 1 - 2 (4.3.4)");
+  Claims(figure).differs(
+      "two proxy steps suffice to converge (4.8) in a part of the ticks only: fraction of ticks",
+      1 - unconverged_fraction(two), 0.3, 0.5, "fraction", "typically in 1 - 2 (4.3.4)");
   return figure;
 }
 

@@ -66,16 +66,17 @@ Figure figure_5_5(FigureContext& context) {
             {"distances", "time", "proxy", CurveStyle::line, "proxy"}}),
       plot("Force", "time (s)", "force (N)", {{"distances", "time", "force", CurveStyle::line, ""}})};
   const Claims claims(figure);
-  claims.between("smallest distance of the proxy's centre to the point",
-                 min_of(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m",
-                 ">= 0.105");
-  claims.at_most("ticks that end with the proxy entrenched", entrenched_ticks(trace), 0, "ticks");
-  claims.at_most("distance of the proxy from the HIP while that is outside", max_gap_outside(trace),
-                 kShell_5_5_m, "m", "0");
-  claims.at_most("force against k_s times the HIP's depth in the region", max_force_error(trace),
-                 kStiffness_N_per_m * kShell_5_5_m, "N");
+  claims.between(
+      "the proxy stays out of the region around the point: smallest distance of its centre to the point",
+      min_of(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m", ">= 0.105");
+  claims.at_most("no tick ends with the proxy entrenched: ticks that do", entrenched_ticks(trace), 0,
+                 "ticks");
+  claims.at_most("the proxy is at the HIP while the HIP is outside the region: largest distance",
+                 max_gap_outside(trace), kShell_5_5_m, "m", "0");
+  claims.at_most("the force is k_s times the depth of the HIP in the region: largest difference",
+                 max_force_error(trace), kStiffness_N_per_m * kShell_5_5_m, "N");
   Claims(figure, "", &Claim::set_up)
-      .at_most("smallest distance of the HIP to the point: it does go inside",
+      .at_most("the HIP enters the region: its smallest distance to the point",
                min_of(numbers(figure.tables[0], "hip")), kBoundary_m, "m");
   return figure;
 }

@@ -195,26 +195,35 @@ std::vector<Panel> panels() {
 void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, double frame_s) {
   const Claims claims(figure);
   constexpr double kMean_m = kSinks_m + kPartOfBeat_m;
-  claims.at_most("rms of distance - r_f - r_c, surface as the newest frame shows it, no noise",
-                 clean.seen.rms_m, kSinks_m, "m", "0");
-  claims.at_most("the same, surface as it moves, in the ticks in which a frame came in",
-                 clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m", "0");
   claims.at_most(
-      "largest distance - r_f - r_c, surface as it moves on between frames, against its largest "
-      "speed times the frame interval",
+      "without noise the proxy is r_f + r_c from the surface that the newest frame shows: rms difference",
+      clean.seen.rms_m, kSinks_m, "m", "0");
+  claims.at_most(
+      "without noise the proxy is r_f + r_c from the moving surface in the ticks in which a frame "
+      "arrives: rms difference",
+      clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m", "0");
+  claims.at_most(
+      "between frames the moving surface leaves the proxy by at most its largest speed times the frame "
+      "interval: largest distance beyond r_f + r_c",
       clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m");
-  claims.at_least("smallest distance to the moving surface - r_f, all ticks, no noise",
-                  clean.min_beyond_fixture_m, 0, "m", ">= 0");
-  claims.between("mean distance while r_f = 0", clean.touching_m, 0.005 - kMean_m, 0.005 + kMean_m, "m",
-                 "r_c = 0.005");
-  claims.between("slope of the distance while r_f grows", clean.growth_m_per_s, 0.98 * kGrowth_m_per_s,
-                 1.02 * kGrowth_m_per_s, "m/s", "0.004");
-  claims.between("mean distance while r_f = 0.02 m", clean.held_m, 0.025 - kMean_m, 0.025 + kMean_m, "m",
-                 "0.025");
-  claims.at_least("noise-free: smallest distance of the slave's command - r_f",
-                  clean.min_slave_beyond_fixture_m, 0, "m", ">= 0");
-  claims.at_least("with noise: smallest distance of the slave's command - r_f",
-                  noisy.min_slave_beyond_fixture_m, 0, "m", ">= 0");
+  claims.at_least(
+      "without noise the moving surface never comes within r_f of the proxy's centre: smallest distance "
+      "minus r_f",
+      clean.min_beyond_fixture_m, 0, "m", ">= 0");
+  claims.between("while r_f = 0 the proxy is r_c from the surface: mean distance", clean.touching_m,
+                 0.005 - kMean_m, 0.005 + kMean_m, "m", "r_c = 0.005");
+  claims.between(
+      "while r_f grows, the distance of the proxy from the surface grows at the same rate: its slope",
+      clean.growth_m_per_s, 0.98 * kGrowth_m_per_s, 1.02 * kGrowth_m_per_s, "m/s", "0.004");
+  claims.between("while r_f = 0.02 m the proxy is r_f + r_c from the surface: mean distance", clean.held_m,
+                 0.025 - kMean_m, 0.025 + kMean_m, "m", "0.025");
+  claims.at_least(
+      "without noise the slave is never commanded into the fixture: smallest distance to the surface "
+      "minus r_f",
+      clean.min_slave_beyond_fixture_m, 0, "m", ">= 0");
+  claims.at_least(
+      "with noise the slave is never commanded into the fixture: smallest distance to the surface minus r_f",
+      noisy.min_slave_beyond_fixture_m, 0, "m", ">= 0");
 }
 
 }  // namespace

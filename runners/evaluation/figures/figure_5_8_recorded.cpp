@@ -157,26 +157,31 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
   const Claims claims(figure), checks(figure, "", &Claim::set_up);
   for (const RecordedRun* r : {&still, &held}) {
     add_side_claim(figure, r->title + ": ", r->run.trace);
-    claims.at_most(r->title + ": frames in which the proxy is hidden behind that pixel", hidden_fraction(*r),
-                   0, "fraction", "none");
+    claims.at_most(
+        r->title +
+            ": the proxy is never hidden behind what its pixel measured: fraction of frames in which it is",
+        hidden_fraction(*r), 0, "fraction", "none");
   }
-  claims.differs(moving.title + ": ticks with a known side with the proxy on the wrong one",
-                 wrong_side_fraction(moving.run.trace), 0.7, 0.8, "fraction",
-                 "none (with the camera at rest)");
+  claims.differs(
+      moving.title +
+          ": the proxy is on the wrong side of the surface: fraction of the ticks in which the side is known",
+      wrong_side_fraction(moving.run.trace), 0.7, 0.8, "fraction", "none (with the camera at rest)");
   add_side_claim(figure, tracked.title + ": ", tracked.run.trace);
-  claims.between(still.title + ": mean of distance - r_f - r_c while r_f = 0.02 m", mean_deviation_m(still),
-                 -kContactShell_m, kContactShell_m, "m", "0");
+  claims.between(
+      still.title + ": while r_f = 0.02 m the proxy is r_f + r_c from the measured points: mean difference",
+      mean_deviation_m(still), -kContactShell_m, kContactShell_m, "m", "0");
   for (const RecordedRun* r : {&still, &moving, &held}) {
-    claims.at_least(r->title + ": smallest distance to a measured point - r_f", min_beyond_fixture_m(*r), 0,
-                    "m", ">= 0");
+    claims.at_least(
+        r->title + ": no measured point comes within r_f of the proxy's centre: smallest distance minus r_f",
+        min_beyond_fixture_m(*r), 0, "m", ">= 0");
     add_sound_claims(figure, r->title + ": ", r->run.trace);
   }
   // The plane is unknown at edges, but the measurement of the proxy's own pixel is nearly always known.
   for (const RecordedRun* r : {&still, &held})
-    checks.at_least(r->title + ": frames in which the pixel at the proxy measured something",
+    checks.at_least(r->title + ": the pixel at the proxy measured a depth in most frames: fraction of frames",
                     visible_fraction(*r), 0.9, "fraction");
-  checks.at_least(tracked.title + ": ticks in which the side is known", known_side_fraction(tracked), 0.5,
-                  "fraction");
+  checks.at_least(tracked.title + ": the side of the surface is known in most ticks: fraction of ticks",
+                  known_side_fraction(tracked), 0.5, "fraction");
 }
 
 // Returns four runs. The camera is at rest; it moves; it moves with the whole fixture from the start; and it

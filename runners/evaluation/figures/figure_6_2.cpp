@@ -184,7 +184,7 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
   const auto second = [](const std::string& what) { return second_number("chapter_6", "/filter/" + what); };
   const auto as_second = [&](const std::string& claim, double measured, double expected, double slack,
                              const std::string& unit) {
-    claims.between(claim + ", as the second implementation has it", measured, expected - slack,
+    claims.between(claim + " (the same as in the second implementation)", measured, expected - slack,
                    expected + slack, unit);
   };
   const double smears_m = second("wide/smear_m"),
@@ -193,14 +193,16 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
   // Pixels within a window share their noise, so the walls hold 300 000 / 81 independent values. The standard
   // error of an rms over them is 1.2 %; that of the ratio of two filters on the same noise is smaller.
   constexpr double kAgrees = 0.012;
-  claims.differs("error at a 25 mm step, sigma_f = 0.025 m", wide.smear_m, smears_m - kAgrees_m,
-                 smears_m + kAgrees_m, "m", "discontinuities are preserved (6.2.1)");
-  as_second("the same, sigma_f = 0.010 m", narrow.smear_m, second("narrow/smear_m"), kAgrees_m, "m");
-  as_second("noise left on a wall: sigma_f = 0.010 m over 0.025 m", narrow.noise_gain / wide.noise_gain, gain,
-            kAgrees, "1");
-  checks.at_most("points with 10 neighbours and no unit normal towards the sensor", counted.wrong, 0,
-                 "points", "0");
-  checks.at_least("share of the measured points that have so many neighbours",
+  claims.differs("the filter with sigma_f = 0.025 m smears a step of 25 mm in depth: error at the step",
+                 wide.smear_m, smears_m - kAgrees_m, smears_m + kAgrees_m, "m",
+                 "discontinuities are preserved (6.2.1)");
+  as_second("the filter with sigma_f = 0.010 m smears a step of 25 mm in depth: error at the step",
+            narrow.smear_m, second("narrow/smear_m"), kAgrees_m, "m");
+  as_second("the filter with sigma_f = 0.010 m leaves more noise on a wall than that with 0.025 m: ratio",
+            narrow.noise_gain / wide.noise_gain, gain, kAgrees, "1");
+  checks.at_most("every point with 10 neighbours has a unit normal towards the sensor: points without one",
+                 counted.wrong, 0, "points", "0");
+  checks.at_least("nearly all measured points have 10 neighbours: fraction that do",
                   counted.with_neighbours / counted.points, 0.99, "fraction");
 }
 

@@ -174,24 +174,29 @@ void add_stop_claim(const Claims& claims, const std::string& what, const BoxRun&
 
 void add_rule_claims(Figure& figure, const BoxRun& run) {
   const Trace& t = run.trace;
-  const Claims claims(figure, run.rule + ": ticks "), others(figure, run.rule + ": ");
-  claims.at_most("with a count above 0 on the way in and out",
+  const std::string opening = "contact rule " + run.rule + ": ";
+  const Claims claims(figure, opening);
+  claims.at_most("no contact is counted on the way in and out: ticks with a count above 0",
                  ticks_with(t, [&](std::size_t i) { return moves_along(t, i) && any_count(t, i); }), 0,
                  "ticks", "0");
   claims.at_most(
-      "with a count above 0 while the nearest point is a voxel or more away",
+      "no contact is counted while the nearest point is a voxel or more away: ticks with a count above 0",
       ticks_with(t, [&](std::size_t i) { return t.nearest_distance_m[i] >= kBoxVoxel_m && any_count(t, i); }),
       0, "ticks", "0");
   claims.at_most(
-      "without a point that touches while the tool lags by over 1 deg",
+      "a point touches whenever the tool lags by over 1 deg: ticks without one",
       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),
       0, "ticks", "0");
-  add_stop_claim(others, "rotation of the tool where the device has turned 30 deg", run, "/box");
-  others.at_most("gap between device and tool along y while nothing touches", max_gap_untouched_m(t), 1e-9,
-                 "m", "0");
-  others.at_most("fraction of ticks with a value that is not finite", non_finite_fraction(t), 0, "fraction");
-  Claims(figure, run.rule + ": ticks ", &Claim::set_up)
-      .at_least("in which it lags by over 1 deg",
+  add_stop_claim(
+      claims,
+      "the tool stops where its outline meets the walls, while the device turns on to 30 deg: its rotation",
+      run, "/box");
+  claims.at_most("the tool follows the device along y while nothing touches: largest gap",
+                 max_gap_untouched_m(t), 1e-9, "m", "0");
+  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(t), 0,
+                 "fraction");
+  Claims(figure, opening, &Claim::set_up)
+      .at_least("the tool lags by over 1 deg for long enough: ticks in which it does",
                 ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500, "ticks");
 }
 
@@ -206,7 +211,9 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
     if (r > 0) min_rise = min_or_nan(min_rise, count - max(runs[r - 1].trace.contact_count));
   }
   Claims(figure).at_least(
-      runs[0].rule + ": most points at once, 3, 2 and 1 mm apart, are " + counts + ": smallest rise",
+      "contact rule " + runs[0].rule +
+          ": more points touch where they lie closer (most at once, 3, 2 and 1 mm apart: " + counts +
+          "): smallest rise",
       min_rise, 1, "points", "6 at an unknown spacing");
 }
 
@@ -214,11 +221,12 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
 // elsewhere.
 void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
   for (const BoxRun& run : runs)
-    add_stop_claim(Claims(figure),
-                   run.rule +
-                       ": a block of the husky's length, width and height: "
-                       "its rotation there",
-                   run, "/box/block");
+    add_stop_claim(
+        Claims(figure),
+        "contact rule " + run.rule +
+            ": a block of the husky's length, width and height stops where its outline meets the walls: "
+            "its rotation",
+        run, "/box/block");
 }
 
 // Claims for a bar of 80 x 10 mm that turns between two walls 40 mm apart. Its corner is at a wall where 40
@@ -234,8 +242,8 @@ void add_slot_claim(Figure& figure, FigureContext& context) {
   for (const Trace& trace : context.run(experiments))
     max_error_deg = max_or_nan(max_error_deg, std::abs(tool_deg(trace, trace.length() - 1) - stops_deg));
   Claims(figure).at_most(
-      "look-ahead: a bar in a slot (tool-slot) stops at 22.62 deg, from its sides alone: maximum "
-      "difference for points 3, 2 and 1 mm apart",
+      "contact rule look-ahead: a bar in a slot (tool-slot) stops at 22.62 deg, which follows from its "
+      "sides alone: largest difference for points 3, 2 and 1 mm apart",
       max_error_deg, 0.02, "deg");
 }
 
@@ -253,9 +261,10 @@ void add_floor_claims(Figure& figure, FigureContext& context) {
     // The floor may lie in the tool's shell under the printed rule. The upper side of the shell is within
     // half a voxel of the surface.
     const double deep_m = r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m + kSubStep_m;
-    Claims(figure).between(kRules[r].second + ": height at which the floor stops the block",
-                           traces[r].proxy_position_m.back().y(), kTool_m - deep_m,
-                           kTool_m + (r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m), "m");
+    Claims(figure).between(
+        std::string("contact rule ") + kRules[r].second + ": the floor stops the block: height of its centre",
+        traces[r].proxy_position_m.back().y(), kTool_m - deep_m,
+        kTool_m + (r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m), "m");
   }
 }
 

@@ -97,17 +97,24 @@ void add_claims(Figure& figure, const std::vector<Turning>& runs) {
   const auto depth = [](const Turning& run) { return max_of(run.penetration_m); };
   const auto exhausted = [](const Turning& run) { return max_of(run.exhausted); };
   const Claims claims(figure);
-  claims.at_most("up to 10 deg the tool follows: maximum lag", max_of_rule(runs, "", free_lag), 1e-4, "deg");
-  claims.at_most("from 30 deg on the tool stops at one angle: maximum difference",
-                 max_of_rule(runs, "", history), 0.1, "deg");
-  claims.at_most("look-ahead: difference of the stop angles for points 1, 2 and 3 mm apart",
-                 max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1,
-                 "deg");
-  claims.at_most("look-ahead: deepest point in the tool at the end of a tick",
-                 max_of_rule(runs, "look-ahead", depth), 1e-4, "m");
-  claims.at_most("voxels: deepest point in the tool at the end of a tick, a voxel is 0.5 mm",
-                 max_of_rule(runs, "voxels", depth), 5e-4, "m");
-  claims.at_most("ticks that used up their detections", max_of_rule(runs, "", exhausted), 0, "fraction");
+  claims.at_most("the tool follows the device up to 10 deg: largest lag", max_of_rule(runs, "", free_lag),
+                 1e-4, "deg");
+  claims.at_most(
+      "the tool stops at one angle, however far beyond 30 deg the device turns: largest difference",
+      max_of_rule(runs, "", history), 0.1, "deg");
+  claims.at_most(
+      "contact rule look-ahead: the tool stops at the same angle with points 1, 2 and 3 mm apart: "
+      "largest difference",
+      max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1, "deg");
+  claims.at_most(
+      "contact rule look-ahead: no point is in the tool at the end of a tick: depth of the deepest point",
+      max_of_rule(runs, "look-ahead", depth), 1e-4, "m");
+  claims.at_most(
+      "contact rule voxels: no point is deeper in the tool than a voxel (0.5 mm) at the end of a tick: "
+      "depth of the deepest point",
+      max_of_rule(runs, "voxels", depth), 5e-4, "m");
+  claims.at_most("no tick uses up its detections: largest fraction of the ticks of a run",
+                 max_of_rule(runs, "", exhausted), 0, "fraction");
 }
 
 }  // namespace

@@ -152,16 +152,20 @@ double max_lag_m(const Trace& t) {
 void add_claims(Figure& figure, const TouchRun& run) {
   const Trace& t = run.trace;
   const Claims claims(figure, run.shown->label + std::string(is_printed(run) ? ", as printed: " : ": "));
-  claims.at_most("ticks with a number that is not finite", non_finite_fraction(t), 0, "fraction");
-  claims.at_most("deepest point in the tool at the end of a tick without a new frame", deepest_m(t),
-                 is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m", "0");
-  claims.at_most("ticks whose detections and log of a used-up budget do not fit", inconsistent_ticks(run), 0,
-                 "ticks");
-  claims.at_least("share of the sliding time in which the tool touches",
+  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(t), 0,
+                 "fraction");
+  claims.at_most(
+      "points stay out of the tool: depth of the deepest one at the end of a tick without a new frame",
+      deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m", "0");
+  claims.at_most("the log of used-up budgets fits the detections: ticks in which it does not",
+                 inconsistent_ticks(run), 0, "ticks");
+  claims.at_least("the tool touches while it slides: fraction of that time",
                   fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }),
                   0.9, "fraction");
-  claims.at_least("largest distance from tool to device", max_lag_m(t), 0.005, "m");
-  claims.at_most("force at the end", t.force_N[t.length() - 1].norm(), 0, "N", "0");
+  claims.at_least("the object holds the tool back: largest distance from tool to device", max_lag_m(t), 0.005,
+                  "m");
+  claims.at_most("no force remains when the tool was lifted: force at the end",
+                 t.force_N[t.length() - 1].norm(), 0, "N", "0");
 }
 
 Table summary_table(const std::vector<TouchRun>& runs) {

@@ -151,7 +151,8 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
   const std::string object = kNames[k];
   const auto empty = [](const MaskNumbers& m) { return !(m.picked > 0); };
   if (std::any_of(numbers.begin(), numbers.end(), empty)) {
-    figure.claims.push_back(claim_not_run(figure.name, object, "a frame in which nothing is picked"));
+    figure.claims.push_back(claim_not_run(figure.name, object + ": the mask shows the object",
+                                          "a frame in which nothing is picked"));
     return;
   }
   const auto min = [&](auto&& of) {
@@ -160,14 +161,15 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
     return value;
   };
   const Claims claims(figure, object + ": ");
-  claims.at_least("least share of the mask within the object's box",
+  claims.at_least("the mask lies within the object's box: smallest share in a frame",
                   min([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
                   "fraction");
-  claims.at_least("least share of the mask in its largest piece",
+  claims.at_least("the mask is mostly one piece: smallest share of the largest piece in a frame",
                   min([](const MaskNumbers& m) { return m.max_component / m.picked; }), 0.8, "fraction");
-  claims.at_most("largest shift of the mean by what lies outside the box",
+  claims.at_most("what lies outside the box hardly shifts the mean of the mask: largest shift",
                  -min([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005, "m");
-  claims.at_most("how far the mean wanders in five frames at rest", wander, 0.003, "m");
+  claims.at_most("the mean of the mask hardly wanders in five frames at rest: largest distance", wander,
+                 0.003, "m");
 }
 
 }  // namespace

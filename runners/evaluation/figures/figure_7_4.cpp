@@ -49,25 +49,31 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   const std::size_t held = tick_of(t, held_s);
   const std::string valve = side;
   const Claims claims(figure), checks(figure, "", &Claim::set_up);
-  claims.between("force when pushed to the " + valve, t.force_N[held].norm(), 5, 8, "N", "rises when pushed");
-  claims.at_least("largest torque of the push to the " + valve, max_torque_Nm(t, held_s - 1, held_s + 1),
-                  0.01, "N m", "rises when pushed");
-  checks.between("device behind the tool, pushed to the " + valve, lag_m(t, held), 0.018, 0.022, "m");
+  claims.between("the region of the " + valve + " valve pushes the tool back: force", t.force_N[held].norm(),
+                 5, 8, "N", "rises when pushed");
+  claims.at_least("the region of the " + valve + " valve turns the tool back: largest torque",
+                  max_torque_Nm(t, held_s - 1, held_s + 1), 0.01, "N m", "rises when pushed");
+  checks.between(
+      "the device is pushed into the region of the " + valve + " valve: its distance from the tool",
+      lag_m(t, held), 0.018, 0.022, "m");
 }
 
 void add_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const Claims claims(figure);
-  claims.at_most("largest force while nothing is within the look-ahead", max_free_force_N(t), 0, "N", "0");
-  claims.between("times that the force rises from nothing", pushes(t), 2, 2, "times", "2");
+  claims.at_most("no force acts while nothing is within the look-ahead: largest force", max_free_force_N(t),
+                 0, "N", "0");
+  claims.between("the tool is pushed against two regions: times that the force rises from zero", pushes(t), 2,
+                 2, "times", "2");
   for (const double free_s : {kStart_s, kBetween_s, t.time_s.back()})
-    claims.at_most("force at " + std::to_string(free_s).substr(0, 4) + " s",
+    claims.at_most("no force acts in free space: force at " + std::to_string(free_s).substr(0, 4) + " s",
                    t.force_N[tick_of(t, free_s)].norm(), 0, "N", "0");
   add_push_claims(figure, task, "left", kHeldLeft_s);
   add_push_claims(figure, task, "right", kHeldRight_s);
   for (const Valve valve : {Valve::left, Valve::right})
-    claims.at_least(std::string("least distance of the tool's mesh to the true ") +
-                        (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
+    claims.at_least(std::string("the tool stays at least 39 mm away from the true ") +
+                        (valve == Valve::left ? "left" : "right") +
+                        " valve, whose region has 40 mm: smallest distance of its mesh",
                     min_clearance_m(task, valve), kValveRegion_m - 1e-3, "m");
   add_task_claims(figure, task);
 }
@@ -79,9 +85,11 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   const Claims claims(figure, slip.label + ": ");
   const std::size_t last = t.length() - 1;
   const Vec3 aside = t.proxy_position_m[last] - t.intended_position_m[last];
-  claims.at_least("how far the tool was pushed up, past the valve", aside.y(), 0.01, "m");
-  claims.at_least("least distance of its mesh to the true valve", min_clearance_m(slip, Valve::left),
-                  kValveRegion_m - 1e-3, "m");
+  claims.at_least("the tool is pushed up and past the valve: height", aside.y(), 0.01, "m");
+  claims.at_least(
+      "the tool stays at least 39 mm away from the true valve, whose region has 40 mm: smallest distance of "
+      "its mesh",
+      min_clearance_m(slip, Valve::left), kValveRegion_m - 1e-3, "m");
   add_task_claims(figure, slip);
 }
 

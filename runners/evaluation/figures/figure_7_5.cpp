@@ -43,33 +43,36 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   const Claims claims(figure, opening), checks(figure, opening, &Claim::set_up);
   const std::size_t first = first_pull(t);
   if (first == t.length()) {
-    figure.claims.push_back(claim_not_run(figure.name, opening + "guidance", "it never pulled"));
+    figure.claims.push_back(
+        claim_not_run(figure.name, opening + "guidance pulls the hand", "it never pulled"));
     return;
   }
-  claims.at_least("force of the region before, pushed to the left", t.force_N[tick_of(t, kPushed_s)].norm(),
-                  2, "N", "rises");
-  claims.at_most("force at the end", residual_N(t), 0.2, "N", "decays");
-  claims.at_most("torque about the handle's y and z at the end",
+  claims.at_least("before guidance the region pushes the tool back from the left valve: force",
+                  t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N", "rises");
+  claims.at_most("guidance ends at its goal: force at the end", residual_N(t), 0.2, "N", "decays");
+  claims.at_most("guidance ends at its goal: torque about the handle's y and z at the end",
                  max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m");
-  claims.at_least("least distance of the tool's mesh to the true left valve",
-                  min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m");
+  claims.at_least(
+      "the tool stays out of the region round the true left valve: smallest distance of its mesh to the "
+      "valve",
+      min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m");
   add_task_claims(figure, task);
-  checks.between("when guidance begins to pull", t.time_s[first], kPressed_s, kPressed_s + 1e-9, "s",
-                 "about 3");
-  checks.between("its force in that tick, cut at 4 N", t.guidance_force_N[first].norm(), kClamp_N - 1e-9,
-                 kClamp_N + 1e-9, "N", "a step");
+  checks.between("guidance begins to pull when the button is pressed: time", t.time_s[first], kPressed_s,
+                 kPressed_s + 1e-9, "s", "about 3");
+  checks.between("the first pull of guidance is cut at 4 N: force in that tick",
+                 t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N", "a step");
 }
 
 void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six) {
   const Claims claims(figure);
-  claims.at_least(five.label + ": torque about the roll axis at the end", residual_Nm(five.trace).x(),
-                  10 * kLittle_Nm, "N m", "never reaches zero");
-  claims.at_most(six.label + ": torque about the roll axis at the end", residual_Nm(six.trace).x(),
-                 kLittle_Nm, "N m");
-  claims.between(five.label + ": steps of the task that are missed", five.trace.sequence_missed.back(), 1, 1,
-                 "steps");
-  claims.at_most(six.label + ": steps of the task that are missed", six.trace.sequence_missed.back(), 0,
-                 "steps");
+  claims.at_least(five.label + ": a torque about the roll axis remains: torque at the end",
+                  residual_Nm(five.trace).x(), 10 * kLittle_Nm, "N m", "never reaches zero");
+  claims.at_most(six.label + ": no torque about the roll axis remains: torque at the end",
+                 residual_Nm(six.trace).x(), kLittle_Nm, "N m");
+  claims.between(five.label + ": the task misses one step: number of missed steps",
+                 five.trace.sequence_missed.back(), 1, 1, "steps");
+  claims.at_most(six.label + ": the task misses no step: number of missed steps",
+                 six.trace.sequence_missed.back(), 0, "steps");
 }
 
 void add_panels(Figure& figure, const ValveTask& task, int column) {

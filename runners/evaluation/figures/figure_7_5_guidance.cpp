@@ -61,14 +61,17 @@ Figure figure_7_5_guidance(FigureContext& context) {
   figure.panels = {guided_panel("Distance from the goal", "error", "distance (mm)", list),
                    guided_panel("Angle to the goal", "angle", "angle (deg)", list)};
   const Claims claims(figure);
-  claims.at_most("distance from the goal at the end, all runs",
+  claims.at_most("the hand arrives at the goal in all runs: largest distance at the end",
                  max_or_nan(max_of(six.error_mm), max_of(five.error_mm)), 2, "mm");
-  claims.at_most("six motors: angle to the goal at the end", max_of(six.error_deg), 0.1, "deg");
-  claims.at_least("five motors: angle to the goal at the end, minimum of the runs", min_of(five.error_deg),
-                  20, "deg");
-  claims.at_most("five motors: how much that angle depends on the stiffness",
-                 max_of(five.error_deg) - min_of(five.error_deg), 1, "deg");
-  claims.at_least("gap between the tool and the forbidden region, minimum of all ticks",
+  claims.at_most("six motors: the tool turns to the goal: largest angle to it at the end",
+                 max_of(six.error_deg), 0.1, "deg");
+  claims.at_least("five motors: the tool stays turned away from the goal: smallest angle to it at the end",
+                  min_of(five.error_deg), 20, "deg");
+  claims.at_most(
+      "five motors: the final angle to the goal hardly depends on the stiffness of guidance: largest "
+      "difference",
+      max_of(five.error_deg) - min_of(five.error_deg), 1, "deg");
+  claims.at_least("the tool stays out of the forbidden region: smallest gap of all ticks",
                   min_or_nan(min_of(six.clearance_mm), min_of(five.clearance_mm)), -0.1, "mm");
   return figure;
 }

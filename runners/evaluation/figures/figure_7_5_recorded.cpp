@@ -73,19 +73,21 @@ double goal_wander_m(const Trace& t) {
 void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   const Trace& t = task.trace;
   const Claims claims(figure), checks(figure, "", &Claim::set_up);
-  claims.at_least("force of the organ's region, pushed towards it",
+  claims.at_least("the region of the organ pushes the tool back: force",
                   t.force_N[tick_of(t, kButtonPushed_s)].norm(), 1, "N");
   claims.at_least(
-      "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
+      "the tool stays out of the regions of 20 mm while it touches: smallest distance of a vertex of "
+      "its mesh to a point with a region",
       min_point_distance_m(task, kernels), kOrganRegion_m - 1e-3, "m");
-  claims.at_most("how far the goal moves while the camera rests", goal_wander_m(t), 0.002, "m");
+  claims.at_most("the goal hardly moves while the camera rests: largest distance", goal_wander_m(t), 0.002,
+                 "m");
   const std::vector<SequenceEntry> log = sequence_log(t);
-  claims.at_most("steps of the task that are missed", t.sequence_missed.back(), 0, "steps");
-  claims.between("steps of the task that are done or missed at the end", t.sequence_step.back(), 1, 1,
+  claims.at_most("the task misses no step: number of missed steps", t.sequence_missed.back(), 0, "steps");
+  claims.between("the task has ended: steps that are done or missed at the end", t.sequence_step.back(), 1, 1,
                  "steps");
   add_task_claims(figure, task);
-  checks.between("when guidance is activated", log.empty() ? 0 : log[0].began_s, kButtonPressed_s,
-                 kButtonPressed_s + 1e-9, "s");
+  checks.between("guidance is activated when the button is pressed: time", log.empty() ? 0 : log[0].began_s,
+                 kButtonPressed_s, kButtonPressed_s + 1e-9, "s");
 }
 
 // Returns the points nearer than the wall behind, from every second pixel of every second row.

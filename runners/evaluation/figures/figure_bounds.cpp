@@ -101,9 +101,9 @@ std::vector<Panel> panels(const std::vector<AccelerationBound>& bounds) {
 void add_estimate_claims(const Claims& claims, const MeasuredNoise& noise) {
   constexpr double kKnown = 0.154, kStandardError = 0.0037, kRounding = 1e-9;
   const double bias = noise.at(kFitted_m).velocity_bias_m_per_s;
-  claims.at_most("mean error of v_hat without noise, surface at 0.1 m/s",
+  claims.at_most("without noise v_hat is the velocity of a surface at 0.1 m/s: mean error",
                  std::abs(noise.at(0).velocity_bias_m_per_s), kRounding, "m/s", "v_hat = v (4.19)");
-  claims.differs("mean error of v_hat at 2 r_c of noise, surface at 0.1 m/s", bias,
+  claims.differs("with noise of 2 r_c v_hat is too large for a surface at 0.1 m/s: mean error", bias,
                  kKnown - 4 * kStandardError, kKnown + 4 * kStandardError, "m/s",
                  "\"very good\", v_hat = v (4.19)");
 }
@@ -115,34 +115,41 @@ void add_claims(Figure& figure, const Phases& phases, const Table& thickness, co
   // mm less. The bisection ends 0.0001 wide.
   constexpr double kMinRatio = 1 - (0.113 + 0.01) / 4.99, kMaxRatio = 1 + (0.01 + 0.01) / 4.99;
   const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
-  claims.at_least("noise-free lifts at 4.3 m/s^2 that survived, 64 grid phases", phases.survived_low, 1,
-                  "fraction", "a < 4.491 (4.14)");
-  claims.at_most("noise-free lifts at 4.6 m/s^2 that survived, 64 grid phases", phases.survived_high, 0,
-                 "fraction", "a < 4.491 (4.14)");
-  claims.between("smallest critical acceleration over the phases, in units of (4.14)",
-                 min_of(survives) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1", "1 (4.14)");
-  claims.between("largest critical acceleration over the phases, in units of (4.14)",
-                 max_of(pops) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1", "1 (4.14)");
-  claims.at_most("refitted thickness against (4.23), rms up to 2 r_c", rms_from_print(thickness), 3e-4, "m",
-                 "(4.23)");
-  claims.between("refitted normal error at 2 r_c, in what the printed digits of (4.24) allow",
-                 numbers(normal_error, "refitted").back(), numbers(normal_error, "printed_low").back(),
-                 numbers(normal_error, "printed_high").back(), "1", "0.26 from rounded digits");
-  claims.differs("(4.24) as printed at 2 r_c over the refit",
+  claims.at_least(
+      "without noise, no lift with 4.3 m/s^2 pops through: fraction of 64 grid phases that do not",
+      phases.survived_low, 1, "fraction", "a < 4.491 (4.14)");
+  claims.at_most(
+      "without noise, every lift with 4.6 m/s^2 pops through: fraction of 64 grid phases that do not",
+      phases.survived_high, 0, "fraction", "a < 4.491 (4.14)");
+  claims.between(
+      "without noise the critical acceleration is that of (4.14): smallest ratio over the grid phases",
+      min_of(survives) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1", "1 (4.14)");
+  claims.between(
+      "without noise the critical acceleration is that of (4.14): largest ratio over the grid phases",
+      max_of(pops) / critical_acceleration(kLift), kMinRatio, kMaxRatio, "1", "1 (4.14)");
+  claims.at_most("the refitted thickness follows (4.23) for noise up to 2 r_c: rms difference",
+                 rms_from_print(thickness), 3e-4, "m", "(4.23)");
+  claims.between(
+      "the refitted normal error at 2 r_c is within what the printed digits of (4.24) allow: its value",
+      numbers(normal_error, "refitted").back(), numbers(normal_error, "printed_low").back(),
+      numbers(normal_error, "printed_high").back(), "1", "0.26 from rounded digits");
+  claims.differs("(4.24) as printed gives a larger normal error at 2 r_c than the refit: ratio",
                  numbers(normal_error, "printed").back() / numbers(normal_error, "refitted").back(), 2, 3.5,
                  "1", "1");
-  map_claims.at_least("pop-throughs that (4.17) predicts at their update",
+  map_claims.at_least("(4.17) predicts most pop-throughs at their update: fraction of them",
                       criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "fraction",
                       "exact if all were known");
-  map_claims.at_least("updates without pop-through at which (4.17) holds",
+  map_claims.at_least("(4.17) holds at nearly all updates without pop-through: fraction of them",
                       criterion.holds_stays / (criterion.holds_stays + criterion.fails_stays), 0.98,
                       "fraction", "exact if all were known");
-  map_claims.between("cells in which (4.25) as printed and the outcome agree",
+  map_claims.between("(4.25) as printed predicts the outcome in most cells of the map: fraction of them",
                      agreement_of(bounds.front(), map).fraction(), 0.75, 0.85, "fraction", "a bit loose");
-  map_claims.at_least("cells in which the bound with scatter and the outcome agree",
-                      agreement_of(bounds.back(), map).fraction(), 0.87, "fraction");
-  map_claims.at_most("safe cells of the bound with scatter that popped through",
-                     agreement_of(bounds.back(), map).safe_popped, 0.15, "fraction");
+  map_claims.at_least(
+      "the bound with scatter predicts the outcome in most cells of the map: fraction of them",
+      agreement_of(bounds.back(), map).fraction(), 0.87, "fraction");
+  map_claims.at_most(
+      "few lifts pop through in cells that the bound with scatter calls safe: fraction that do",
+      agreement_of(bounds.back(), map).safe_popped, 0.15, "fraction");
 }
 
 }  // namespace

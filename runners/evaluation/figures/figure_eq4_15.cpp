@@ -73,14 +73,20 @@ Figure figure_eq4_15(FigureContext& context) {
   // the jump.
   constexpr double kJump_N = 600 * 0.1 * (1.0 / 30 - 1.0 / 1000), kRounding_N = 1e-6;
   const Claims claims(figure);
-  claims.at_most("force jump per frame at 0.1 m/s, working sign (minus)", jump[2], kRounding_N, "N",
-                 "smooth");
-  claims.differs("the same, printed sign (plus)", jump[0], 2 * kJump_N - kRounding_N,
-                 2 * kJump_N + kRounding_N, "N", "smooth");
-  claims.between("the same, without the term", jump[1], kJump_N - kRounding_N, kJump_N + kRounding_N, "N");
-  claims.differs("the same for a plane that recedes, working sign: v_hat is never below 0 (4.13)",
-                 max_force_jump_N(settled(context.run(steady_fall()))), kJump_N - kRounding_N,
-                 kJump_N + kRounding_N, "N", "smooth");
+  claims.at_most(
+      "with the minus sign the force does not jump at the frames of a surface that rises at 0.1 m/s: jump",
+      jump[2], kRounding_N, "N", "smooth");
+  claims.differs(
+      "with the printed plus sign the force jumps at the frames of a surface that rises at 0.1 m/s: jump",
+      jump[0], 2 * kJump_N - kRounding_N, 2 * kJump_N + kRounding_N, "N", "smooth");
+  claims.between(
+      "without the velocity term the force jumps at the frames of a surface that rises at 0.1 m/s: jump",
+      jump[1], kJump_N - kRounding_N, kJump_N + kRounding_N, "N");
+  claims.differs(
+      "with the minus sign the force jumps at the frames of a surface that recedes, because v_hat is "
+      "never below 0 (4.13): jump",
+      max_force_jump_N(settled(context.run(steady_fall()))), kJump_N - kRounding_N, kJump_N + kRounding_N,
+      "N", "smooth");
   return figure;
 }
 

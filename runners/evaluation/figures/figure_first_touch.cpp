@@ -136,7 +136,8 @@ Table formula_table(const Losses& losses) {
 void add_formula_claim(Figure& figure, const Losses& losses, const std::string& where) {
   Claims(figure, where)
       .at_most(
-          ": fraction of start times at which a proxy at rest is lost, largest difference to the formula",
+          ": a proxy at rest is lost at as many start times as the formula says: largest difference of "
+          "the fractions",
           losses.max_difference(), 1 / losses.phases, "fraction");
 }
 
@@ -144,18 +145,20 @@ void add_rate_claims(Figure& figure, const Losses& losses) {
   const std::string where = losses.meaning + ": ";
   const Claims claims(figure, where), checks(figure, where, &Claim::set_up);
   add_formula_claim(figure, losses, losses.meaning);
-  claims.at_most("proxies lost up to the speed (r_1^2 - s^2 / 2)^(1/2) f_c",
+  claims.at_most("no proxy is lost up to the speed (r_1^2 - s^2 / 2)^(1/2) f_c: largest fraction lost",
                  losses.max_lost_up_to(max_first_touch_velocity(losses.touch)), 0, "fraction",
                  "r_1 f_c (4.14)");
-  checks.at_least("speeds at which some start times are lost and some are not", losses.undecided_speeds(), 8,
-                  "speeds");
+  checks.at_least("the start time decides at many speeds whether a proxy is lost: number of these speeds",
+                  losses.undecided_speeds(), 8, "speeds");
 }
 
 void add_hand_claims(Figure& figure, const Losses& losses) {
   const double limit = max_touched_velocity(losses.touch);
-  const Claims claims(figure, "a hand presses onto the moving surface, 30 Hz: fraction lost ");
-  claims.at_most("up to (r_c^2 - s^2 / 2)^(1/2) f_c", losses.max_lost_up_to(limit), 0, "fraction");
-  claims.at_least("at higher speeds", losses.min_lost_above(limit), 1, "fraction");
+  const Claims claims(figure, "a hand presses onto the moving surface, 30 Hz: ");
+  claims.at_most("no proxy is lost up to the speed (r_c^2 - s^2 / 2)^(1/2) f_c: largest fraction lost",
+                 losses.max_lost_up_to(limit), 0, "fraction");
+  claims.at_least("every proxy is lost above the speed (r_c^2 - s^2 / 2)^(1/2) f_c: smallest fraction lost",
+                  losses.min_lost_above(limit), 1, "fraction");
 }
 
 Panel panel(const std::string& title, const std::vector<Losses>& list, const std::string& table) {

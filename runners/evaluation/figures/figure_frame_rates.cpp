@@ -62,11 +62,11 @@ void add_claims(Figure& figure, const std::vector<Threshold>& list) {
   for (const Threshold& threshold : list) {
     const std::string rate = std::to_string(static_cast<int>(threshold.frame_rate_hz));
     claims.between(
-        "critical acceleration without noise at " + rate + " frames per second, in units of r_1 f_c^2",
+        "without noise the critical acceleration at " + rate + " frames per second is r_1 f_c^2: ratio",
         threshold.critical() / threshold.bound(), 0.97, 1.03, "1", "1 (4.14)");
     out_of_order += threshold.out_of_order;
   }
-  claims.at_most("lifts that survived above their critical acceleration", out_of_order, 0, "lifts");
+  claims.at_most("no lift survives above its critical acceleration: lifts that do", out_of_order, 0, "lifts");
 }
 
 }  // namespace

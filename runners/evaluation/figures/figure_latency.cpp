@@ -220,16 +220,22 @@ Figure figure_latency(FigureContext& context) {
   // a tick younger than the rule states, on a surface of up to 0.2 m/s. With jitter it is a tick, at 0.1 m/s.
   constexpr double kSinks_mm = 1.5 * 1.5 / 4 / 25 + 0.01, kThirdOfTick_mm = 0.2 / 3, kTick_mm = 0.1;
   const Claims claims(figure);
-  claims.at_most("violation against speed x (latency + frame interval), where that is below r_f",
-                 max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
-                 kThirdOfTick_mm + kSinks_mm, "mm");
-  claims.at_least("cells in which the same rule predicts whether the slave reaches the surface",
-                  fraction_known(map), 0.99, "fraction");
-  claims.at_most("violation with the slave sent ahead, settled, where it was below r_f",
+  claims.at_most(
+      "the violation is the speed times (latency + frame interval) as long as that is below r_f: "
+      "largest difference",
+      max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
+      kThirdOfTick_mm + kSinks_mm, "mm");
+  claims.at_least(
+      "speed times (latency + frame interval) predicts whether the slave reaches the surface: fraction "
+      "of the cells of the map",
+      fraction_known(map), 0.99, "fraction");
+  claims.at_most("no settled violation below r_f remains when the slave is sent ahead: largest violation",
                  max_error(map, 20, [&](std::size_t i) { return settled[i]; }), kSinks_mm, "mm");
-  claims.at_most("jittered runs: how far outside the bounds for all early and all late", max_outside(jitter),
-                 kTick_mm + kSinks_mm, "mm");
-  claims.at_least("lost frames: mean violation at a loss of 0.3 over that at 0",
+  claims.at_most(
+      "with jitter the violation stays between those of all frames early and all frames late: largest "
+      "distance outside",
+      max_outside(jitter), kTick_mm + kSinks_mm, "mm");
+  claims.at_least("lost frames increase the mean violation: value at a loss of 0.3 over that at 0",
                   numbers(drops, "mean")[6] / numbers(drops, "mean")[0], 1.5, "1");
   return figure;
 }

@@ -254,16 +254,24 @@ void add_plane_claims(const Claims& claims, const Table& planes) {
   const double sinks = EvenSpring{}.stiffness_N_per_m / (EvenSpring{}.stiffness_N_per_m + 10 * 2400);
   add_column_claims(
       claims, planes,
-      {{"look-ahead on a tilted plane: deviation of the force", "look_ahead_force", 1e-3, "1"},
-       {"look-ahead on a tilted plane: angle to the exact force", "look_ahead_force_direction", 0.01, "deg"},
-       {"continuous rule on a tilted plane: deviation of the force", "continuous_force", kGapFraction, "1"},
-       {"god-object on a tilted plane: deviation of the force", "god_object_force", kGapFraction, "1"},
-       {"god-object on a tilted plane: angle to the exact force", "god_object_force_direction", 0.01, "deg"},
-       {"printed rule on a tilted plane: deviation of the force", "voxels_force", 0.01, "1"}});
-  claims.between("penalty on a level plane: the force is too small by k / (k + 10 k_p)",
-                 numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1");
+      {{"on a tilted plane, look-ahead gives the exact force: largest relative deviation", "look_ahead_force",
+        1e-3, "1"},
+       {"on a tilted plane, look-ahead gives the exact direction of the force: largest angle to it",
+        "look_ahead_force_direction", 0.01, "deg"},
+       {"on a tilted plane, the continuous rule gives nearly the exact force: largest relative deviation",
+        "continuous_force", kGapFraction, "1"},
+       {"on a tilted plane, the god-object gives nearly the exact force: largest relative deviation",
+        "god_object_force", kGapFraction, "1"},
+       {"on a tilted plane, the god-object gives the exact direction of the force: largest angle to it",
+        "god_object_force_direction", 0.01, "deg"},
+       {"on a tilted plane, the printed rule gives the exact force: largest relative deviation",
+        "voxels_force", 0.01, "1"}});
+  claims.between(
+      "on a level plane, the force of the penalty method is too small by k / (k + 10 k_p): relative "
+      "deviation",
+      numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1");
   add_column_claims(claims, planes,
-                    {{"voxmap on a tilted plane: its steps turn the force, by up to",
+                    {{"on a tilted plane, the steps of voxmap turn the force: largest angle to the exact one",
                       "voxmap_force_direction", 5, "deg", true}});
 }
 
@@ -271,40 +279,55 @@ void add_plane_claims(const Claims& claims, const Table& planes) {
 // the remaining displacement, multiplied by M. The coupling exerts on the hand k times that displacement, and
 // k r^2 times the angle. Both agree if M is that of the coupling.
 void add_block_claims(const Claims& claims, const Table& blocks, const Table& of_coupling) {
-  add_column_claims(claims, blocks,
-                    {{"god-object, M of the coupling, tilted block: deviation of the force",
-                      "god_object_force", kGapFraction, "1"},
-                     {"god-object, M of the coupling, tilted block: deviation of the torque",
-                      "god_object_torque", kGapFraction, "1"},
-                     {"look-ahead, M of the tool, tilted block: deviation of the torque, up to",
-                      "look_ahead_torque", 1, "1", true},
-                     {"printed rule, M of the tool, tilted block: deviation of the torque, up to",
-                      "voxels_torque", 1, "1", true}});
+  add_column_claims(
+      claims, blocks,
+      {{"with a tilted block, the god-object with M of the coupling gives nearly the exact force: "
+        "largest relative deviation",
+        "god_object_force", kGapFraction, "1"},
+       {"with a tilted block, the god-object with M of the coupling gives nearly the exact torque: "
+        "largest relative deviation",
+        "god_object_torque", kGapFraction, "1"},
+       {"with a tilted block, look-ahead with M of the tool gives a wrong torque: largest relative deviation",
+        "look_ahead_torque", 1, "1", true},
+       {"with a tilted block, the printed rule with M of the tool gives a wrong torque: largest "
+        "relative deviation",
+        "voxels_torque", 1, "1", true}});
   add_column_claims(
       claims, of_coupling,
-      {{"look-ahead, M of the coupling, tilted block: deviation of the force", "look_ahead_force", 0.01, "1"},
-       {"look-ahead, M of the coupling, tilted block: deviation of the torque", "look_ahead_torque", 0.01,
-        "1"}});
+      {{"with a tilted block, look-ahead with M of the coupling gives the exact force: largest relative "
+        "deviation",
+        "look_ahead_force", 0.01, "1"},
+       {"with a tilted block, look-ahead with M of the coupling gives the exact torque: largest "
+        "relative deviation",
+        "look_ahead_torque", 0.01, "1"}});
 }
 
 void add_groove_and_slot_claims(const Claims& claims, const Table& grooves, const Table& slot) {
   add_column_claims(
       claims, grooves,
-      {{"look-ahead in a valley: deviation of the force", "look_ahead_force", kGapFraction, "1"},
-       {"god-object in a valley: deviation of the force", "god_object_force", 2 * kGapFraction, "1"},
-       {"look-ahead in a valley: angle to the exact force", "look_ahead_force_direction", 0.5, "deg"},
-       {"look-ahead in a valley: fraction of ticks without a force", "look_ahead_force_missing", 0, "1"},
-       {"god-object in a valley: fraction of ticks without a force", "god_object_force_missing", 0.02, "1"},
-       {"god-object in a valley: angle to the exact force", "god_object_force_direction", 2, "deg"},
-       {"voxmap in a valley: angle to the exact force, up to", "voxmap_force_direction", 5, "deg", true}});
+      {{"in a valley, look-ahead gives nearly the exact force: largest relative deviation",
+        "look_ahead_force", kGapFraction, "1"},
+       {"in a valley, the god-object gives nearly the exact force: largest relative deviation",
+        "god_object_force", 2 * kGapFraction, "1"},
+       {"in a valley, look-ahead gives the exact direction of the force: largest angle to it",
+        "look_ahead_force_direction", 0.5, "deg"},
+       {"in a valley, look-ahead gives a force in every tick: largest fraction of ticks without one",
+        "look_ahead_force_missing", 0, "1"},
+       {"in a valley, the god-object gives a force in nearly every tick: largest fraction of ticks "
+        "without one",
+        "god_object_force_missing", 0.02, "1"},
+       {"in a valley, the god-object gives nearly the exact direction of the force: largest angle to it",
+        "god_object_force_direction", 2, "deg"},
+       {"in a valley, voxmap turns the force: largest angle to the exact one", "voxmap_force_direction", 5,
+        "deg", true}});
   const auto in_slot = [&](const std::string& method, const std::string& column, double limit_Nm) {
-    claims.at_most(method + " in a slot: error of the torque at 32 degrees",
+    claims.at_most(method + " gives the exact torque of a bar in a slot at 32 degrees: error",
                    std::abs(numbers(slot, column).back() - numbers(slot, "exact").back()), limit_Nm, "N m");
   };
   in_slot("look-ahead", "look_ahead", 1e-3);
-  in_slot("continuous rule", "continuous", 1e-3);
-  in_slot("god-object", "god_object", 1e-3);
-  in_slot("printed rule", "voxels", 0.01);
+  in_slot("the continuous rule", "continuous", 1e-3);
+  in_slot("the god-object", "god_object", 1e-3);
+  in_slot("the printed rule", "voxels", 0.01);
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ void claim_bounded(const Claims& claims, const std::vector<Table>& tables, Carri
   for (const Table& table : tables)
     apart += count_rows_apart(table, column + "_carried", column + "_first_lost", column + "_bound_low",
                               column + "_bound_high");
-  claims.at_most(claim + ": number of settings where not", apart, 0, "1", paper);
+  claims.at_most(claim + ": number of settings in which this is false", apart, 0, "1", paper);
 }
 
 // A row counts if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins at
@@ -221,28 +221,38 @@ void claim_bounded_noise(const Claims& claims, const std::vector<Table>& tables,
   for (const Table& table : tables)
     apart += count_rows_apart(table, column + "_carried", column + "_all_lost", column + "_bound_low",
                               column + "_bound_high");
-  claims.at_most("noise, " + label + ": half are lost at the derived speed: settings of 12 where not", apart,
-                 2, "1");
+  claims.at_most(
+      label +
+          ": with noise, half of the plates are lost at the derived speed: number of 12 settings in "
+          "which this is false",
+      apart, 2, "1");
 }
 
 void add_claims(Figure& figure, const std::vector<Table>& still, const std::vector<Table>& turning,
                 const std::vector<Table>& tilted, const std::vector<Table>& noisy, const Pool& pool) {
   for (const CarrierName& carrier : kCarriers) {
-    const Claims claims(figure, std::string(carrier.label) + ", ");
+    const Claims claims(figure, std::string(carrier.label) + ": ");
     const bool printed = carrier.rule == Carrier::voxels;
     const std::string bound = printed                               ? "f_c (h - 2w + drop)"
                               : carrier.rule == Carrier::look_ahead ? "f_c (h + drop)"
                                                                     : "f_c max(h + drop, frame_reach_m)";
-    claim_bounded(claims, still, carrier.rule, "edge, corner, ball and wall: up to " + bound,
+    claim_bounded(claims, still, carrier.rule,
+                  "edge, corner, ball and wall carry a plate up to the speed " + bound,
                   printed ? "v < f_c (h - 2w), 6.2.4" : "-");
-    claim_bounded(claims, turning, carrier.rule, "turning: with the drop after the turn");
-    claim_bounded(claims, tilted, carrier.rule, "tilted: at least with the steeper flank");
+    claim_bounded(claims, turning, carrier.rule,
+                  "a plane and an edge that turn carry a plate up to the bound with the drop after the turn");
+    claim_bounded(claims, tilted, carrier.rule,
+                  "a tilted edge carries a plate at least up to the bound of its steeper flank");
     claim_bounded_noise(Claims(figure), noisy, carrier.rule, carrier.label);
     const Tally &below = pool.below(carrier.rule), &above = pool.above(carrier.rule);
-    claims.at_least("below the bound: fraction carried, lower end of the Wilson interval",
-                    wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction");
-    claims.at_least("above the bound: fraction lost, lower end of the Wilson interval",
-                    wilson_interval(above.events, above.runs).first, 0.97, "fraction");
+    claims.at_least(
+        "nearly all plates are carried below the derived bound: lower end of the Wilson interval of the "
+        "fraction",
+        wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction");
+    claims.at_least(
+        "nearly all plates are lost above the derived bound: lower end of the Wilson interval of the "
+        "fraction",
+        wilson_interval(above.events, above.runs).first, 0.97, "fraction");
   }
 }
 

@@ -231,17 +231,20 @@ void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
                 const std::vector<Table>& jumps, const Table& shapes) {
   const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
   const std::string beside =
-      " (as printed: " + std::to_string(printed.held) + " of " + std::to_string(printed.runs) + ")";
-  map_claims.at_least("success of tracked sheets over the whole map" + beside, ours.share(), 0.99,
-                      "fraction");
-  map_claims.at_least("lower end of its 95 % Wilson interval", wilson_interval(ours.held, ours.runs).first,
-                      0.97, "fraction");
+      " (by the printed rule: " + std::to_string(printed.held) + " of " + std::to_string(printed.runs) + ")";
+  map_claims.at_least("tracked sheets hold the plate in nearly all runs of the whole map: fraction" + beside,
+                      ours.share(), 0.99, "fraction");
+  map_claims.at_least(
+      "tracked sheets hold the plate in nearly all runs of the whole map: lower end of the 95 % Wilson "
+      "interval of the fraction",
+      wilson_interval(ours.held, ours.runs).first, 0.97, "fraction");
   for (const Table& table : jumps)
     for (const char* what : {"_force", "_torque"})
-      claims.at_most(table.title + ": jumps at frames, largest ratio of" +
-                         (what[1] == 'f' ? " force" : " torque") + " to look-ahead's",
+      claims.at_most(table.title +
+                         ": tracked sheets jump less than look-ahead at frames: largest ratio of the" +
+                         (what[1] == 'f' ? " forces" : " torques"),
                      max_ratio(table, what), 1.0 / 3, "ratio");
-  claims.at_most("noise up to 2 r_c holds a plate on a flat surface higher or lower by",
+  claims.at_most("noise up to 2 r_c hardly changes the height of a plate on a flat surface: largest change",
                  max_raised(shapes, "flat"), 0.1, "r_c");
 }
 

@@ -150,26 +150,31 @@ double lost_at_per_m(const std::vector<Level>& levels, std::size_t k) {
 
 void add_claims(Figure& figure, const std::vector<Level>& levels) {
   for (std::size_t k = 0; k < 2; ++k) {
-    const Claims claims(figure, kNames[k] + std::string(" valve"));
+    const Claims claims(figure, std::string("the ") + kNames[k] + " valve");
     const auto at = [&](double per_m) -> const SegmentationScore& {
       return std::find_if(levels.begin(), levels.end(),
                           [&](const Level& level) { return level.turbidity_per_m == per_m; })
           ->score[k];
     };
-    claims.at_least(" in clear water: recall", at(0).recall(), 0.99, "fraction");
-    claims.at_least(" in clear water: precision", at(0).precision(), 0.99, "fraction");
-    claims.at_least(" at 0.6 per metre: recall", at(kDefault_per_m).recall(), 0.95, "fraction");
-    claims.at_least(" at 0.6 per metre: precision", at(kDefault_per_m).precision(), 0.95, "fraction");
-    claims.at_most(": largest rise of recall from a level to the next",
-                   max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction");
-    claims.at_most(": largest rise of the share with depth from a level to the next",
-                   max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction");
-    claims.at_least(": least precision where 100 pixels or more are picked", min_precision(levels, k), 0.95,
+    claims.at_least(" is found in clear water: recall", at(0).recall(), 0.99, "fraction");
+    claims.at_least(" is not mistaken in clear water: precision", at(0).precision(), 0.99, "fraction");
+    claims.at_least(" is found at a turbidity of 0.6 per metre: recall", at(kDefault_per_m).recall(), 0.95,
                     "fraction");
-    claims.at_most(" at 3 per metre: recall", at(3).recall(), 0.05, "fraction");
+    claims.at_least(" is not mistaken at a turbidity of 0.6 per metre: precision",
+                    at(kDefault_per_m).precision(), 0.95, "fraction");
+    claims.at_most(" is found less in more turbid water: largest rise of recall from a level to the next",
+                   max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction");
+    claims.at_most(
+        " has less depth in more turbid water: largest rise of the share with depth from a level to the next",
+        max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction");
+    claims.at_least(" is not mistaken where 100 pixels or more are picked: smallest precision",
+                    min_precision(levels, k), 0.95, "fraction");
+    claims.at_most(" is missed at a turbidity of 3 per metre: recall", at(3).recall(), 0.05, "fraction");
   }
-  Claims(figure).at_most("turbidity at which most of the yellow valve is missed, minus that of the red valve",
-                         lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m");
+  Claims(figure).at_most(
+      "the yellow valve is missed in water that is no more turbid than for the red one: turbidity at "
+      "which most pixels are missed, yellow minus red",
+      lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m");
 }
 
 }  // namespace

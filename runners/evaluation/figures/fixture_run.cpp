@@ -41,16 +41,17 @@ std::vector<FixtureRun> run_fixtures(FigureContext& context, const std::vector<E
 }
 
 void add_side_claim(Figure& figure, const std::string& where, const Trace& trace) {
-  Claims(figure, where + "ticks ")
-      .at_most("with the proxy on the wrong side of the surface", wrong_side_fraction(trace), 0, "fraction",
-               "none");
+  Claims(figure, where)
+      .at_most("the proxy is never on the wrong side of the surface: fraction of ticks in which it is",
+               wrong_side_fraction(trace), 0, "fraction", "none");
 }
 
 void add_sound_claims(Figure& figure, const std::string& where, const Trace& trace) {
-  const Claims claims(figure, where + "ticks ");
-  claims.at_most("with a number that is not finite", non_finite_fraction(trace), 0, "fraction", "none");
-  claims.at_most("in which the HIP was held back without force", no_force_fraction(trace, kContactRadius_m),
+  const Claims claims(figure, where);
+  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(trace),
                  0, "fraction", "none");
+  claims.at_most("the HIP is never held back without force: fraction of ticks in which it is",
+                 no_force_fraction(trace, kContactRadius_m), 0, "fraction", "none");
 }
 
 }  // namespace remote_touch

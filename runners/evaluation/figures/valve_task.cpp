@@ -192,9 +192,10 @@ Panel task_picture(const ValveTask& task, const std::string& title, std::size_t 
 void add_task_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const Claims claims(figure, task.label + ": ");
-  claims.at_most("ticks with a number that is not finite", non_finite_fraction(t), 0, "fraction");
-  claims.at_most("deepest leaf of the tool in a region at the end of a tick", max_of(t.tool_penetration_m),
-                 kSettled_m, "m", "very small");
+  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(t), 0,
+                 "fraction");
+  claims.at_most("the tool stays out of the regions: depth of its deepest leaf at the end of a tick",
+                 max_of(t.tool_penetration_m), kSettled_m, "m", "very small");
 }
 
 }  // namespace remote_touch

@@ -56,12 +56,14 @@ Table count_table(const Counts& counts) {
 }
 
 void add_claims(Figure& figure, const Counts& counts) {
-  const Claims claims(figure, counts.rule + ": points that touch at once, ");
+  const Claims claims(figure, "contact rule " + counts.rule + ": ");
   const std::string paper = "6, at a spacing that is not printed";
-  claims.differs("3 mm apart", counts.points_at(0.003), counts.known_at_default, counts.known_at_default,
-                 "points", paper);
-  claims.at_least("are 6 at some spacings from 1 to 6 mm in steps of 0.5 mm: number of them",
-                  counts.spacings_with(kPrintedContacts), 1, "spacings", paper);
+  claims.differs("with points 3 mm apart more than 6 touch at once: largest number", counts.points_at(0.003),
+                 counts.known_at_default, counts.known_at_default, "points", paper);
+  claims.at_least(
+      "at some spacings from 1 to 6 mm, in steps of 0.5 mm, the most points that touch at once are 6: "
+      "number of these spacings",
+      counts.spacings_with(kPrintedContacts), 1, "spacings", paper);
 }
 
 }  // namespace
