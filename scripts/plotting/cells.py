@@ -55,6 +55,8 @@ def outlines(curve, panel, shown):
 def colour_range(column):
     """Of a map: that of its values. What is declared a fraction has the same colours in all figures, from 0 to 1, and an
     enum has a colour for each name."""
+    if column.limits:
+        return column.limits
     values = np.array(list(column.names), dtype=float) if column.names else column.values[np.isfinite(column.values)]
     low, high = (values.min(), values.max()) if values.size else (0.0, 1.0)
     if column.is_fraction:

@@ -1,7 +1,9 @@
 """Reads claims.json and writes the claims as HTML."""
 import html
 import json
+import os
 import sys
+import urllib.parse
 
 from plotting.plot_error import PlotError
 
@@ -25,6 +27,11 @@ def read_claims(path):
 
 def esc(value):
     return html.escape(str(value), quote=True)
+
+
+def address(name):
+    """Of a file beside the page, whose name may have any character."""
+    return esc(urllib.parse.quote(os.fsencode(name)))
 
 
 def value_text(value):

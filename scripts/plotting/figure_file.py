@@ -10,8 +10,9 @@ from plotting.plot_error import PlotError
 
 SCHEMA = "remote-touch-figure/3"
 SCHEMAS = (SCHEMA, "remote-touch-figure/2")  # the second is of an earlier version, and is still read
-STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image", "surface", "letters")
-NEED_Z = ("map", "band", "image", "surface", "letters")
+STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "intervals", "image", "surface",
+          "letters")
+NEED_Z = ("map", "band", "intervals", "image", "surface", "letters")
 FRACTION = re.compile(r"(fraction|share|probability) of |1 when ")
 
 
@@ -22,6 +23,7 @@ class Column:
     long_name: str
     names: dict  # of an enum: value -> name
     is_log: bool = False  # of an axis: equal ratios are equally wide
+    limits: tuple | None = None  # of colours, where several maps have the same
 
     @property
     def is_fraction(self):
@@ -41,7 +43,7 @@ class Curve:
     style: str
     label: str
     radius: float
-    z: Column | None  # colours of a map or an image, other edge of a band, heights of a surface, names of letters; or None
+    z: Column | None  # colours of a map or an image, other edge of a band or an interval, heights of a surface, names of letters; or None
 
 
 @dataclasses.dataclass
@@ -87,6 +89,7 @@ class Figure:
     name: str  # of the files: fig4.11
     attributes: dict
     panels: list
+    width_in: float = 0  # of the picture, once it is drawn
 
     @property
     def heading(self):

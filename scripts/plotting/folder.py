@@ -6,12 +6,12 @@ import signal
 import sys
 
 from plotting.claims import is_set_up, read_claims, verdict
+from plotting.drawable import read_drawable
 from plotting.figure_file import SCHEMA, SCHEMAS, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
 from plotting.plot_error import PlotError
 from plotting.progress import read_progress
-from plotting.results import read_drawable
 
 LOOK_EVERY_S = 0.5
 
@@ -29,13 +29,15 @@ def is_figure(path):
     return schema in SCHEMAS
 
 
-def plot_file(path, png, titled=False):
-    """One figure, in a process of its own. Returns what the page says about it, without the curves."""
-    figure = read_drawable(path)
+def plot_file(path, files, titled=False, wanted=()):
+    """One figure, in a process of its own. Returns what the page says about it, without the curves. files: the pictures,
+    of several formats. wanted: slices of a sweep."""
+    figure = read_drawable(path, wanted)
     if figure.panels:
-        draw_figure(figure, png, titled)
+        figure.width_in = draw_figure(figure, files, titled).get_figwidth()
     else:
-        png.unlink(missing_ok=True)  # of an earlier run
+        for file in files:
+            file.unlink(missing_ok=True)  # of an earlier run
     for panel in figure.panels:
         panel.curves.clear()
         panel.scene = None
@@ -59,8 +61,10 @@ def ignore_interruption():
 class Folder:
     """Draws what is new in a folder, and writes the page about all that is drawn."""
 
-    def __init__(self, directory, out, pool):
+    def __init__(self, directory, out, pool, extra):
+        """extra: the format that is written beside PNG, which the page shows, or "png"."""
         self.directory, self.out, self.pool = directory, out, pool
+        self.formats = list(dict.fromkeys(["png", extra]))
         self.stamps = {}  # of the files taken so far
         self.drawing = {}  # path -> future
         self.figures = {}  # path -> figure, of the drawn ones
@@ -74,7 +78,8 @@ class Folder:
                 continue
             self.stamps[path] = stamp
             if is_figure(path):
-                self.drawing[path] = self.pool.submit(plot_file, path, self.out / f"{path.stem}.png")
+                files = [self.out / f"{path.stem}.{each}" for each in self.formats]
+                self.drawing[path] = self.pool.submit(plot_file, path, files)
 
     def collect(self):
         """The drawn ones; whether there was one."""
@@ -93,7 +98,7 @@ class Folder:
         claims = read_claims(file) if file.exists() or not progress else []
         figures = [self.figures[path] for path in sorted(self.figures, key=sort_key)]
         views = views_of(self.out, [figure.name for figure in figures])
-        write_page(self.out / "index.html", page(figures, claims, progress, views))
+        write_page(self.out / "index.html", page(figures, claims, progress, views, self.formats[1:]))
         return claims
 
 
@@ -105,10 +110,10 @@ def end(folder):
           f"{words.count('differs')} differ: {folder.out / 'index.html'}")
 
 
-def plot(directory, out):
+def plot(directory, out, extra="png"):
     out.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ProcessPoolExecutor() as pool:
-        folder = Folder(directory, out, pool)
+        folder = Folder(directory, out, pool, extra)
         folder.take()
         folder.finish()
         end(folder)
@@ -120,12 +125,12 @@ def ends_within(stream, seconds):
     return bool(ready) and not stream.read(4096)
 
 
-def follow(directory, out, stream):
+def follow(directory, out, stream, extra="png"):
     """Until the stream ends: then everything is there that will be."""
     out.mkdir(parents=True, exist_ok=True)
     ignore_interruption()  # a figure that is there when the program is stopped is still drawn
     with concurrent.futures.ProcessPoolExecutor(initializer=ignore_interruption) as pool:
-        folder, shown, ended = Folder(directory, out, pool), None, False
+        folder, shown, ended = Folder(directory, out, pool, extra), None, False
         while not ended:
             progress = read_progress(directory / "progress.json")
             if progress:  # before that, what is there is of an earlier run

@@ -1,35 +1,24 @@
-"""Puts the panels of a figure on one canvas and saves it as a PNG."""
+"""Puts the panels of a figure on one canvas, one or two columns of a journal wide."""
 import math
-import textwrap
 
 import matplotlib
 import matplotlib.figure
-import PIL.Image
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from plotting.drawing import curve_key, draw_panel, has_cells, is_image, legend_below
+from plotting.curves import has_cells
+from plotting.drawing import draw_panel, is_image
+from plotting.legends import LARGEST_SHARE, add_legends, share
+from plotting.picture_file import save
 from plotting.scene import draw_scene
+from plotting.style import COLUMN_IN, LETTER_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
 from plotting.surface import add_title, is_surface
+from plotting.typeset import wrapped
+from plotting.units import in_shown_units
 
-WIDTH_IN, HEIGHT_IN, PAD_IN, DPI = 9.0, 6.0, 0.1, 130
-LETTER_IN = 0.095  # mean width of a letter of a panel's title
-OWN_COLOURS = ("surface", "letters")  # styles that take no colour of the list
-COLOURS = ["#1f4e79", "#c8501e", "#2f7d4f", "#8a4f9e", "#b08900", "#555555", "#2f93b5", "#a3224a"]
-RC = {
-    "font.size": 11, "axes.titlesize": 12, "axes.labelsize": 11, "legend.fontsize": 10,
-    "figure.titlesize": 14, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.edgecolor": "#666666", "axes.grid": True, "axes.axisbelow": True,
-    "grid.color": "#e3e3e3", "grid.linewidth": 0.8, "legend.frameon": False,
-    "text.parse_math": False,  # a dollar sign in a name is no formula
-    "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
-}
-
-
-def colours(panels):
-    """A label has one colour in all panels."""
-    keys = dict.fromkeys(curve_key(curve, i) for panel in panels for i, curve in enumerate(panel.curves)
-                         if curve.style not in OWN_COLOURS)
-    return {key: COLOURS[i % len(COLOURS)] for i, key in enumerate(keys)}
+PAD_IN, HEADING_LINE_IN = 0.06, 0.17
+LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
+DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
 
 def has_range(panel):
@@ -41,40 +30,9 @@ def set_equal_aspect(axes, panel):
     axes.set_aspect("equal", adjustable="box" if has_range(panel) else "datalim", anchor="W")
 
 
-def legend_height(axes):
-    """In inches."""
-    legend = axes.get_legend()
-    return legend.get_window_extent().height / axes.figure.dpi if legend else 0
-
-
-def canvas_width(columns):
-    return WIDTH_IN if columns == 1 else 1.5 * WIDTH_IN
-
-
-def title_width(columns):
-    """Letters of a panel's title that fit over the panel, beside its labels."""
-    return 80 if columns == 1 else int((canvas_width(columns) / columns - 0.8) / LETTER_IN)
-
-
-def row_height(row, columns, rows):
-    """Inches for the panels of one row: what equal aspect asks for, else a share of the page."""
-    share = max(HEIGHT_IN / rows, 2.3)
-    heights = []
-    for axes, panel in row:
-        height = max(share, 3.8) if has_cells(panel) else share
-        if panel.scene:
-            height = 0.95 * canvas_width(columns) / columns * panel.scene.proportion + 0.6
-        elif is_surface(panel):
-            height = 0.4 * canvas_width(columns) / columns
-        (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-        if is_image(panel):
-            height = 0.95 * canvas_width(columns) / columns * abs(y1 - y0) / abs(x1 - x0) + 0.6
-        elif panel.equal_aspect:
-            across = 0.7 * WIDTH_IN / columns
-            asked = across * abs(y1 - y0) / abs(x1 - x0) + 0.9
-            height = min(max(asked, 1.8 if has_range(panel) else share), HEIGHT_IN)
-        heights.append(height + (legend_height(axes) if legend_below(panel) else 0))
-    return max(heights, default=share)
+def is_dense(curve):
+    values = curve.y.values[np.isfinite(curve.y.values)]
+    return curve.style in LINES and values.size > 200 and np.abs(np.diff(values)).sum() > DENSE * np.ptp(values) > 0
 
 
 def places(panels):
@@ -85,42 +43,69 @@ def places(panels):
     return given
 
 
-def guess(canvas, drawn, rows, columns):
-    """Places for the panels before anything is known about their labels."""
-    width, height = canvas.get_size_inches()
-    for (row, column), axes, _ in drawn:
-        across, up = 1 / columns, 1 / rows
-        axes.set_position([column * across + 0.8 / width, 1 - (row + 1) * up + 0.6 / height,
-                           across - 1.0 / width, max(up - 1.0 / height, 0.3 * up)])
+def widths_in(panels, columns):
+    """The widths that the picture may have, the first that is wide enough for its legends is taken."""
+    wide = columns > 1 or any(is_surface(panel) or any(map(is_dense, panel.curves)) for panel in panels)
+    return (PAGE_IN,) if wide else (COLUMN_IN, PAGE_IN)
+
+
+def panel_height(axes, panel, width, size):
+    """Inches for a panel that is so wide. size: rows and columns of the figure."""
+    rows, columns = size
+    if panel.scene:
+        return width * panel.scene.proportion
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    if is_image(panel):
+        return width * abs(y1 - y0) / abs(x1 - x0)
+    if is_surface(panel):
+        return 0.36 * width
+    usual = min(max(0.7 * width, 1.0), 2.0) if columns > 1 else max(1.05, min(2.0, 3.2 / rows))
+    if has_cells(panel):
+        usual = max(usual, min(0.8 * width, 2.6))
+    if panel.equal_aspect:
+        return min(max(width * abs(y1 - y0) / abs(x1 - x0), 0.4 if has_range(panel) else usual), 3.2)
+    return usual
 
 
 def margins(canvas, axes):
     """What labels and legend need left, right, below and above, in inches. A view in perspective has its labels inside
     its panel, and only the title above it."""
     if axes.name == "3d":
-        return [PAD_IN, PAD_IN, PAD_IN, PAD_IN + 0.25]
+        return [PAD_IN, PAD_IN, PAD_IN, PAD_IN + 0.2]
     outer = axes.get_tightbbox(canvas.canvas.get_renderer(), for_layout_only=True)
     inner = axes.get_position().transformed(canvas.transFigure)
     return [max(0.0, size) / canvas.dpi + PAD_IN
             for size in (inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
 
 
-def arrange(canvas, drawn, heights, columns, top_in):
-    """Panels of a column are equally wide, rows as high as asked for, and nothing runs into anything. (Constrained
-    layout measures everything twice, which takes half of the time of a figure.)"""
+def guess(canvas, drawn, size):
+    """Places for the panels before anything is known about their labels."""
+    rows, columns = size
     width, height = canvas.get_size_inches()
-    guess(canvas, drawn, len(heights), columns)
+    for (row, column), axes, _ in drawn:
+        axes.set_position([column / columns + LABELS_IN / width, 1 - (row + 1) / rows + 0.4 / height,
+                           1 / columns - 1.1 * LABELS_IN / width, 1 / rows - 0.7 / height])
+
+
+def arrange(canvas, drawn, size, top_in):
+    """Panels of a column are equally wide, rows as high as their panels ask, and the canvas as high as the rows.
+    (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
+    rows, columns = size
+    guess(canvas, drawn, size)
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
     left, right = ([max((need[side] for cell, need in needs if cell[1] == column), default=PAD_IN)
                     for column in range(columns)] for side in (0, 1))
     below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=PAD_IN)
-                     for row in range(len(heights))] for side in (2, 3))
-    inner_width = (width - sum(left) - sum(right)) / columns
-    scale = (height - top_in - sum(below) - sum(above)) / sum(heights)
+                     for row in range(rows)] for side in (2, 3))
+    inner = (canvas.get_figwidth() - sum(left) - sum(right)) / columns
+    heights = [max((panel_height(axes, panel, inner, size) for cell, axes, panel in drawn if cell[0] == row), default=0)
+               for row in range(rows)]
+    width, height = canvas.get_figwidth(), top_in + sum(above) + sum(below) + sum(heights) + PAD_IN
+    canvas.set_size_inches(width, height)
     for (row, column), axes, _ in drawn:
-        x = sum(left[:column + 1]) + sum(right[:column]) + column * inner_width
-        y = height - top_in - sum(above[:row + 1]) - sum(below[:row]) - scale * sum(heights[:row + 1])
-        axes.set_position([x / width, y / height, inner_width / width, scale * heights[row] / height])
+        x = sum(left[:column + 1]) + sum(right[:column]) + column * inner
+        y = height - top_in - sum(above[:row + 1]) - sum(below[:row]) - sum(heights[:row + 1])
+        axes.set_position([x / width, y / height, inner / width, heights[row] / height])
 
 
 def align(drawn):
@@ -139,40 +124,66 @@ def align(drawn):
                 axes.set_position([x, box.y0, width, box.height])
 
 
-def save(canvas, png):
-    """Drawn once, where Figure.savefig() draws twice. Nothing but pixels is saved: equal results are equal files."""
-    surface = canvas.canvas
-    surface.draw()
-    pixels = PIL.Image.frombuffer("RGBA", surface.get_width_height(), surface.buffer_rgba(), "raw", "RGBA", 0, 1)
-    pixels.convert("RGB").save(png, compress_level=4)
+def is_plot(panel):
+    return not (panel.scene or is_surface(panel) or is_image(panel))
 
 
-def draw_figure(figure, png, titled):
-    """titled: with its heading, which a page shows above it."""
-    matplotlib.rcParams.update(RC)
+def say_once(drawn):
+    """A label of an axis that the panel to the left, or the one below, repeats. Below, the limits are the same too."""
+    at = {cell: (axes, panel) for cell, axes, panel in drawn if is_plot(panel)}
+    for (row, column), (axes, panel) in at.items():
+        beside, below = at.get((row, column - 1)), at.get((row + 1, column))
+        if beside and beside[0].get_ylabel() == axes.get_ylabel() and axes.get_ylabel():
+            axes.set_ylabel("", in_layout=False)
+        same = below and below[0].get_xlabel() == axes.get_xlabel() and not panel.equal_aspect
+        if same and np.allclose(below[0].get_xlim(), axes.get_xlim()):
+            axes.set_xlabel("")
+            axes.tick_params(labelbottom=False)
+
+
+def bars_of(panels, cells):
+    """Whether each panel has a bar for its colours: in a row with the same colours only the last."""
+    def colours(panel):
+        return next(((c.z.limits, c.z.units, c.z.long_name) for c in panel.curves if c.style == "map" and c.z.limits), None)
+
+    by_cell = {cell: colours(panel) for cell, panel in zip(cells, panels)}
+    return [by_cell[cell] is None or by_cell.get((cell[0], cell[1] + 1)) != by_cell[cell] for cell in cells]
+
+
+def composed(figure, width_in, titled):
+    """The canvas with everything in its place."""
     cells = places(figure.panels)
-    rows, columns = (1 + max(cell[i] for cell in cells) for i in (0, 1))
-    canvas = matplotlib.figure.Figure(dpi=DPI)
+    rows, columns = size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
+    canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * rows), dpi=PNG_DPI)
     FigureCanvasAgg(canvas)
-    of_label = colours(figure.panels)
-    drawn = []
-    for i, (panel, cell) in enumerate(zip(figure.panels, cells)):
-        projection = "3d" if is_surface(panel) else None
-        axes = canvas.add_axes([0, 0, 1, 1], label=str(i), projection=projection)
+    of_curve, about_in, drawn = looks(figure.panels), width_in / columns - LABELS_IN, []
+    for i, (panel, cell, bar) in enumerate(zip(figure.panels, cells, bars_of(figure.panels, cells))):
+        axes = canvas.add_axes([0, 0, 1, 1], label=str(i), projection="3d" if is_surface(panel) else None)
         if panel.scene:
-            draw_scene(axes, panel, columns)
+            draw_scene(axes, panel, width_in / columns)
         else:
-            draw_panel(axes, panel, of_label, title_width(columns))
-        drawn.append((cell, axes, panel))
-    heights = [row_height([(a, p) for cell, a, p in drawn if cell[0] == row], columns, rows)
-               for row in range(rows)]
-    for _, axes, panel in drawn:
+            draw_panel(axes, panel, of_curve, about_in, bar)
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
-    heading = textwrap.fill(figure.heading, 80 if columns == 1 else 120) if titled else ""
-    top_in = PAD_IN + 0.25 * (1 + heading.count("\n")) if heading else 0
-    canvas.set_size_inches(canvas_width(columns), sum(heights) + 0.25 + top_in)
-    canvas.suptitle(heading, y=1 - PAD_IN / canvas.get_figheight(), va="top")
-    arrange(canvas, drawn, heights, columns, top_in)
+        drawn.append((cell, axes, panel))
+    say_once(drawn)
+    heading = wrapped(figure.heading, int((width_in - 2 * PAD_IN) / LETTER_IN / 1.12)) if titled else ""
+    top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
+    top_in += add_legends(canvas, [axes for _, axes, _ in drawn], about_in, top_in, PAD_IN)
+    arrange(canvas, drawn, size, top_in)
+    canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
     align(drawn)
-    save(canvas, png)
+    return canvas
+
+
+def draw_figure(figure, files, titled):
+    """files: with the endings png, svg or pdf. titled: with its heading, which a page shows above it."""
+    matplotlib.rcParams.update(RC)
+    figure = in_shown_units(figure)
+    for width_in in widths_in(figure.panels, 1 + max(cell[1] for cell in places(figure.panels))):
+        canvas = composed(figure, width_in, titled)
+        if share(canvas) <= LARGEST_SHARE:
+            break
+    for file in files:
+        save(canvas, file, figure)
+    return canvas

@@ -1,16 +1,22 @@
 """Makes index.html: every figure with its caption and claims, and what is still to come while figures are made."""
 import json
 import os
-import urllib.parse
 
-from plotting.claims import claim_table, esc, figure_of, overview
+from plotting.claims import address, claim_table, esc, figure_of, overview
+from plotting.gallery import gallery
 from plotting.progress import duration
+from plotting.style import COLUMN_IN
 
 CSS = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 62rem;
        margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; }
-img { max-width: 100%; height: auto; }
+img { max-width: 100%; height: auto; } img.column { width: 34rem; }
+.gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(13.5rem, 1fr)); gap: 1.2rem 1rem; padding: 0; }
+.gallery li { list-style: none; font-size: .88rem; line-height: 1.4; }
+.gallery li > a:first-child { display: block; height: 9rem; margin-bottom: .3rem; border: 1px solid #ddd; background: #fff; }
+.gallery img { width: 100%; height: 100%; object-fit: contain; padding: .3rem; box-sizing: border-box; }
+.gallery b { display: block; } .gallery p { margin: .15rem 0; }
 a { color: #1f4e79; }
 .table { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; }
@@ -23,7 +29,6 @@ tr:target { background: #fff3cd; }
 td.verdict, td.short { white-space: nowrap; }
 .count { font-size: 1.15rem; }
 .progress { background: #eef3f8; border-left: 4px solid #1f4e79; padding: .6rem 1rem; }
-ul.contents { columns: 2; padding-left: 1.2rem; } ul.contents li { break-inside: avoid; }
 details { margin-top: .6rem; font-size: .9rem; color: #444; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; font-size: .85rem; color: #555; }
 """
@@ -36,25 +41,30 @@ def pretty(config):
         return config
 
 
-def address(name):
-    """Of a file beside the page, whose name may have any character."""
-    return esc(urllib.parse.quote(os.fsencode(name)))
-
-
 def view_links(views):
     """Pages that show a run of the figure in 3-D."""
     links = ", ".join(f'<a href="{address(view)}">{esc(view.rpartition("/")[2].removesuffix(".html"))}</a>' for view in views)
     return f"<p>Look at it in 3-D and over time: {links}.</p>" if links else ""
 
 
-def figure_section(figure, anchored, views):
+def picture(figure, formats):
+    """The picture, and links to it in other formats. A picture of one column is shown so large that its letters are those
+    of the page."""
+    if not figure.panels:
+        return ""
+    style = " class=column" if 0 < figure.width_in <= COLUMN_IN else ""
+    links = ", ".join(f'<a href="{address(figure.name)}.{each}">{each.upper()}</a>' for each in formats)
+    return (f'<img{style} src="{address(figure.name)}.png" alt="{esc(figure.heading)}" loading=lazy>'
+            + (f"<p>For print: {links}.</p>" if links else ""))
+
+
+def figure_section(figure, anchored, views, formats):
     a = figure.attributes
-    image = f'<img src="{address(figure.name)}.png" alt="{esc(figure.heading)}">' if figure.panels else ""
     config = f'<pre>{esc(pretty(a["config"]))}</pre>' if a.get("config") else ""
     return f"""<section id="{esc(figure.name)}">
 <h2>{esc(figure.heading)}</h2>
 <p>{esc(a.get("caption", ""))}</p>
-{image}
+{picture(figure, formats)}
 {view_links(views)}
 {claim_table(anchored)}
 <details><summary>Command and configuration</summary>
@@ -100,19 +110,16 @@ The others appear here as soon as they are made; this page reloads every few sec
 </ul></div>"""
 
 
-def contents(figures):
-    items = "\n".join(f'<li><a href="#{esc(figure.name)}">{esc(figure.heading)}</a></li>' for figure in figures)
-    return f"<ul class=contents>\n{items}\n</ul>" if figures else ""
-
-
-def page(figures, claims, progress=None, views=None):
-    """progress: None when nothing more will come. views: of each figure by its name, addresses of pages."""
+def page(figures, claims, progress=None, views=None, formats=()):
+    """progress: None when nothing more will come. views: of each figure by its name, addresses of pages. formats: of the
+    pictures for print."""
     to_come = progress.to_come() if progress else set()
     figures = [figure for figure in figures if figure.name not in to_come]
     anchored = [(f"{figure_of(claim)}-claim{i}", claim) for i, claim in enumerate(claims)
                 if figure_of(claim) not in to_come]
     of = {figure.name: [one for one in anchored if figure_of(one[1]) == figure.name] for figure in figures}
-    sections = [figure_section(figure, of[figure.name], (views or {}).get(figure.name, [])) for figure in figures]
+    views = views or {}
+    sections = [figure_section(figure, of[figure.name], views.get(figure.name, []), formats) for figure in figures]
     homeless = [one for one in anchored if figure_of(one[1]) not in of]
     if homeless and not progress:  # a claim is never dropped
         sections.append(f"<section><h2>Claims without a figure</h2>{claim_table(homeless)}</section>")
@@ -123,8 +130,8 @@ def page(figures, claims, progress=None, views=None):
 <title>Remote Touch: figures and claims</title><style>{CSS}</style></head><body>
 <h1>Remote Touch: figures and claims</h1>
 {progress_box(progress)}
+{gallery(figures, of, views)}
 {overview(anchored) if anchored else ""}
-{contents(figures)}
 {body}
 <footer>{provenance(figures)}</footer>
 </body></html>

@@ -50,7 +50,7 @@ class Canvas:
         if normals is not None:
             colours = shade(colours, normals[seen] @ self.camera.axes().T, 0.62)
         u, v, z = self.camera.view(positions, self.size)
-        radius = np.clip(0.5 * diameter_m * self.camera.pixels(self.size) / np.maximum(z, 1e-6), 0.5, 12)
+        radius = np.clip(0.5 * diameter_m * self.camera.pixels(self.size) / np.maximum(z, 1e-6), 0.5, 18)
         radius = np.round(2 * radius) / 2
         for r in np.unique(radius):
             chosen = np.flatnonzero(radius == r)

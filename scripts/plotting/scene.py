@@ -1,11 +1,14 @@
 """Draws a panel that is a picture of things in space, with plotting.raster."""
+import matplotlib.colors
 import matplotlib.patches
 import numpy as np
 
 from plotting.raster import Camera, Canvas
+from plotting.style import COLOURS, LETTER_IN, OF_LABEL, PNG_DPI, meaning
+from plotting.typeset import typeset, wrapped
 
 FINER = 2  # pixels are drawn so much finer, then averaged
-LARGEST_PX = 700
+LARGEST_PX = 1100
 
 
 def rgb(colour):
@@ -20,14 +23,20 @@ def turned(points, pose):
     return points + 2 * np.cross(axis, np.cross(axis, points) + w * points) + pose[:3]
 
 
+def colour_of(part):
+    """What has a meaning has its colour, whatever the file says."""
+    name = meaning(part.label, OF_LABEL) if part.label else None
+    return np.array(matplotlib.colors.to_rgb(COLOURS[name])) if name else rgb(part.colour)
+
+
 def draw_part(canvas, part):
     x = part.columns("x", "y", "z")
     if part.kind == "segments":
-        canvas.segments(x, part.columns("x_end", "y_end", "z_end"), rgb(part.colour))
+        canvas.segments(x, part.columns("x_end", "y_end", "z_end"), colour_of(part))
     elif part.kind == "solid":
-        canvas.mesh(turned(x, part.pose), part.triangles, rgb(part.colour), part.opacity)
+        canvas.mesh(turned(x, part.pose), part.triangles, colour_of(part), part.opacity)
     else:
-        own = rgb(part.table["colour"]) if "colour" in part.table else np.tile(rgb(part.colour), (len(x), 1))
+        own = rgb(part.table["colour"]) if "colour" in part.table else np.tile(colour_of(part), (len(x), 1))
         normals = part.columns("nx", "ny", "nz") if "nx" in part.table else None
         canvas.points(x, own, part.size, normals)
 
@@ -41,14 +50,14 @@ def picture(scene, width):
     return canvas.image(FINER)
 
 
-def draw_scene(axes, panel, columns):
-    """columns: of panels side by side; fewer are larger."""
-    axes.imshow(picture(panel.scene, min(LARGEST_PX, 1200 // columns)), interpolation="antialiased")
+def draw_scene(axes, panel, width_in):
+    """With the names of its parts as entries of a legend."""
+    axes.imshow(picture(panel.scene, min(LARGEST_PX, int(PNG_DPI * width_in))), interpolation="antialiased")
     axes.set_xticks([]), axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.grid(False)
-    axes.set_title(panel.title, loc="left")
-    entries = [matplotlib.patches.Patch(facecolor=rgb(part.colour), alpha=part.opacity, label=part.label)
-               for part in panel.scene.parts if part.label]
-    if entries:  # below: inside it would cover something
-        axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(0, 0), ncol=len(entries), borderaxespad=0.2)
+    axes.set_title(wrapped(panel.title, int(0.9 * width_in / LETTER_IN)), loc="left")
+    for part in panel.scene.parts:
+        if part.label:
+            axes.add_patch(matplotlib.patches.Rectangle((0, 0), 0, 0, facecolor=colour_of(part), alpha=part.opacity,
+                                                        label=typeset(part.label)))

@@ -4,6 +4,8 @@ import math
 import matplotlib.ticker
 import numpy as np
 
+from plotting.typeset import typeset
+
 LONGEST = 150  # lines of the grid along each axis that are drawn
 DEGREES_UP, DEGREES_ROUND = 32, -62  # where the viewer is
 TICKS = 6  # along the longest axis
@@ -26,35 +28,36 @@ def thinned(count):
     return np.unique(np.linspace(0, count - 1, min(count, LONGEST)).round().astype(int))
 
 
-def draw_surface(axes, panel, with_units):
-    """axes: of three dimensions, equally scaled. with_units: names an axis."""
+def draw_surface(axes, panel, axis_label):
+    """axes: of three dimensions, equally scaled. axis_label: names an axis."""
     curve = next(curve for curve in panel.curves if curve.style == "surface")
     across, along, heights = grid_of(curve)
     columns, rows = thinned(across.size), thinned(along.size)
     shown = heights[np.ix_(rows, columns)]
     x, y = np.meshgrid(across[columns], along[rows])
     surface = axes.plot_surface(x, y, shown, cmap="viridis", rcount=rows.size, ccount=columns.size, linewidth=0,
-                                antialiased=False)
+                                antialiased=False, rasterized=True)
     surface.set_clip_on(False)  # a long surface is wider than the square that the axes take
     limits = [(values.min(), values.max()) for values in (across, along, shown[np.isfinite(shown)])]
     for set_limits, ends in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), limits):
         set_limits(*ends)
     axes.set_box_aspect([max(high - low, 1e-9) for low, high in limits], zoom=1.5)
+    axes.tick_params(pad=-3)
     axes.view_init(DEGREES_UP, DEGREES_ROUND)
-    axes.set_title(panel.title, loc="left")  # room for it
-    labels = (panel.x_label, panel.y_label, with_units("", [curve.z]))
+    axes.set_title(typeset(panel.title), loc="left")  # room for it
+    labels = (panel.x_label, panel.y_label, axis_label("", [curve.z]))
     longest = max(max(high - low for low, high in limits), 1e-9)
-    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (16, 8, 4)):
+    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (2, -4, -6)):
         bins = round(TICKS * (high - low) / longest)
         if bins > 1:
             axis.set_major_locator(matplotlib.ticker.MaxNLocator(bins))
         else:  # a short axis has room for its ends only
             axis.set_ticks([low, high], [f"{end:.2g}".replace("-", "\u2212") for end in (low, high)])
-        axis.set_label_text(label)
+        axis.set_label_text(typeset(label))
         axis.labelpad = pad
 
 
 def add_title(axes, panel):
     """Above the left end of the panel, of which a view in perspective takes only the middle. The panel has its place."""
     whole, middle = axes.get_position(original=True), axes.get_position()
-    axes.set_title(panel.title, loc="left", x=(whole.x0 - middle.x0) / middle.width)
+    axes.set_title(typeset(panel.title), loc="left", x=(whole.x0 - middle.x0) / middle.width)

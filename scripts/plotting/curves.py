@@ -1,0 +1,176 @@
+"""Draws the curves of a panel, each in its style."""
+import math
+
+import matplotlib.collections
+import matplotlib.patches
+import matplotlib.patheffects
+import numpy as np
+
+from plotting.cells import cell_ends, cell_size, colour_range, outlines
+from plotting.scene import rgb
+from plotting.style import DASHES, MARKERS, NOTHING_COLOUR
+from plotting.typeset import typeset
+
+NOTHING = "no value"  # where a map or a bar chart has none
+CELLS = ("squares", "map")  # the styles that draw cells
+MANY = 3000  # samples that a vector format has as pixels
+HALO = [matplotlib.patheffects.withStroke(linewidth=2.6, foreground="white")]  # about a line over cells
+
+
+def has_cells(panel):
+    return any(curve.style in CELLS for curve in panel.curves)
+
+
+def is_finite(curve):
+    """Which samples can be drawn."""
+    columns = [column.values for column in (curve.x, curve.y, curve.z) if column]
+    return np.isfinite(columns).all(axis=0)
+
+
+def in_sight(curve, panel):
+    """Which samples are finite and inside x_range."""
+    low, high = panel.x_range
+    return is_finite(curve) & ~(curve.x.values < low) & ~(curve.x.values > high)  # no comparison with NaN holds
+
+
+# Each style draws one curve of the panel it is in. look: style.Look
+
+def alone(curve):
+    """The samples whose neighbours have no value: a line through one point would not be seen."""
+    seen = np.pad(is_finite(curve), 1)
+    return [int(i) for i in np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:])]
+
+
+def draw_line(axes, curve, panel, look, **options):
+    """Few samples have a marker each, since a straight piece between two of them is no measurement."""
+    dots = alone(curve)
+    if look.marker and curve.style == "line" and curve.x.values.size <= 20:
+        options |= {"marker": MARKERS[look.marker], "markersize": 3}
+    elif dots:
+        options |= {"marker": "o", "markevery": dots}
+    width = 1.1 if curve.x.values.size <= 2000 else 0.8  # a noisy trace stays a line
+    if has_cells(panel):
+        width, options = 1.3, options | {"path_effects": HALO}
+    axes.plot(curve.x.values, curve.y.values, color=look.colour, linestyle=DASHES[look.dash], linewidth=width,
+              label=typeset(curve.label), **options)
+
+
+def draw_steps(axes, curve, panel, look):
+    draw_line(axes, curve, panel, look, drawstyle="steps-post")
+
+
+def draw_dots(axes, curve, panel, look):
+    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first:
+    they are rings around them, those of a third are wider rings."""
+    count = np.count_nonzero(in_sight(curve, panel))
+    size = 3.8 if count <= 30 else 3 if count <= 100 else 1.8 if count <= 300 else 1.1 if count <= MANY else 0.7
+    series = [other for other in panel.curves if other.style == "dots"].index(curve)
+    options = {"markeredgewidth": 0}
+    if series > 0 and count <= 100:
+        size, options = size + 2 * series, {"markerfacecolor": "none", "markeredgewidth": 0.9}
+    automatic = np.isnan(panel.x_range + panel.y_range).all()
+    axes.plot(curve.x.values, curve.y.values, linestyle="none", marker=MARKERS[look.marker] if count <= 100 else "o",
+              color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,
+              clip_on=not automatic or count > 100, **options)
+
+
+def draw_letters(axes, curve, _, __):
+    """Dots with the names of z above them."""
+    axes.plot(curve.x.values, curve.y.values, "o", color="black", markersize=3.5, zorder=4)
+    for x, y, name in zip(*(column.values[is_finite(curve)] for column in (curve.x, curve.y, curve.z))):
+        axes.annotate(typeset(curve.z.names[name]), (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
+                      va="bottom", fontweight="bold", path_effects=HALO)
+
+
+def draw_circles(axes, curve, _, look):
+    """Circles of a radius in data units; an empty line makes the legend entry."""
+    axes.plot([], [], "o", color=look.colour, markersize=6, markerfacecolor="none", label=typeset(curve.label))
+    centres = np.column_stack([curve.x.values, curve.y.values])
+    centres = centres[np.isfinite(centres).all(axis=1)]
+    circles = [matplotlib.patches.Circle(centre, curve.radius) for centre in centres]
+    axes.add_collection(matplotlib.collections.PatchCollection(
+        circles, facecolor="none", edgecolor=look.colour, linewidth=0.8))
+    axes.autoscale_view()
+
+
+def draw_bars(axes, curve, panel, look):
+    """The bar charts of one panel stand side by side. A cross stands where there is no value, which is not 0."""
+    charts = [other for other in panel.curves if other.style == "bars"]
+    places = np.unique(curve.x.values[np.isfinite(curve.x.values)])
+    spacing = np.diff(places).min() if places.size > 1 else 1.0
+    width = 0.8 * spacing / len(charts)
+    offset = (charts.index(curve) - (len(charts) - 1) / 2) * width
+    axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=look.colour, label=typeset(curve.label))
+    none = ~np.isfinite(curve.y.values)
+    if none.any():
+        axes.plot(curve.x.values[none] + offset, np.zeros(none.sum()), "x", color="black", label=NOTHING)
+
+
+def draw_squares(axes, curve, panel, look):
+    """Filled cells; an empty line makes the legend entry."""
+    axes.plot([], [], "s", color=look.colour, markersize=6, markeredgewidth=0, label=typeset(curve.label))
+    add_cells(axes, curve, panel, is_finite(curve), facecolor=look.colour)
+
+
+def draw_map(axes, curve, panel, _):
+    """Cells coloured by z; drawing.add_colour_bar says what the colours mean."""
+    known = is_finite(curve)
+    none = ~known & np.isfinite(curve.x.values) & np.isfinite(curve.y.values)
+    if none.any():
+        axes.plot([], [], "s", color=NOTHING_COLOUR, markersize=6, markeredgewidth=0, label=NOTHING)
+        add_cells(axes, curve, panel, none, facecolor=NOTHING_COLOUR)
+    cells = add_cells(axes, curve, panel, known, array=curve.z.values[known], cmap="viridis")
+    cells.set_clim(colour_range(curve.z))
+
+
+def draw_band(axes, curve, _, look):
+    axes.fill_between(curve.x.values, curve.y.values, curve.z.values, color=look.colour, alpha=0.22, linewidth=0,
+                      label=typeset(curve.label))
+
+
+def draw_intervals(axes, curve, _, look):
+    """A vertical line from y to z at each x."""
+    axes.vlines(curve.x.values, curve.y.values, curve.z.values, color=look.colour, linewidth=1.0,
+                label=typeset(curve.label))
+
+
+def draw_image(axes, curve, _, __):
+    """Its pixels as they are, over the places of their centres; the limits of the panel say which way is up."""
+    (columns, at_column), (rows, at_row) = (np.unique(values, return_inverse=True)
+                                            for values in (curve.x.values, curve.y.values))
+    pixels = np.ones((rows.size, columns.size, 3))
+    known = is_finite(curve)
+    pixels[at_row[known], at_column[known]] = rgb(curve.z.values[known])
+    across, up = (cell_size(values, (math.nan, math.nan)) / 2 for values in (columns, rows))
+    axes.imshow(pixels, origin="lower", interpolation="nearest",
+                extent=(columns[0] - across, columns[-1] + across, rows[0] - up, rows[-1] + up))
+
+
+DRAW = {"line": draw_line, "dashed": draw_line, "steps": draw_steps, "dots": draw_dots,
+        "circle": draw_circles, "bars": draw_bars, "squares": draw_squares, "map": draw_map, "band": draw_band,
+        "intervals": draw_intervals, "image": draw_image, "letters": draw_letters}
+
+
+def add_cells(axes, curve, panel, shown, **options):
+    """Without a seam between neighbours, in vector formats as pixels. Automatic limits end where the cells end. shown:
+    which of the samples."""
+    drawn = outlines(curve, panel, shown)
+    cells = matplotlib.collections.PolyCollection(drawn, linewidth=0, antialiased=False, rasterized=True, **options)
+    if drawn.size:
+        corners = drawn.reshape(-1, 2)
+        cells.sticky_edges.x[:], cells.sticky_edges.y[:] = np.transpose([corners.min(axis=0), corners.max(axis=0)])
+        axes.update_datalim(corners)  # what a collection says of itself is wrong on a log axis
+    axes.add_collection(cells, autolim=False)
+    axes.autoscale_view()
+    return cells
+
+
+def reach(curve, panel):
+    """The y values that a curve covers in sight."""
+    seen = in_sight(curve, panel)
+    y = curve.y.values[seen]
+    if curve.style in ("band", "intervals"):
+        return np.concatenate([y, curve.z.values[seen]])
+    if curve.style in CELLS:
+        return np.concatenate([ends[seen] for ends in cell_ends(curve, panel)[1]])
+    return y

@@ -1,0 +1,24 @@
+"""Reads what can be drawn: a figure, or a trace or a sweep as one."""
+from plotting.figure_file import SCHEMAS, Figure, open_file, read_figure, text
+from plotting.plot_error import PlotError
+from plotting.results import trace_panels
+from plotting.sweeps import left_out, sweep_panels
+
+VERSIONS = [schema.split("/")[1] for schema in SCHEMAS]
+TRACES = [f"remote-touch-trace/{version}" for version in VERSIONS]
+SWEEPS = [f"remote-touch-sweep/{version}" for version in VERSIONS]
+
+
+def read_drawable(path, wanted=()):
+    """A figure, or a trace or a sweep as one. wanted: slices of a sweep, as pairs of an axis and a value."""
+    with open_file(path) as file:
+        schema = text(file.attrs, "schema")
+        if wanted and schema not in SWEEPS:
+            raise PlotError(f"{path}: --slice is for sweeps, this is {schema!r}")
+        if schema in TRACES + SWEEPS:
+            panels = sweep_panels(file, wanted) if schema in SWEEPS else trace_panels(file)
+            heading = (text(file.attrs, "command") or path.name) + (left_out(file, wanted) if schema in SWEEPS else "")
+            return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs} | {"heading": heading}, panels)
+    if schema not in SCHEMAS:
+        raise PlotError(f"{path}: schema {schema!r}: expected a figure, a trace or a sweep of this program")
+    return read_figure(path)

@@ -1,0 +1,55 @@
+"""Writes a picture as PNG, SVG or PDF, with where it comes from in the metadata of the file. Equal results are equal
+files: no file has a date."""
+import io
+
+import PIL.Image
+import PIL.PngImagePlugin
+
+from plotting.typeset import CONTROL
+
+FORMATS = ("png", "svg", "pdf")
+PIXELS_DPI = 600  # of what vector formats have as pixels
+
+
+def origin(figure):
+    """What made the numbers, in one line."""
+    a = figure.attributes
+    dirty = " with local changes" if a.get("git_dirty", "").lower() in ("1", "true", "yes", "dirty") else ""
+    return f"version {a.get('version', '?')}, commit {a.get('git_commit', '?')}{dirty}, digest {a.get('digest', '?')}"
+
+
+def metadata(figure, kind):
+    """By the keys that the format has for it."""
+    said = {"title": figure.heading, "made_by": "remote-touch, scripts/plot", "origin": origin(figure),
+            "command": figure.attributes.get("command", "")}
+    said = {key: CONTROL.sub("?", words) for key, words in said.items()}
+    if kind == "png":
+        return {"Title": said["title"], "Software": said["made_by"], "Source": said["origin"], "Comment": said["command"]}
+    if kind == "svg":
+        return {"Title": said["title"], "Creator": said["made_by"], "Source": said["origin"],
+                "Description": said["command"], "Date": None}
+    return {"Title": said["title"], "Creator": said["made_by"], "Keywords": said["origin"], "Subject": said["command"],
+            "CreationDate": None}
+
+
+def save_png(canvas, file, said):
+    """Drawn once, where Figure.savefig() draws twice."""
+    info = PIL.PngImagePlugin.PngInfo()
+    for key, words in said.items():
+        info.add_itxt(key, words)
+    surface = canvas.canvas
+    surface.draw()
+    pixels = PIL.Image.frombuffer("RGBA", surface.get_width_height(), surface.buffer_rgba(), "raw", "RGBA", 0, 1)
+    pixels.convert("RGB").save(file, "PNG", compress_level=5, dpi=(canvas.dpi, canvas.dpi), pnginfo=info)
+
+
+def save(canvas, file, figure):
+    """A reader of the file sees the old picture or the new one."""
+    kind, memory = file.suffix.removeprefix("."), io.BytesIO()
+    if kind == "png":
+        save_png(canvas, memory, metadata(figure, kind))
+    else:
+        canvas.savefig(memory, format=kind, metadata=metadata(figure, kind), dpi=PIXELS_DPI)
+    partial = file.with_name(f"{file.name}.partial")
+    partial.write_bytes(memory.getvalue())
+    partial.replace(file)

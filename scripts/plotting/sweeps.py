@@ -1,0 +1,297 @@
+"""Panels of a sweep: measures over its axes, with 95 % intervals and the number of runs.
+
+Over one axis: a line. Over two: a map. Over more: slices, a panel each, with a line for each value of an axis of few
+values, or a map."""
+import dataclasses
+import itertools
+import json
+import math
+import re
+
+import numpy as np
+
+from plotting.figure_file import Column, Curve, enum_names, text
+from plotting.plot_error import PlotError
+from plotting.results import AUTOMATIC, column, dataset, panel
+from plotting.typeset import SHOWN_UNITS, unit_words
+
+MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
+FEW = 5  # values of an axis that has a line for each
+DONE = 2  # state of a run
+Z95 = 1.959964
+
+
+def student_t(freedom):
+    """The 97.5 % point, within 0.3 %."""
+    if freedom <= 10:
+        return (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)[int(freedom) - 1]
+    z = Z95
+    return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)
+
+
+def wilson(successes, runs):
+    middle, half = successes + Z95**2 / 2, Z95 * math.sqrt(successes * (runs - successes) / runs + Z95**2 / 4)
+    return (middle - half) / (runs + Z95**2), (middle + half) / (runs + Z95**2)
+
+
+def interval(values, is_event):
+    """Mean and the ends of its 95 % interval; NaN where there are too few runs."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return math.nan, math.nan, math.nan
+    if is_event:
+        return known.mean(), *wilson(known.sum(), known.size)
+    half = student_t(known.size - 1) * known.std(ddof=1) / math.sqrt(known.size) if known.size > 1 else math.nan
+    return known.mean(), known.mean() - half, known.mean() + half
+
+
+@dataclasses.dataclass
+class Measure:
+    name: str
+    long_name: str
+    units: str
+    mean: np.ndarray  # over the axes
+    low: np.ndarray
+    high: np.ndarray
+    replicates: int  # 0: of a sweep without
+    note: str
+
+    def column(self, values, limits=None):
+        return Column(np.ravel(values), self.units, self.long_name, {}, limits=limits)
+
+    def label(self):
+        return with_shown_unit(self.name, self.units)
+
+
+def runs_words(counts):
+    low, high = counts.min(initial=0), counts.max(initial=0)
+    return f"{high} runs" if low == high else f"{low} to {high} runs"
+
+
+def unknown(values, is_done):
+    """How many finished runs have no value of a measure, in words; nothing if all have one."""
+    count = int(np.count_nonzero(is_done & ~np.isfinite(values)))
+    return f", without {count} of {np.count_nonzero(is_done)} runs, whose value is unknown" if count else ""
+
+
+def read_measure(file, name, axes, chosen, is_done):
+    data = dataset(file, f"/sweep/{name}")
+    values, long_name, names = data[()].astype(float)[chosen], text(data.attrs, "long_name"), enum_names(data)
+    factor, units = SHOWN_UNITS.get(text(data.attrs, "units"), (1, text(data.attrs, "units")))
+    replicates = values.shape[-1] if values.ndim > axes else 0
+    of_cell = values.reshape(*values.shape[:axes], -1)
+    is_event = long_name.startswith("1 when ") and not names
+    mean, low, high = (np.empty(of_cell.shape[:-1]) for _ in range(3))
+    for cell in np.ndindex(mean.shape):
+        mean[cell], low[cell], high[cell] = interval(of_cell[cell], is_event and replicates > 0)
+    note = ""
+    if replicates:
+        note = f", mean of {runs_words(np.isfinite(of_cell).sum(axis=-1))}"
+    note += unknown(values, is_done[chosen])
+    scaled = (factor * each for each in (mean, low, high))
+    return Measure(name, long_name, units, *scaled, replicates, note)
+
+
+def with_shown_unit(name, units):
+    """Names of parameters end with their unit, which may not be the one that is shown."""
+    name = re.sub(r"_(m|s|hz|deg|kg|N|J|m2)(_per_\w+)?$", "", name, flags=re.I) if units not in ("", "1") else name
+    name = name.replace("_", " ") if not re.fullmatch(r"[A-Za-z]_\w{1,3}", name) else name
+    return f"{name} ({unit_words(units)})" if units not in ("", "1") else name
+
+
+def log_axes(file, count):
+    """Which axes the sweep declares to have equal ratios."""
+    try:
+        axes = json.loads(text(file.attrs, "config"))["axes"]
+        return [axes[i].get("scale") == "log" for i in range(count)]
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise PlotError(f"{file.filename}: config is damaged: expected the axes of a sweep") from None
+
+
+@dataclasses.dataclass
+class Axis:
+    name: str
+    at: Column
+
+    def label(self):
+        return with_shown_unit(self.name, self.at.units)
+
+    def value(self, i):
+        """In words: `noise sigma = 2 mm`."""
+        value = self.at.values[i]
+        shown = self.at.names.get(value, f"{value:.6g}")
+        name = with_shown_unit(self.name, "1" if self.at.units in ("", "1") else self.at.units).split(" (")[0]
+        unit = f" {unit_words(self.at.units)}" if self.at.units not in ("", "1") else ""
+        return f"{name} = {shown}{unit}"
+
+
+def read_axes(file):
+    names = text(file.attrs, "axes").split(",")
+    axes = [Axis(name, column(dataset(file, f"/sweep/{name}"))) for name in names]
+    for axis, is_log in zip(axes, log_axes(file, len(axes))):
+        axis.at.is_log = is_log
+    return axes
+
+
+def chosen_cells(axes, wanted):
+    """An index for each axis, a number where --slice names a value. wanted: (name, value) in words."""
+    index = [slice(None)] * len(axes)
+    for name, value in wanted:
+        i = next((i for i, axis in enumerate(axes) if axis.name == name), None)
+        if i is None:
+            raise PlotError(f"--slice {name}={value}: no such axis: expected one of {', '.join(a.name for a in axes)}")
+        at = axes[i].at
+        known = [at.names.get(each, f"{each:.6g}") for each in at.values]
+        same = [k for k, words in enumerate(known) if words == value or (not at.names and is_number(value, at.values[k]))]
+        if not same:
+            raise PlotError(f"--slice {name}={value}: no such value: expected one of {', '.join(known)} {at.units}".rstrip())
+        index[i] = same[0]
+    return tuple(index)
+
+
+def shown_axes(every, wanted):
+    """The axes without a chosen value, and the index of the chosen cells."""
+    chosen = chosen_cells(every, wanted)
+    return [axis for axis, at in zip(every, chosen) if isinstance(at, slice)], chosen
+
+
+def is_number(words, value):
+    try:
+        return math.isclose(float(words), value, rel_tol=1e-6, abs_tol=1e-12)
+    except ValueError:
+        return False
+
+
+def roles(axes):
+    """Numbers of the axes: across, of the lines or up (None: there is one axis), and of the slices; whether a map."""
+    order = sorted(range(len(axes)), key=lambda i: (bool(axes[i].at.names), -axes[i].at.values.size, i))
+    if len(axes) == 1:
+        return 0, None, [], False
+    if len(axes) == 2:
+        return 0, 1, [], True
+    across, others = order[0], order[1:]
+    few = [i for i in others if axes[i].at.values.size <= FEW]
+    second = max(few, key=lambda i: axes[i].at.values.size) if few else others[0]
+    return across, second, [i for i in range(len(axes)) if i not in (across, second)], not few
+
+
+def sliced(values, index, across, second):
+    """Of an array over all axes the part over two, across first."""
+    part = values[index]
+    return part.T if second is not None and second < across else part
+
+
+def line_curves(axis, measure, low_mean_high, label=""):
+    low, mean, high = (measure.column(values) for values in low_mean_high)
+    style = "dots" if axis.at.names else "line"
+    curves = [Curve(axis.at, mean, style, label, 0, None)]
+    if measure.replicates and np.isfinite(low.values).any():
+        bars = axis.at.names or axis.at.values.size <= 12
+        curves.insert(0, Curve(axis.at, low, "intervals" if bars else "band", "", 0, high))
+    return curves
+
+
+def map_curve(x, y, measure, values, limits):
+    places = np.meshgrid(x.at.values, y.at.values, indexing="ij")
+    columns = [dataclasses.replace(axis.at, values=np.ravel(place)) for axis, place in zip((x, y), places)]
+    z = measure.column(values, limits)
+    z.long_name += measure.note
+    return Curve(*columns, "map", "", 0, z)
+
+
+def slice_panel(axes, measure, part, place):
+    """part: roles and the index of a slice."""
+    (across, second, _, is_map), index, title = part
+    low, mean, high = (sliced(values, index, across, second) for values in (measure.low, measure.mean, measure.high))
+    x = axes[across]
+    if is_map:
+        return panel(title, x.label(), axes[second].label(), [map_curve(x, axes[second], measure, mean, spread(measure.mean))],
+                     place)
+    if second is None:
+        return panel(title, x.label(), measure.label(), line_curves(x, measure, (low, mean, high)), place)
+    curves = [curve for k in range(axes[second].at.values.size)
+              for curve in line_curves(x, measure, (low[:, k], mean[:, k], high[:, k]), axes[second].value(k))]
+    made = panel(title, x.label(), measure.label(), curves, place)
+    return dataclasses.replace(made, y_range=wide_spread(measure))
+
+
+def spread(values):
+    known = values[np.isfinite(values)]
+    return (known.min(), known.max()) if known.size and np.ptp(known) > 0 else None
+
+
+def wide_spread(measure):
+    """The same range for all slices, so that they can be compared."""
+    low, high = spread(np.stack([measure.low, measure.mean, measure.high])) or AUTOMATIC
+    margin = 0.05 * (high - low)
+    return [low - margin, high + margin]
+
+
+def slices(axes, part):
+    """The index and the words of each slice."""
+    _, _, others, _ = part
+    for at in itertools.product(*(range(axes[i].at.values.size) for i in others)):
+        index = [slice(None)] * len(axes)
+        for i, k in zip(others, at):
+            index[i] = k
+        yield part, tuple(index), ", ".join(axes[i].value(k) for i, k in zip(others, at))
+
+
+def title_of(measure, part, slice_words):
+    """What is measured, and in how many runs; of a map the bar says it."""
+    if part[3]:
+        return f"{measure.name}, {slice_words}" if slice_words else measure.name
+    said = f"{measure.long_name}{measure.note}" + (", 95 % intervals" if measure.replicates > 1 else "")
+    return f"{slice_words}: {said}" if slice_words else said
+
+
+def sweep_panels(file, wanted=()):
+    """wanted: pairs of an axis and a value, in words."""
+    axes, chosen = shown_axes(read_axes(file), wanted)
+    if not axes:
+        raise PlotError(f"{file.filename}: --slice for all axes leaves one cell: expected an axis without")
+    is_done = dataset(file, "/sweep/state")[()] == DONE
+    part = roles(axes)
+    shown = list(slices(axes, part))[:MAX_SLICES]
+    across = min(len(shown), ACROSS)
+    panels, row = [], 0
+    for name in text(file.attrs, "measures").split(",")[:max(1, MAX_PANELS // math.ceil(len(shown) / ACROSS))]:
+        measure = read_measure(file, name, len(axes), chosen, is_done)
+        for k, one in enumerate(shown):
+            place = (row + k // across, k % across) if len(shown) > 1 else None
+            made = slice_panel(axes, measure, one, place)
+            panels.append(dataclasses.replace(made, title=title_of(measure, part, one[2])))
+        row += math.ceil(len(shown) / across)
+    return panels
+
+
+def notes(file, is_done):
+    """How many of the finished runs have each kind of note, in words; results of earlier versions have none."""
+    if "/sweep/notes" not in file:
+        return []
+    bits, kinds = np.ravel(dataset(file, "/sweep/notes")[()])[is_done], text(file.attrs, "note_kinds").split(",")
+    counts = [(kind, int(np.count_nonzero(bits >> bit & 1))) for bit, kind in enumerate(kinds)]
+    return [f"{count} of {bits.size} runs: {kind}" for kind, count in counts if count]
+
+
+def left_out(file, wanted=()):
+    """What of a sweep the picture does not show, in words."""
+    words = [f"only {name} = {value}" for name, value in wanted]
+    axes = shown_axes(read_axes(file), wanted)[0]
+    count = math.prod(axes[i].at.values.size for i in roles(axes)[2]) if axes else 1
+    if count > MAX_SLICES:
+        words.append(f"the first {MAX_SLICES} of {count} slices (--slice AXIS=VALUE chooses)")
+    measures = len(text(file.attrs, "measures").split(","))
+    shown = max(1, MAX_PANELS // math.ceil(min(count, MAX_SLICES) / ACROSS))
+    if measures > shown:
+        words.append(f"the first {shown} of {measures} measures")
+    state = dataset(file, "/sweep/state")
+    names = enum_names(state)
+    states = [names.get(value) for value in np.ravel(state[()])]
+    planned = len(states) - states.count("not_sampled")
+    for what, count in (("failed", states.count("failed")),
+                        ("are not done", states.count("pending") + states.count("elsewhere"))):
+        if count:
+            words.append(f"without {count} of {planned} runs, which {what}")
+    words += notes(file, np.ravel(state[()]) == DONE)
+    return "".join(f"; {each}" for each in words)
