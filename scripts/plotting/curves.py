@@ -4,6 +4,7 @@ import math
 import matplotlib.collections
 import matplotlib.patches
 import matplotlib.patheffects
+import matplotlib.transforms
 import numpy as np
 
 from plotting.cells import cell_ends, cell_size, colour_range, outlines
@@ -44,15 +45,34 @@ def alone(curve):
 def draw_line(axes, curve, panel, look, **options):
     """Few samples have a marker each, since a straight piece between two of them is no measurement."""
     dots = alone(curve)
-    if look.marker and curve.style == "line" and curve.x.values.size <= 20:
+    if interval_series(curve, panel):
+        options |= {"marker": MARKERS[look.marker], "markersize": 3}
+    elif look.marker and curve.style == "line" and curve.x.values.size <= 20:
         options |= {"marker": MARKERS[look.marker], "markersize": 3}
     elif dots:
         options |= {"marker": "o", "markevery": dots}
     width = 1.1 if curve.x.values.size <= 2000 else 0.8  # a noisy trace stays a line
     if has_cells(panel):
         width, options = 1.3, options | {"path_effects": HALO}
-    axes.plot(curve.x.values, curve.y.values, color=look.colour, linestyle=DASHES[look.dash], linewidth=width,
-              label=typeset(curve.label), **options)
+    line, = axes.plot(curve.x.values, curve.y.values, color=look.colour, linestyle=DASHES[look.dash], linewidth=width,
+                      label=typeset(curve.label), **options)
+    put_aside(axes, line, curve, panel)
+
+
+def interval_series(curve, panel):
+    """Number and count of the curves with intervals that are vertical lines, or None: of this curve they stand before it."""
+    at = [i for i, other in enumerate(panel.curves) if other.style == "intervals"]
+    i = next(i for i, other in enumerate(panel.curves) if other is curve)
+    mine = [k for k, interval in enumerate(at) if interval in (i, i - 1)]
+    return (mine[0], len(at)) if mine else None
+
+
+def put_aside(axes, line, curve, panel):
+    """Intervals at one place stand beside each other. The limits of the axes are those of the data."""
+    if series := interval_series(curve, panel):
+        step_in = 2.4 * (series[0] - (series[1] - 1) / 2) / 72
+        aside = matplotlib.transforms.ScaledTranslation(step_in, 0, axes.figure.dpi_scale_trans)
+        line.set_transform(axes.transData + aside)
 
 
 def draw_steps(axes, curve, panel, look):
@@ -69,9 +89,10 @@ def draw_dots(axes, curve, panel, look):
     if series > 0 and count <= 100:
         size, options = size + 2 * series, {"markerfacecolor": "none", "markeredgewidth": 0.9}
     automatic = np.isnan(panel.x_range + panel.y_range).all()
-    axes.plot(curve.x.values, curve.y.values, linestyle="none", marker=MARKERS[look.marker] if count <= 100 else "o",
-              color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,
-              clip_on=not automatic or count > 100, **options)
+    line, = axes.plot(curve.x.values, curve.y.values, linestyle="none", marker=MARKERS[look.marker] if count <= 100 else "o",
+                      color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,
+                      clip_on=not automatic or count > 100, **options)
+    put_aside(axes, line, curve, panel)
 
 
 def draw_letters(axes, curve, _, __):
@@ -97,7 +118,7 @@ def draw_bars(axes, curve, panel, look):
     """The bar charts of one panel stand side by side. A cross stands where there is no value, which is not 0."""
     charts = [other for other in panel.curves if other.style == "bars"]
     places = np.unique(curve.x.values[np.isfinite(curve.x.values)])
-    spacing = np.diff(places).min() if places.size > 1 else 1.0
+    spacing = np.diff(places).min() if places.size > 2 else np.ptp(places) / 2 if places.size == 2 else 1.0
     width = 0.8 * spacing / len(charts)
     offset = (charts.index(curve) - (len(charts) - 1) / 2) * width
     axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=look.colour, label=typeset(curve.label))
@@ -128,10 +149,12 @@ def draw_band(axes, curve, _, look):
                       label=typeset(curve.label))
 
 
-def draw_intervals(axes, curve, _, look):
+def draw_intervals(axes, curve, panel, look):
     """A vertical line from y to z at each x."""
-    axes.vlines(curve.x.values, curve.y.values, curve.z.values, color=look.colour, linewidth=1.0,
-                label=typeset(curve.label))
+    ends = np.column_stack([np.repeat(curve.x.values, 3), np.insert(np.column_stack([curve.y.values, curve.z.values]), 2,
+                                                                     math.nan, axis=1).ravel()])
+    line, = axes.plot(*ends.T, color=look.colour, linewidth=0.9)
+    put_aside(axes, line, curve, panel)
 
 
 def draw_image(axes, curve, _, __):

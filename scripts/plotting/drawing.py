@@ -6,7 +6,7 @@ import numpy as np
 
 from plotting.cells import distinct
 from plotting.curves import DRAW, has_cells, reach
-from plotting.style import LETTER_IN, LINES, curve_key
+from plotting.style import BOLD_IN, LETTER_IN, LINES, curve_key
 from plotting.surface import draw_surface, is_surface
 from plotting.typeset import with_unit, wrapped
 
@@ -32,12 +32,12 @@ def asks_for_log(columns):
 
 
 def asks_for_log_heights(curves):
-    """Curves of few positive values that span three decades would all lie on the axis."""
+    """Few positive values that span four decades would all lie on the axis. More than eight decades are rounding errors."""
     if not curves or any(curve.style not in (*LINES, "dots") for curve in curves):
         return False
     values = np.concatenate([curve.y.values for curve in curves])
     values = values[np.isfinite(values)]
-    return 4 <= values.size <= 200 and values.min() > 0 and values.max() > 1000 * values.min()
+    return 4 <= values.size <= 200 and values.min() > 0 and 1e4 < values.max() / values.min() < 1e8
 
 
 def set_y_range(axes, panel):
@@ -78,7 +78,7 @@ def set_log_ticks(axis, narrow):
     low, high = sorted(axis.get_view_interval())
     decades = math.log10(high / low) if low > 0 else 3
     subs = (1,) if decades > (2 if narrow else 3.5) else (1, 3) if decades > 1.2 and narrow else (1, 2, 5)
-    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=subs, numticks=20))
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=subs, numticks=6 if len(subs) == 1 else 20))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: plain(float(f"{value:.3g}"))))
     axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
@@ -117,6 +117,11 @@ def set_ticks(axis, limits, columns, of_map=False, width_in=3.0):
     axis.set_major_formatter(formatter)
 
 
+def capitalised(title):
+    """But no symbol: `x of the HIP`, `r_c`."""
+    return title[:1].upper() + title[1:] if title[1:2].isalpha() else title
+
+
 def is_image(panel):
     """Such a panel is drawn without axes, as wide as it can be."""
     return any(curve.style == "image" for curve in panel.curves)
@@ -142,13 +147,13 @@ def add_colour_bar(axes, curve, width_in):
     cells = next(cells for cells in axes.collections if cells.get_array() is not None)
     bar = axes.figure.colorbar(cells, cax=axes.inset_axes([1 + 0.06 / width_in, 0, 0.1 / width_in, 1]))
     bar.outline.set_visible(False)
-    bar.set_label(wrapped(axis_label("", [curve.z]), 36))
+    bar.set_label(wrapped(axis_label("", [curve.z]), 32))
     set_ticks(bar.ax.yaxis, cells.get_clim(), [curve.z])
 
 
-def draw_panel(axes, panel, looks, width_in=3.0, bar=True):
+def draw_panel(axes, panel, looks, width_in=3.0, bar=True, title_in=None):
     """looks: of each curve, by curve_key. width_in: about what the panel has for itself. bar: says what the colours of a
-    map mean."""
+    map mean. title_in: room for the title, if it may be wider than the panel."""
     letters = int(width_in / LETTER_IN)
     if is_surface(panel):
         draw_surface(axes, panel, axis_label)
@@ -156,9 +161,11 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True):
     set_scales(axes, panel)
     for i, curve in enumerate(panel.curves):
         DRAW[curve.style](axes, curve, panel, looks.get(curve_key(curve, i)))
+    if any(curve.x.names and curve.style == "dots" for curve in panel.curves):
+        axes.margins(x=0.3)  # room for the names
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
-    axes.set_title(wrapped(panel.title, letters + 3), loc="left")
+    axes.set_title(wrapped(capitalised(panel.title), int((title_in or width_in) / BOLD_IN)), loc="left")
     if is_image(panel):
         without_axes(axes)
         return
@@ -169,4 +176,4 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True):
     set_ticks(axes.xaxis, axes.get_xlim(), xs, bool(of_map), width_in)
     set_ticks(axes.yaxis, axes.get_ylim(), ys, bool(of_map))
     axes.set_xlabel(wrapped(axis_label(panel.x_label, xs), letters))
-    axes.set_ylabel(wrapped(axis_label(panel.y_label, ys), 26))
+    axes.set_ylabel(wrapped(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 26))))

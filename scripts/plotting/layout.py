@@ -6,6 +6,7 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from plotting.cells import colour_range
 from plotting.curves import has_cells
 from plotting.drawing import draw_panel, is_image
 from plotting.legends import LARGEST_SHARE, add_legends, share
@@ -16,7 +17,7 @@ from plotting.surface import add_title, is_surface
 from plotting.typeset import wrapped
 from plotting.units import in_shown_units
 
-PAD_IN, HEADING_LINE_IN = 0.06, 0.17
+PAD_IN, HEADING_LINE_IN = 0.06, 0.155
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
 DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
@@ -27,7 +28,7 @@ def has_range(panel):
 
 def set_equal_aspect(axes, panel):
     """One metre as long across as up. Ranges that the file gives stay; automatic ones may grow to fill the panel."""
-    axes.set_aspect("equal", adjustable="box" if has_range(panel) else "datalim", anchor="W")
+    axes.set_aspect("equal", adjustable="box" if has_range(panel) else "datalim", anchor="SW")
 
 
 def is_dense(curve):
@@ -58,7 +59,7 @@ def panel_height(axes, panel, width, size):
     if is_image(panel):
         return width * abs(y1 - y0) / abs(x1 - x0)
     if is_surface(panel):
-        return 0.36 * width
+        return 0.34 * width
     usual = min(max(0.7 * width, 1.0), 2.0) if columns > 1 else max(1.05, min(2.0, 3.2 / rows))
     if has_cells(panel):
         usual = max(usual, min(0.8 * width, 2.6))
@@ -73,9 +74,9 @@ def margins(canvas, axes):
     if axes.name == "3d":
         return [PAD_IN, PAD_IN, PAD_IN, PAD_IN + 0.2]
     outer = axes.get_tightbbox(canvas.canvas.get_renderer(), for_layout_only=True)
-    inner = axes.get_position().transformed(canvas.transFigure)
-    return [max(0.0, size) / canvas.dpi + PAD_IN
-            for size in (inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
+    whole, inner = (axes.get_position(original).transformed(canvas.transFigure) for original in (True, False))
+    return [max(0.0, size) / canvas.dpi + PAD_IN  # equal aspect may have made it narrower for now
+            for size in (whole.x0 - outer.x0, outer.x1 - whole.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
 
 
 def guess(canvas, drawn, size):
@@ -131,10 +132,11 @@ def is_plot(panel):
 def say_once(drawn):
     """A label of an axis that the panel to the left, or the one below, repeats. Below, the limits are the same too."""
     at = {cell: (axes, panel) for cell, axes, panel in drawn if is_plot(panel)}
+    heights = {cell: axes.get_ylabel() for cell, (axes, _) in at.items()}
     for (row, column), (axes, panel) in at.items():
-        beside, below = at.get((row, column - 1)), at.get((row + 1, column))
-        if beside and beside[0].get_ylabel() == axes.get_ylabel() and axes.get_ylabel():
-            axes.set_ylabel("", in_layout=False)
+        below = at.get((row + 1, column))
+        if heights.get((row, column - 1)) == axes.get_ylabel():
+            axes.set_ylabel("")
         same = below and below[0].get_xlabel() == axes.get_xlabel() and not panel.equal_aspect
         if same and np.allclose(below[0].get_xlim(), axes.get_xlim()):
             axes.set_xlabel("")
@@ -144,7 +146,7 @@ def say_once(drawn):
 def bars_of(panels, cells):
     """Whether each panel has a bar for its colours: in a row with the same colours only the last."""
     def colours(panel):
-        return next(((c.z.limits, c.z.units, c.z.long_name) for c in panel.curves if c.style == "map" and c.z.limits), None)
+        return next(((colour_range(c.z), c.z.units, c.z.long_name) for c in panel.curves if c.style == "map"), None)
 
     by_cell = {cell: colours(panel) for cell, panel in zip(cells, panels)}
     return [by_cell[cell] is None or by_cell.get((cell[0], cell[1] + 1)) != by_cell[cell] for cell in cells]
@@ -162,7 +164,7 @@ def composed(figure, width_in, titled):
         if panel.scene:
             draw_scene(axes, panel, width_in / columns)
         else:
-            draw_panel(axes, panel, of_curve, about_in, bar)
+            draw_panel(axes, panel, of_curve, about_in, bar, about_in + (0.35 if cell[1] < columns - 1 else 0))
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
         drawn.append((cell, axes, panel))

@@ -1,5 +1,6 @@
 """Legends stand above the panels, so they cover no curve. What several panels have in common is said once, above all."""
 import math
+import re
 import textwrap
 
 from matplotlib.transforms import ScaledTranslation
@@ -27,11 +28,21 @@ def shared_entries(every):
     return {label: shared[label] for label in order} if len(alike) > 1 else {}
 
 
+def folded(label, letters):
+    """In lines of so many letters, each formula counted as one or two."""
+    formulas = re.findall(r"(?<!\\)\$.*?(?<!\\)\$", label)
+    for formula in formulas:
+        label = label.replace(formula, "\ue000\ue001" if "_" in formula else "\ue000", 1)
+    label = textwrap.fill(label, max(letters, 12), break_on_hyphens=False)
+    for formula in formulas:
+        label = re.sub("\ue000\ue001?", lambda _: formula, label, count=1)
+    return label
+
+
 def fitted(owner, found, width_in, **options):
     """A legend of as many columns as fit, all about equally full."""
     letters = int((width_in - MARKER_IN) / LETTER_IN)
-    labels = [textwrap.fill(label, max(letters, 12), break_on_hyphens=False, break_long_words=False)  # no $ alone
-              for label in found]
+    labels = [folded(label, letters) for label in found]
     renderer = owner.figure.canvas.get_renderer() if owner.figure else owner.canvas.get_renderer()
     for columns in range(len(labels), 0, -1):
         columns = math.ceil(len(labels) / math.ceil(len(labels) / columns))
@@ -61,8 +72,9 @@ def add_legends(canvas, every, width_in, top_in, pad_in):
     found = [entries(axes) if axes.name != "3d" else {} for axes in every]
     shared = shared_entries(found)
     for axes, one in zip(every, found):
+        own = {label: one[label] for label in one if label not in shared or not shared.keys() <= one.keys()}
         if not one.keys() <= shared.keys():
-            add_panel_legend(axes, one, width_in)
+            add_panel_legend(axes, own, width_in)
     if not shared:
         return 0.0
     place = canvas.transFigure + ScaledTranslation(pad_in, -top_in, canvas.dpi_scale_trans)

@@ -4,11 +4,11 @@ import matplotlib.patches
 import numpy as np
 
 from plotting.raster import Camera, Canvas
-from plotting.style import COLOURS, LETTER_IN, OF_LABEL, PNG_DPI, meaning
+from plotting.style import BOLD_IN, COLOURS, OF_LABEL, PNG_DPI, meaning
 from plotting.typeset import typeset, wrapped
 
 FINER = 2  # pixels are drawn so much finer, then averaged
-LARGEST_PX = 1100
+LARGEST_PX = 800
 
 
 def rgb(colour):
@@ -56,7 +56,7 @@ def draw_scene(axes, panel, width_in):
     axes.set_xticks([]), axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.grid(False)
-    axes.set_title(wrapped(panel.title, int(0.9 * width_in / LETTER_IN)), loc="left")
+    axes.set_title(wrapped(panel.title, int(width_in / BOLD_IN)), loc="left")
     for part in panel.scene.parts:
         if part.label:
             axes.add_patch(matplotlib.patches.Rectangle((0, 0), 0, 0, facecolor=colour_of(part), alpha=part.opacity,

@@ -8,7 +8,7 @@ from plotting.claims import esc
 from plotting.plot_error import PlotError
 from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
-from plotting.scorecard_plots import colours_css, level_text, noise_plot
+from plotting.scorecard_plots import level_text, looks_css, noise_plot, shapes
 from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
                                        level_tables, measure_table, overview_table, success_table)
 
@@ -130,9 +130,11 @@ def contents(card):
 def scorecard_page(card, link=lambda file: file):
     """link: from a file of the card's folder to where that lies, as the page names it."""
     scenes = "\n".join(scene_section(card, scene, link) for scene in card["scenes"])
+    names = [method["name"] for method in card["methods"]]
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Scorecard</title><style>{CSS}{OWN_CSS}{PLOT_CSS}{colours_css(len(card["methods"]))}</style></head><body>
+<title>Scorecard</title><style>{CSS}{OWN_CSS}{PLOT_CSS}{looks_css(names)}</style></head><body>
+{shapes(names)}
 <h1>Scorecard of {len(card["methods"]):d} methods, {len(card["scenes"]):d} scenes</h1>
 {behind_section(card)}
 <h2 id="overview">All scenes</h2>

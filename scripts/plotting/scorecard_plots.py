@@ -1,23 +1,42 @@
 """The small pictures of a scorecard's page: successes over noise, a line for each method."""
 from plotting.claims import esc
+from plotting.style import DASHES, MARKERS, method_looks
 
-# Okabe and Ito's colours, which the colour-blind tell apart.
-COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 420, 190, 34, 8, 8, 26
 
 CSS = """
-svg { width: 420px; height: 190px; font-size: 11px; } svg text { fill: #555; }
-.grid { stroke: #e4e4e4; fill: none; } .line { fill: none; stroke-width: 1.4; opacity: .75; }
-.bar { stroke-width: 1; opacity: .55; fill: none; }
-i { display: inline-block; width: 10px; height: 10px; border-radius: 5px; margin-right: 5px; }
+svg { width: 420px; max-width: 100%; height: 190px; font-size: 11px; } svg text { fill: #555; }
+svg.key { width: 28px; height: 10px; margin-right: 5px; }
+.grid { stroke: #e4e4e4; fill: none; } .line { fill: none; stroke-width: 1.4; } .bar { stroke-width: 1; fill: none; }
 """
 
+# Paths of markers about the origin, by the names that matplotlib has for them.
+SHAPES = {"o": "M-2.6 0a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0-5.2 0z", "s": "M-2.4-2.4h4.8v4.8h-4.8z", "^": "M0-3.1l3 5.4h-6z",
+          "D": "M0-3.3l3.3 3.3l-3.3 3.3l-3.3-3.3z", "v": "M0 3.1l3-5.4h-6z",
+          "P": "M-1.1-3h2.2v1.9h1.9v2.2h-1.9v1.9h-2.2v-1.9h-1.9v-2.2h1.9z"}
 
-def colours_css(methods):
-    """A method has one colour, by its place, everywhere on the page."""
-    colours = [COLOURS[c % len(COLOURS)] for c in range(methods)]
-    return "".join(f".c{c} path {{ stroke: {colour}; }} .c{c} circle {{ fill: {colour}; }} "
-                   f".k{c} {{ background: {colour}; }}\n" for c, colour in enumerate(colours))
+
+def dash_array(look):
+    dash = DASHES[look.dash]
+    return "none" if dash == "solid" else " ".join(f"{length:g}" for length in dash[1])
+
+
+def looks_css(names):
+    """A method has one colour and dash everywhere on the page, those of the figures."""
+    return "".join(f".c{c} path {{ stroke: {look.colour}; }} .c{c} .line {{ stroke-dasharray: {dash_array(look)}; }} "
+                   f".c{c} use {{ fill: {look.colour}; }}\n" for c, look in enumerate(method_looks(names)))
+
+
+def shapes(names):
+    """The marker of each method, to be used by all plots of the page."""
+    paths = "".join(f'<path id="m{c}" d="{SHAPES[MARKERS[look.marker]]}"/>' for c, look in enumerate(method_looks(names)))
+    return f'<svg style="display:none"><defs>{paths}</defs></svg>'
+
+
+def key(method):
+    """A piece of a method's line, beside its name."""
+    return (f'<svg class="key" viewBox="0 0 28 10" aria-hidden="true"><g class="c{method}"><path class="line" d="M0 5H28"/>'
+            f'<use href="#m{method}" x="14" y="5"/></g></svg>')
 
 
 def level_text(noise_m, radius_m):
@@ -56,7 +75,7 @@ def line_of(shares, axes, method):
     at = [(axes.x(i, method), share) for i, share in enumerate(shares)]
     line = "L".join(f"{x:.1f} {axes.y(share['fraction']):.1f}" for x, share in at)
     bars = "".join(f"M{x:.1f} {axes.y(share['low']):.1f}V{axes.y(share['high']):.1f}" for x, share in at)
-    dots = "".join(f'<circle cx="{x:.1f}" cy="{axes.y(share["fraction"]):.1f}" r="2.6"/>' for x, share in at)
+    dots = "".join(f'<use href="#m{method}" x="{x:.1f}" y="{axes.y(share["fraction"]):.1f}"/>' for x, share in at)
     return f'<g class="c{method}"><path class="line" d="M{line}"/><path class="bar" d="{bars}"/>{dots}</g>'
 
 

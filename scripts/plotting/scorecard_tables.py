@@ -1,6 +1,6 @@
 """The tables of a scorecard's page."""
 from plotting.claims import esc
-from plotting.scorecard_plots import level_text
+from plotting.scorecard_plots import key, level_text
 
 SHOWN_UNITS = {"m": (1e3, "mm"), "J": (1e3, "mJ"), "s": (1e3, "ms"), "1": (1, "")}  # factor, words
 MARKS = {"best": "best", "worst": "worst", "none": "", "given": "worst", "taken": "best"}  # classes of the style
@@ -19,9 +19,9 @@ def table(heads, rows):
     return f"<div class=table><table><tr>{head}</tr>\n{body}</table></div>"
 
 
-def name_cell(one, colour=None):
-    dot = "" if colour is None else f'<i class="k{colour}"></i>'
-    return f'<th class="name" title="{esc(one["title"])}">{dot}{esc(one["name"])}</th>'
+def name_cell(one, method=None):
+    dash = "" if method is None else key(method)
+    return f'<th class="name" title="{esc(one["title"])}">{dash}{esc(one["name"])}</th>'
 
 
 def number(value, factor=1):

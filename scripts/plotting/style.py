@@ -8,7 +8,8 @@ import dataclasses
 import re
 
 COLUMN_IN, PAGE_IN = 3.5, 7.16  # widths of one column and of two with the gap between them
-TEXT_PT, HEADING_PT, LETTER_IN = 8, 9, 0.064  # LETTER_IN: mean width of a letter of the text
+TEXT_PT, HEADING_PT = 8, 9
+LETTER_IN, BOLD_IN = 0.064, 0.072  # mean width of a letter of the text, and of a title
 PNG_DPI = 300
 RC = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "mathtext.fontset": "dejavusans",
@@ -39,15 +40,16 @@ OF_LABEL = (
     (r"normal$|true |truth|surface$|walls$|exact$", "truth"),
     (r"bound|limit|.*\bprinted\b|r_1 f_c|r_f \+ r_c$|\d+ \(\d|equal$|assigned\b", "limit"),
     (r".*refitted|with scatter|predicted|mean error of v_hat|its standard deviation|derived$|95 % confidence", "estimate"),
-    (r"measured|observed|felt$|maximum of|mean$", "measured"),
-    (r"did not pop through", "region"),
+    (r"measured|observed|felt$|maximum of|mean$|half survive|ends of the", "measured"),
+    (r"did not pop through", "region"), (r"red\b", "force"), (r"yellow\b", "hip"),
     (r".*region", "fixture"),
 )
 OF_QUANTITY = ((r".*\bforce\b", "force"), (r".*\btorque\b", "fixture"), (r".*\b(proxy|tool|contact point)\b", "proxy"),
-               (r".*\bHIP\b", "hip"))
+               (r".*\bHIP\b", "hip"), (r".+", "measured"))
 
 DASHES = ("solid", (0, (5, 2.5)), (0, (1.2, 1.4)), (0, (6, 2, 1.2, 2)), (0, (6, 2, 1.2, 2, 1.2, 2)), (0, (9, 3)))
 MARKERS = ("o", "s", "^", "D", "v", "P")
+WITHOUT_COLOUR = ("map", "image", "surface", "letters", "band", "intervals")  # no colour of their own
 LINES, DOTS = ("line", "dashed", "steps"), ("dots",)
 
 # The renderers that are compared: colour, and numbers of dash and marker. Variants of a method share its colour.
@@ -127,7 +129,7 @@ def colour_of(curves, known, series):
     looks = []
     for i, curve in reversed(list(enumerate(curves))):  # an interval belongs to the curve that follows it
         look = known_look(curve)
-        if not look and curve.style == "band" and looks:
+        if curve.style in ("band", "intervals") and looks and (not look or not curve.label):
             look = Look(looks[0].colour)
         if not look:
             key = base(curve.label) if curve.label else curve_key(curve, i)
@@ -141,7 +143,7 @@ def series_colours(panels):
     curves = [(i, curve) for panel in panels for i, curve in enumerate(panel.curves)]
     taken = {look.colour for _, curve in curves if (look := known_look(curve))}
     keys = dict.fromkeys(base(curve.label) if curve.label else curve_key(curve, i) for i, curve in curves
-                         if not known_look(curve) and curve.style != "band")
+                         if not known_look(curve) and curve.style not in WITHOUT_COLOUR)
     free = [COLOURS[name] for name in SERIES if COLOURS[name] not in taken]
     order = free + [COLOURS[name] for name in SERIES if COLOURS[name] in taken]
     return {key: order[i % len(order)] for i, key in enumerate(keys)}

@@ -41,13 +41,14 @@ def draw_surface(axes, panel, axis_label):
     limits = [(values.min(), values.max()) for values in (across, along, shown[np.isfinite(shown)])]
     for set_limits, ends in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), limits):
         set_limits(*ends)
-    axes.set_box_aspect([max(high - low, 1e-9) for low, high in limits], zoom=1.5)
+    axes.set_box_aspect([max(high - low, 1e-9) for low, high in limits], zoom=1.7)
     axes.tick_params(pad=-3)
+    axes.tick_params("z", pad=-1)
     axes.view_init(DEGREES_UP, DEGREES_ROUND)
     axes.set_title(typeset(panel.title), loc="left")  # room for it
     labels = (panel.x_label, panel.y_label, axis_label("", [curve.z]))
     longest = max(max(high - low for low, high in limits), 1e-9)
-    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (2, -4, -6)):
+    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (2, -5, -4)):
         bins = round(TICKS * (high - low) / longest)
         if bins > 1:
             axis.set_major_locator(matplotlib.ticker.MaxNLocator(bins))

@@ -19,6 +19,7 @@ MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
 FEW = 5  # values of an axis that has a line for each
 DONE = 2  # state of a run
 Z95 = 1.959964
+EVENT = "1 when "  # with this begins what a measure says of an event
 
 
 def student_t(freedom):
@@ -64,8 +65,8 @@ class Measure:
 
 
 def runs_words(counts):
-    low, high = counts.min(initial=0), counts.max(initial=0)
-    return f"{high} runs" if low == high else f"{low} to {high} runs"
+    low, high = counts.min(), counts.max()
+    return f"{high} run{'s' * (high != 1)}" if low == high else f"{low} to {high} runs"
 
 
 def unknown(values, is_done):
@@ -80,20 +81,22 @@ def read_measure(file, name, axes, chosen, is_done):
     factor, units = SHOWN_UNITS.get(text(data.attrs, "units"), (1, text(data.attrs, "units")))
     replicates = values.shape[-1] if values.ndim > axes else 0
     of_cell = values.reshape(*values.shape[:axes], -1)
-    is_event = long_name.startswith("1 when ") and not names
+    is_event = long_name.startswith(EVENT) and not names
     mean, low, high = (np.empty(of_cell.shape[:-1]) for _ in range(3))
     for cell in np.ndindex(mean.shape):
         mean[cell], low[cell], high[cell] = interval(of_cell[cell], is_event and replicates > 0)
-    note = ""
-    if replicates:
-        note = f", mean of {runs_words(np.isfinite(of_cell).sum(axis=-1))}"
+    note, runs = "", runs_words(np.isfinite(of_cell).sum(axis=-1))
+    if replicates and is_event:
+        long_name, note = f"share of runs in which {long_name.removeprefix(EVENT)}", f", {runs} each"
+    elif replicates:
+        note = f", mean of {runs}"
     note += unknown(values, is_done[chosen])
     scaled = (factor * each for each in (mean, low, high))
     return Measure(name, long_name, units, *scaled, replicates, note)
 
 
 def with_shown_unit(name, units):
-    """Names of parameters end with their unit, which may not be the one that is shown."""
+    """In words, with the unit that is shown. Names of parameters end with that in which they are stored."""
     name = re.sub(r"_(m|s|hz|deg|kg|N|J|m2)(_per_\w+)?$", "", name, flags=re.I) if units not in ("", "1") else name
     name = name.replace("_", " ") if not re.fullmatch(r"[A-Za-z]_\w{1,3}", name) else name
     return f"{name} ({unit_words(units)})" if units not in ("", "1") else name
@@ -240,9 +243,10 @@ def slices(axes, part):
 def title_of(measure, part, slice_words):
     """What is measured, and in how many runs; of a map the bar says it."""
     if part[3]:
-        return f"{measure.name}, {slice_words}" if slice_words else measure.name
-    said = f"{measure.long_name}{measure.note}" + (", 95 % intervals" if measure.replicates > 1 else "")
-    return f"{slice_words}: {said}" if slice_words else said
+        name = with_shown_unit(measure.name, "1")
+        return f"{name}, {slice_words}" if slice_words else name
+    note = measure.note + (", 95 % intervals" if measure.replicates > 1 else "")
+    return f"{slice_words}{note}" if slice_words else f"{measure.long_name}{note}"
 
 
 def sweep_panels(file, wanted=()):

@@ -26,6 +26,7 @@ def typeset(words):
     words = re.sub(r"(?<=\w) x (?=\w)", " × ", words)
     words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
+    words = re.sub(r"(\d) deg\b", r"\1°", words)
     return re.sub(r"\^\(?(-?\d+)\)?", r"$^{\1}$", words)
 
 
@@ -45,7 +46,7 @@ def unit_words(unit):
 
 def with_unit(label, unit):
     """The label with its unit in parentheses, or the label alone if it has one already."""
-    if unit in ("", "1"):
+    if unit in ("", "1") or label == unit:
         return label
     shown = "|".join(map(re.escape, {unit, unit_words(unit)}))
     written = re.search(rf"\(({shown})\)$|\bin ({shown})\b", label)

@@ -86,7 +86,7 @@ std::vector<Panel> panels(const std::vector<AccelerationBound>& bounds) {
                                   std::string("observed_") + column, CurveStyle::dots, label});
   return {fit_panel("thickness_fit", "Thickness of the cloud (4.23)", "h (m)"),
           fit_panel("normal_error_fit", "Error of the normal (4.24)", "e_n"),
-          plot("Velocity estimate", "noise (r_c)", "m/s",
+          plot("Velocity estimate", "noise (r_c)", "error of v_hat (m/s)",
                {{"noise_effect", "noise", "velocity_bias", CurveStyle::dots, "mean error of v_hat"},
                 {"noise_effect", "noise", "velocity_sd", CurveStyle::dots, "its standard deviation"}}),
           map, calibration};

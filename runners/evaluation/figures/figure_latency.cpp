@@ -159,10 +159,10 @@ void add_latency_panels(Figure& figure) {
       depth_panel("Beating heart, sensor noise", "latency (ms)", {})};
   for (const char* rate : {"40", "75", "120"}) {
     const std::string column = std::string("rate_") + rate;
+    const std::string label = std::string(rate) + " beats per minute";
+    list[3].curves.push_back({"heart", "latency", column, CurveStyle::line, label});
     list[3].curves.push_back(
-        {"heart", "latency", column, CurveStyle::line, std::string(rate) + " beats per minute"});
-    list[3].curves.push_back(
-        {"heart", "latency", column + "_ahead", CurveStyle::dashed, "slave sent ahead, settled"});
+        {"heart", "latency", column + "_ahead", CurveStyle::dashed, label + ", slave sent ahead"});
   }
   place_in_rows(figure, 2);
 }
