@@ -10,6 +10,7 @@ import re
 
 import numpy as np
 
+from plotting.cells import colour_range
 from plotting.figure_file import Column, Curve, enum_names, text
 from plotting.plot_error import PlotError
 from plotting.results import AUTOMATIC, column, dataset, panel
@@ -208,26 +209,25 @@ def slice_panel(axes, measure, part, place):
     low, mean, high = (sliced(values, index, across, second) for values in (measure.low, measure.mean, measure.high))
     x = axes[across]
     if is_map:
-        return panel(title, x.label(), axes[second].label(), [map_curve(x, axes[second], measure, mean, spread(measure.mean))],
+        return panel(title, x.label(), axes[second].label(), [map_curve(x, axes[second], measure, mean,
+                                                                     place and colour_range(measure.column(measure.mean)))],
                      place)
     if second is None:
         return panel(title, x.label(), measure.label(), line_curves(x, measure, (low, mean, high)), place)
     curves = [curve for k in range(axes[second].at.values.size)
               for curve in line_curves(x, measure, (low[:, k], mean[:, k], high[:, k]), axes[second].value(k))]
     made = panel(title, x.label(), measure.label(), curves, place)
-    return dataclasses.replace(made, y_range=wide_spread(measure))
+    return dataclasses.replace(made, y_range=common_range(measure))
 
 
-def spread(values):
-    known = values[np.isfinite(values)]
-    return (known.min(), known.max()) if known.size and np.ptp(known) > 0 else None
-
-
-def wide_spread(measure):
+def common_range(measure):
     """The same range for all slices, so that they can be compared."""
-    low, high = spread(np.stack([measure.low, measure.mean, measure.high])) or AUTOMATIC
-    margin = 0.05 * (high - low)
-    return [low - margin, high + margin]
+    known = np.stack([measure.low, measure.mean, measure.high])
+    known = known[np.isfinite(known)]
+    if not known.size or np.ptp(known) == 0:
+        return AUTOMATIC
+    margin = 0.05 * np.ptp(known)
+    return [known.min() - margin, known.max() + margin]
 
 
 def slices(axes, part):
