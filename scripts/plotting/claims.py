@@ -6,6 +6,7 @@ import sys
 import urllib.parse
 
 from plotting.plot_error import PlotError
+from plotting.typeset import typeset_html
 
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
 NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty
@@ -66,7 +67,7 @@ def claim_row(anchor, claim):
         value = claim.get(name)
         shown = "" if value in NOTHING.get(name, ()) else value_text(value)
         style = " class=number" if name == "measured" else " class=short" if len(shown) <= SHORT else ""
-        cells.append(f"<td{style}>{esc(shown)}</td>")
+        cells.append(f"<td{style}>{typeset_html(shown)}</td>")
     style, word = verdict(claim)
     return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{esc(word)}</td></tr>'
 
@@ -96,8 +97,8 @@ def differing(anchored):
             continue
         unit = "" if claim.get("unit") in NOTHING["unit"] else f" {claim['unit']}"
         rows.append(f'<tr><td class=short><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}</a></td>'
-                    f'<td>{esc(claim.get("claim", ""))}</td><td>{esc(claim.get("paper", ""))}</td>'
-                    f'<td class=number>{esc(value_text(claim.get("measured")) + unit)}</td></tr>')
+                    f'<td>{typeset_html(claim.get("claim", ""))}</td><td>{typeset_html(claim.get("paper", ""))}</td>'
+                    f'<td class=number>{typeset_html(value_text(claim.get("measured")) + unit)}</td></tr>')
     if not rows:
         return ""
     body = "\n".join(rows)
@@ -118,7 +119,7 @@ def overview(anchored):
              "prints another value. Open: measured on a part of the runs only. Not run: a recording is missing.</p>"]
     if failed:
         items = "\n".join(f'<li><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}: '
-                          f'{esc(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)
+                          f'{typeset_html(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)
         lines.append(f"<p class=fail>Failed:</p>\n<ul>\n{items}\n</ul>")
     lines.append(differing(anchored))
     return "\n".join(line for line in lines if line)

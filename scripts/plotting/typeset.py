@@ -1,5 +1,6 @@
 """Sets words as print has them: r_c with a subscript, m/s^2 with a superscript, lengths in mm. A dollar sign in a name
 stays a dollar sign."""
+import html
 import re
 import textwrap
 
@@ -28,6 +29,19 @@ def typeset(words):
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
     words = re.sub(r"(\d) deg\b", r"\1°", words)
     return re.sub(r"\^\(?(-?\d+)\)?", r"$^{\1}$", words)
+
+
+def html_symbol(match):
+    letter, index = match.groups()
+    letter = GREEK.get(letter, letter)
+    return f"<i>{letter}&#x302;</i>" if index == "hat" else f"<i>{letter}</i><sub>{index}</sub>"
+
+
+def typeset_html(words):
+    """As a page shows it. No words make another tag than those of symbols."""
+    words = SYMBOL.sub(html_symbol, html.escape(str(words), quote=True))
+    words = re.sub(rf"\b({'|'.join(GREEK)})\b", lambda match: GREEK[match[1]], words)
+    return re.sub(r"\^\(?(-?\d+)\)?", r"<sup>\1</sup>", words)
 
 
 def wrapped(words, letters):

@@ -28,7 +28,7 @@ OF_THE_PROGRAM = [
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
     (r"runners/presentation/view/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
     (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module"]),
-    (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "scorecard_page", "figures_quick"]),
+    (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick"]),
     (r".*\.md$", ["page_links", "reference"]),
     (r".*/(.*_settings|.*parameters?|settings)\.(h|cpp)$", ["reference", "page_links"]),
 ]

@@ -82,8 +82,10 @@ void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure 
     recipe.coarse = runs_[run].coarse;
   }
   const fs::path file = file_of(figure.name);
-  write_figure(file, figure,
-               provenance(context.configurations(), recipe, line_.kernels->isa, context.inputs()));
+  TextAttributes attributes =
+      provenance(context.configurations(), recipe, line_.kernels->isa, context.inputs());
+  attributes.emplace_back("summary", runs_[run].entry->summary);
+  write_figure(file, figure, attributes);
   claims_.replace(figure.name, figure.claims);
   if (was_made(figure))
     ++made_;
