@@ -176,4 +176,4 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True, title_in=None):
     set_ticks(axes.xaxis, axes.get_xlim(), xs, bool(of_map), width_in)
     set_ticks(axes.yaxis, axes.get_ylim(), ys, bool(of_map))
     axes.set_xlabel(wrapped(axis_label(panel.x_label, xs), letters))
-    axes.set_ylabel(wrapped(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 26))))
+    axes.set_ylabel(wrapped(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 22))))

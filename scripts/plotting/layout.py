@@ -1,4 +1,5 @@
 """Puts the panels of a figure on one canvas, one or two columns of a journal wide."""
+import dataclasses
 import math
 
 import matplotlib
@@ -19,6 +20,7 @@ from plotting.units import in_shown_units
 
 PAD_IN, HEADING_LINE_IN = 0.06, 0.155
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
+TALLEST_IN, SMALLEST = 9.2, 0.6  # a picture fits on a page, unless its panels became smaller than this share
 DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
 
@@ -90,7 +92,8 @@ def guess(canvas, drawn, size):
 
 def arrange(canvas, drawn, size, top_in):
     """Panels of a column are equally wide, rows as high as their panels ask, and the canvas as high as the rows.
-    (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
+    Returns the share of their height that they got, because a picture fits on a page. (Constrained layout measures
+    everything twice, which takes half of the time of a figure.)"""
     rows, columns = size
     guess(canvas, drawn, size)
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
@@ -101,12 +104,16 @@ def arrange(canvas, drawn, size, top_in):
     inner = (canvas.get_figwidth() - sum(left) - sum(right)) / columns
     heights = [max((panel_height(axes, panel, inner, size) for cell, axes, panel in drawn if cell[0] == row), default=0)
                for row in range(rows)]
-    width, height = canvas.get_figwidth(), top_in + sum(above) + sum(below) + sum(heights) + PAD_IN
+    around = top_in + sum(above) + sum(below) + PAD_IN
+    smaller = min(1.0, max((TALLEST_IN - around) / sum(heights), SMALLEST))
+    heights = [smaller * height for height in heights]
+    width, height = canvas.get_figwidth(), around + sum(heights)
     canvas.set_size_inches(width, height)
     for (row, column), axes, _ in drawn:
         x = sum(left[:column + 1]) + sum(right[:column]) + column * inner
         y = height - top_in - sum(above[:row + 1]) - sum(below[:row]) - sum(heights[:row + 1])
         axes.set_position([x / width, y / height, inner / width, heights[row] / height])
+    return smaller
 
 
 def align(drawn):
@@ -153,7 +160,7 @@ def bars_of(panels, cells):
 
 
 def composed(figure, width_in, titled):
-    """The canvas with everything in its place."""
+    """The canvas with everything in its place, and what arrange() returns."""
     cells = places(figure.panels)
     rows, columns = size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
     canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * rows), dpi=PNG_DPI)
@@ -172,10 +179,10 @@ def composed(figure, width_in, titled):
     heading = wrapped(figure.heading, int((width_in - 2 * PAD_IN) / LETTER_IN / 1.12)) if titled else ""
     top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
     top_in += add_legends(canvas, [axes for _, axes, _ in drawn], about_in, top_in, PAD_IN)
-    arrange(canvas, drawn, size, top_in)
+    smaller = arrange(canvas, drawn, size, top_in)
     canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
     align(drawn)
-    return canvas
+    return canvas, smaller
 
 
 def draw_figure(figure, files, titled):
@@ -183,9 +190,12 @@ def draw_figure(figure, files, titled):
     matplotlib.rcParams.update(RC)
     figure = in_shown_units(figure)
     for width_in in widths_in(figure.panels, 1 + max(cell[1] for cell in places(figure.panels))):
-        canvas = composed(figure, width_in, titled)
+        canvas, smaller = composed(figure, width_in, titled)
         if share(canvas) <= LARGEST_SHARE:
             break
+    if smaller < 0.9 and not any(panel.place for panel in figure.panels):  # too many below each other
+        beside = [dataclasses.replace(panel, place=divmod(i, 2)) for i, panel in enumerate(figure.panels)]
+        canvas, _ = composed(dataclasses.replace(figure, panels=beside), PAGE_IN, titled)
     for file in files:
         save(canvas, file, figure)
     return canvas

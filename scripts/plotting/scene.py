@@ -53,6 +53,7 @@ def picture(scene, width):
 def draw_scene(axes, panel, width_in):
     """With the names of its parts as entries of a legend."""
     axes.imshow(picture(panel.scene, min(LARGEST_PX, int(PNG_DPI * width_in))), interpolation="antialiased")
+    axes.set_anchor("SW")
     axes.set_xticks([]), axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.grid(False)

@@ -24,6 +24,7 @@ def typeset(words):
     """As matplotlib draws it, with mathematics between dollar signs."""
     words = CONTROL.sub("?", words).replace("$", r"\$")
     words = re.sub(r" - (?=\S)", " \u2212 ", words)
+    words = re.sub(r"(?<=[ (])-(?=\d)", "\u2212", words)
     words = re.sub(r"(?<=\w) x (?=\w)", " × ", words)
     words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
