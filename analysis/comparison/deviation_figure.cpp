@@ -74,7 +74,8 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
       first.add("time", "s", "simulated time", {time_s[*column.first_outside]});
       first.add("deviation", "1", "log10 of the deviation", {std::log10(size)});
     }
-    Panel panel{column.name, "time / s", "log10 of the deviation / " + column.units};
+    const std::string unit = column.units == "1" ? "" : " in " + column.units;
+    Panel panel{column.name, "time (s)", "log10 of the deviation" + unit};
     panel.curves.push_back({column.name, "time", "deviation", CurveStyle::line});
     if (!first.columns.empty() && std::isfinite(std::get<std::vector<double>>(first.columns[1].values)[0])) {
       figure.tables.push_back(first);

@@ -118,8 +118,9 @@ def set_ticks(axis, limits, columns, of_map=False, width_in=3.0):
 
 
 def capitalised(title):
-    """But no symbol: `x of the HIP`, `r_c`."""
-    return title[:1].upper() + title[1:] if title[1:2].isalpha() else title
+    """But no symbol or name of a column: `x of the HIP`, `r_c`, `proxy_position`."""
+    symbol = not title[1:2].isalpha() or "_" in title.partition(" ")[0]
+    return title if symbol else title[:1].upper() + title[1:]
 
 
 def is_image(panel):

@@ -7,7 +7,7 @@ import textwrap
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
 SYMBOL = re.compile(rf"\b({'|'.join(GREEK)}|[A-Za-z])_([A-Za-z0-9]{{1,3}})\b")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
-UNIT_WORDS = {"deg": "°", "N m": "N·m", "N s/m": "N·s/m"}
+UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
 LENGTH = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?) m(?![\w/^·])")
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
@@ -26,6 +26,7 @@ def typeset(words):
     words = re.sub(r" - (?=\S)", " \u2212 ", words)
     words = re.sub(r"(?<=[ (])-(?=\d)", "\u2212", words)
     words = re.sub(r"(?<=\w) x (?=\w)", " × ", words)
+    words = re.sub(r"\blog10\b", "log$_{10}$", words)
     words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
     words = re.sub(r"(\d) deg\b", r"\1°", words)

@@ -163,7 +163,7 @@ Figure live_figure(const LiveReport& report) {
       "Above: the share of ticks or frames that took as long or longer. Below: the longest time from "
       "one tick to the next, over the run."};
   figure.tables = {times_table(report), counts_table(report)};
-  Panel fractions{"How often", "log10 of the time / us", "log10 of the share that took as long or longer"};
+  Panel fractions{"How often", "log10 of the time in us", "log10 of the share that took as long or longer"};
   for (const auto& times : report.times) {
     if (times.sorted.empty()) continue;
     figure.tables.push_back(longer_than(times));
@@ -174,7 +174,7 @@ Figure live_figure(const LiveReport& report) {
   std::vector<double> log_us;
   for (const double max_length : report.max_interval_s) log_us.push_back(std::log10(1e6 * max_length));
   pieces.add("longest", "1", "log10 of the longest time from tick to tick in us", std::move(log_us));
-  Panel when{"When", "time / s", "log10 of the longest time from tick to tick / us"};
+  Panel when{"When", "time (s)", "log10 of the longest time from tick to tick in us"};
   if (!report.piece_s.empty()) when.curves.push_back({"late", "time", "longest", CurveStyle::line});
   figure.tables.push_back(std::move(pieces));
   figure.panels = {std::move(fractions), std::move(when)};

@@ -87,7 +87,7 @@ TEST(DeviationFigure, HasAtMostEightPanelsInTheTracesOrder) {
   ASSERT_EQ(figure.panels.size(), 8u);  // nine columns differ; "a" does not
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(figure.panels[i].title, names[i + 1]);
-    EXPECT_EQ(figure.panels[i].y_label, "log10 of the deviation / m");
+    EXPECT_EQ(figure.panels[i].y_label, "log10 of the deviation in m");
   }
   EXPECT_TRUE(figure_of(a, a).panels.empty());
 }
