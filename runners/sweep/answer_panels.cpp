@@ -71,10 +71,6 @@ Table table_of_curve(const AnswerTable& answer, std::size_t x, std::vector<std::
   return table;
 }
 
-std::string label_of(const Column& column, const std::string& name) {
-  return column.units == "1" ? name : name + " [" + column.units + "]";
-}
-
 }  // namespace
 
 bool is_of_curve(const Figure& figure, const Table& table) {
@@ -99,9 +95,7 @@ void add_answer_panel(Figure& figure, const AnswerTable& answer) {
   const std::optional<std::size_t> x = axis_of_numbers(answer);
   if (!x) return;
   const Column& axis = answer.table.columns[*x];
-  const auto value = std::find_if(answer.table.columns.begin(), answer.table.columns.end(),
-                                  [&](const Column& column) { return column.name == answer.value; });
-  Panel panel{answer.table.title, label_of(axis, axis.name), label_of(*value, answer.value)};
+  Panel panel{answer.table.title, axis.name, answer.value};
   for (const AnswerCurve& curve : curves_of(answer, *x)) {
     if (curve.rows.size() < 2) continue;
     const std::string name = answer.table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);

@@ -98,6 +98,8 @@ class Figure:
         name = self.attributes.get("figure") or self.name.removeprefix("fig")
         number = f"Equation {name[2:]}" if name.startswith("eq") else f"Figure {name}"
         title = self.attributes.get("title", "")
+        if name == "analysis" and title:  # of a sweep, and no figure with a number
+            return title
         return f"{number}: {title}" if title else number
 
 

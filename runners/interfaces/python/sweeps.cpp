@@ -94,8 +94,7 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const SweepQue
       const FileTurn turn;
       stored = read_stored_sweep(file);
     }
-    answer =
-        sweep_answer(stored.result, question, file.empty() ? title : attribute(stored.attributes, "title"));
+    answer = sweep_answer(stored.result, question, file.empty() ? title : title_of(stored));
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {

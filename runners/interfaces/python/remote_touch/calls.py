@@ -72,7 +72,7 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     if isinstance(sweep, (str, os.PathLike)):
         file = _native(sweep)
     else:
-        parts, title = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("title", ""))
+        parts, title = dataset.parts_of_sweep(sweep), json.loads(sweep.attrs.get("config", "{}")).get("title", "")
     return dataset.of_figure(_core.analyse(file, parts, title, _name(limit), _name(along), _number("above", above),
                                            _number("level", level), _names(mean), _names(by), _names(difference),
                                            _name(between)))
