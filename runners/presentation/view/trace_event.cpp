@@ -29,19 +29,37 @@ void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vect
       events.push_back({i, "pop-through", "The proxy's centre passes behind the true surface."});
 }
 
-void find_force_jump(const ColumnSource& trace, std::vector<TraceEvent>& events) {
-  const auto force_N = values_or_none<double>(trace, "force");
-  double largest = 0;
-  std::size_t tick = 0;
-  for (std::size_t i = 3; i + 2 < force_N.size(); i += 3) {
-    const double jump = std::hypot(force_N[i] - force_N[i - 3], force_N[i + 1] - force_N[i - 2],
-                                   force_N[i + 2] - force_N[i - 1]);
-    if (jump > largest) largest = jump, tick = i / 3;
-  }
-  if (largest == 0) return;
+void find_first_contact(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+  const auto contacts = values_or_none<std::int32_t>(trace, "contact_count");
+  const auto first = std::find_if(contacts.begin(), contacts.end(), [](std::int32_t n) { return n > 0; });
+  if (first != contacts.end())
+    events.push_back({static_cast<std::size_t>(first - contacts.begin()), "first contact",
+                      "The first contact with the measured points."});
+}
+
+std::string text_with(const char* format, double value) {
   char text[80];
-  std::snprintf(text, sizeof text, "The largest force jump, %.3g N in a tick.", largest);
-  events.push_back({tick, "force jump", text});
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+  const auto force_N = values_or_none<double>(trace, "force");
+  double largest_N = 0, largest_jump_N = 0;
+  std::size_t tick = 0, jump_tick = 0;
+  for (std::size_t i = 0; i + 2 < force_N.size(); i += 3) {
+    const double size_N = std::hypot(force_N[i], force_N[i + 1], force_N[i + 2]);
+    if (size_N > largest_N) largest_N = size_N, tick = i / 3;
+    if (i == 0) continue;
+    const double jump_N = std::hypot(force_N[i] - force_N[i - 3], force_N[i + 1] - force_N[i - 2],
+                                     force_N[i + 2] - force_N[i - 1]);
+    if (jump_N > largest_jump_N) largest_jump_N = jump_N, jump_tick = i / 3;
+  }
+  if (largest_jump_N > 0)
+    events.push_back(
+        {jump_tick, "force jump", text_with("The largest force jump, %.3g N in a tick.", largest_jump_N)});
+  if (largest_N > 0)
+    events.push_back({tick, "largest force", text_with("The largest force, %.3g N.", largest_N)});
 }
 
 // exhausted: the value of the column that means that the tick did not converge.
@@ -107,7 +125,8 @@ std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vecto
                                      double held_depth_m) {
   std::vector<TraceEvent> events;
   find_pop_throughs(trace, held_depth_m, events);
-  find_force_jump(trace, events);
+  find_first_contact(trace, events);
+  find_largest_forces(trace, events);
   if (trace.has("budget_exhausted"))
     find_spells(trace, "budget_exhausted", 1, events);
   else

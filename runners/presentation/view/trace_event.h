@@ -10,13 +10,15 @@ namespace remote_touch {
 
 struct TraceEvent {
   std::size_t tick;
-  const char* kind;  // "pop-through", "force jump", "not converged", "task" or "divergence"
+  const char* kind;  // one of the kinds below, or "divergence", see ShownRun
   std::string text;  // sentence for the reader
 };
 
 // Returns the events in the order of their ticks:
 //   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
+//   first contact  the first tick with a contact
 //   force jump     the largest change of the force from one tick to the next
+//   largest force  the first tick with the largest force
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,
 //                  at most 50
 //   task           a step of the task began or ended

@@ -10,8 +10,8 @@ export async function openBrowser(executablePath, args = software) {
   return chromium.launch({ executablePath, args: ["--no-sandbox", "--hide-scrollbars", ...args], timeout: patience });
 }
 
-// A page that is ready, with everything that it complained about or asked from a network.
-export async function openPage(browser, file, options = {}) {
+// A page that is ready, with everything that it complained about or asked from a network. hash: of its address.
+export async function openPage(browser, file, options = {}, hash = "") {
   const context = await browser.newContext({ viewport: { width: 960, height: 540 }, ...options });
   context.setDefaultTimeout(patience);
   const page = await context.newPage(), complaints = [];
@@ -23,7 +23,7 @@ export async function openPage(browser, file, options = {}) {
     if (!/^(file|data|blob):/.test(request.url())) complaints.push(`asked for ${request.url()}`);
   });
   const begin = performance.now();
-  await page.goto(pathToFileURL(file).href);
+  await page.goto(pathToFileURL(file).href + hash);
   await page.waitForSelector("body[data-ready=yes]");
   await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
   const firstPictureS = (performance.now() - begin) / 1000;

@@ -104,7 +104,7 @@ test("keys and buttons", async () => {
     await page.keyboard.press(",");
     assert.equal(await tick(page), 500);
     await goTo(page, 0);
-    const first = await page.evaluate(() => window.remoteTouch.runs[0].stored.events[0].tick);
+    const first = await page.evaluate(() => window.remoteTouch.runs[0].stored.events.find((event) => event.tick > 0).tick);
     await page.keyboard.press("e");
     assert.equal(await tick(page), first);
     await page.keyboard.press(" ");

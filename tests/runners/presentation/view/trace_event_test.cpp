@@ -37,10 +37,17 @@ TEST(TraceEvents, AProxyThatRestsOnTheSurfaceDoesNotPopThroughIt) {
   EXPECT_EQ(trace_events(resting, {}, 0.0025)[0].tick, 4u);
 }
 
-TEST(TraceEvents, HaveTheLargestForceJump) {
+TEST(TraceEvents, HaveTheLargestForceAndTheLargestJump) {
   EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 1, 0, 0, 1, 0, 3, 4, 0, 3, 4, 1}, 3)}),
-            (Texts{"3 force jump"}));
-  EXPECT_EQ(found({column("force", Doubles{0, 1, 0, 0, 1, 0}, 3)}), Texts{}) << "it never changes";
+            (Texts{"3 force jump", "4 largest force"}));
+  EXPECT_EQ(found({column("force", Doubles{0, 1, 0, 0, 1, 0}, 3)}), Texts{"0 largest force"})
+      << "it never changes";
+  EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 0, 0}, 3)}), Texts{});
+}
+
+TEST(TraceEvents, HaveTheFirstContact) {
+  EXPECT_EQ(found({column("contact_count", Integers{0, 0, 2, 0, 1})}), Texts{"2 first contact"});
+  EXPECT_EQ(found({column("contact_count", Integers{0, 0})}), Texts{});
 }
 
 TEST(TraceEvents, HaveTheTicksThatDidNotConverge) {

@@ -5,7 +5,7 @@ import type { Frame, Run } from "./data";
 import { PointsBuffer } from "./points_buffer";
 
 const maxRegions = 3000;
-const near = 0.05; // of the radius: of regions in a cube of this size one is drawn
+const near = 0.2; // of the radius: of regions in a cube of this size one is drawn
 
 // Of the heights, in the numbers of positions.
 function rangeOf(all: Uint16Array[]): [number, number] {
@@ -45,7 +45,7 @@ export class CloudView {
     // pass finds how far away that is, the second one gives it a colour.
     const ball = new THREE.IcosahedronGeometry(1, 1);
     this.regions = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true }), maxRegions);
-    this.tint = new THREE.InstancedMesh(ball, new THREE.MeshStandardMaterial({
+    this.tint = new THREE.InstancedMesh(ball, new THREE.MeshLambertMaterial({
       color: colours.fixture, transparent: true, opacity: 0.3, depthWrite: false,
     }), maxRegions);
     this.tint.instanceMatrix = this.regions.instanceMatrix;

@@ -1,23 +1,45 @@
-// One colour for each thing, in 3-D, plots and legend. Okabe and Ito's palette: told apart by colour-blind people too.
-export const colours = {
-  hip: "#e69f00",
-  proxy: "#0072b2",
-  force: "#d55e00",
-  normal: "#009e73",
-  slave: "#cc79a7",
-  truth: "#56b4e9",
-  velocity: "#882255",
-  fixture: "#cc3311",
-  touching: "#f0e442",
-  guidance: "#f4f4f4",
-  second: "#8d96a0",
+// One colour for each thing, in 3-D, plots and legend: on a dark ground, and where curves are drawn on a light one. Any two of
+// a ground differ also for eyes without red or green cones, and have a contrast of 3:1 to it: tests/system/viewer/colours.mjs.
+export const table = {
+  hip: ["#e9a200", "#c08800"],
+  proxy: ["#5590ee", "#146bab"],
+  force: ["#f57a3a", "#b34c00"],
+  normal: ["#2ba46f", "#00a67c"],
+  slave: ["#f399c4", "#9c3c52"],
+  truth: ["#59b4eb", "#3691ba"],
+  velocity: ["#bb70b2", "#822055"],
+  second: ["#8a8a8e", "#81939f"],
+  fixture: ["#cd4021"], // those of the 3-D view only
+  touching: ["#f0e949"],
+  guidance: ["#f4f4f4"],
 } as const;
 
-// Two of them are too dark for curves on a dark page.
-const onDark: Record<string, string> = { [colours.proxy]: "#4a9fd8", [colours.velocity]: "#d67aa0" };
+type Thing = keyof typeof table;
+export const colours = Object.fromEntries(Object.entries(table).map(([thing, [dark]]) => [thing, dark])) as Record<Thing, string>;
 
-export function curveColour(colour: string): string {
-  return window.matchMedia("(prefers-color-scheme: dark)").matches ? (onDark[colour] ?? colour) : colour;
+// Components along x, y and z, which are curves only.
+export const components = [["#e0525f", "#a81e3c"], ["#7fd06a", "#4f9a2a"], ["#7f8cf7", "#4a55d8"]] as const;
+
+// Kinds of events, on both grounds.
+export const eventColours: Record<string, string> = {
+  "pop-through": "#df225d", divergence: "#7b5bf0", "force jump": "#bf7c00", "largest force": "#c86034", "first contact": "#228f6b",
+  "not converged": "#7f8291", task: "#0088bd",
+};
+
+const onLight = new Map<string, string>([...Object.values(table), ...components].map(([dark, light]) => [dark, light ?? dark]));
+
+export const darkPage = window.matchMedia("(prefers-color-scheme: dark)");
+
+// colour: one for dark grounds.
+export function curveColour(colour: string, isDark = darkPage.matches): string {
+  return isDark ? colour : (onLight.get(colour) ?? colour);
+}
+
+// The colour of the thing that a column of a trace belongs to.
+export function columnColour(name: string): string {
+  const things: [RegExp, Thing][] = [[/^hip/, "hip"], [/force|torque/, "force"], [/normal|contact/, "normal"], [/slave/, "slave"],
+    [/signed_distance/, "truth"], [/velocity/, "velocity"], [/proxy|tool|nearest/, "proxy"]];
+  return colours[things.find(([pattern]) => pattern.test(name))?.[1] ?? "second"];
 }
 
 type Ramp = number[][];

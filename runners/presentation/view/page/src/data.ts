@@ -46,7 +46,8 @@ export class Column {
 
   // kept: a live run overwrites its oldest ticks.
   value(tick: number, part = 0): number {
-    return this.numbers[(tick % this.kept) * this.width + part] ?? Number.NaN;
+    const row = tick < this.kept ? tick : tick % this.kept; // a division for each tick of a plot would take most of its time
+    return this.numbers[row * this.width + part] ?? Number.NaN;
   }
   // Of a vector its length.
   magnitude(tick: number): number {

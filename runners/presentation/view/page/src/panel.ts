@@ -13,8 +13,9 @@ function element(name: string, text = "", className = ""): HTMLElement {
 export const licence = "This page contains three.js, Copyright 2010-2025 three.js authors, MIT licence: https://threejs.org/license";
 
 const keysOfRuns: [string, string][] = [
-  ["space", "play or stop"], [", .", "one tick back or on"], ["left, right", "one frame back or on"], ["e", "next event"],
-  ["- +", "slower or faster"], ["1 2 3", "camera: sensor, side, follow"], ["t", "true surface on or off"],
+  ["space", "play or stop"], [", .", "one tick back or on"], ["left, right", "one frame back or on"], ["e, E", "next or previous event"],
+  ["- +", "slower or faster"], ["z x", "plots: more detail, or more time"], ["[ ]", "plots: earlier or later"], ["0", "plots: the whole run"],
+  ["f", "plots: the time of one frame"], ["1 2 3 4", "camera: sensor, side, follow, across the force"], ["t", "true surface on or off"],
   ["r", "forbidden regions on or off"], ["s", "spheres of the tool on or off"], ["i", "configuration and command"], ["h, ?", "this help"],
 ];
 
@@ -103,7 +104,7 @@ export class Values {
 }
 
 export function helpDialog(): HTMLDialogElement {
-  return keysDialog(keysOfRuns, "Mouse: drag turns, the right button moves, the wheel zooms. A click on a plot goes to that time.");
+  return keysDialog(keysOfRuns, "Scene: drag turns, the right button moves, the wheel zooms. Plots: a click goes to that time, the wheel zooms, a drag moves the time. Touch: two fingers zoom and turn.");
 }
 
 export function keysDialog(keys: [string, string][], more: string): HTMLDialogElement {

@@ -1,9 +1,20 @@
-// Curves over time below each other, with a line at the tick that is shown. A click goes to a tick. Lengths are in mm.
-import { colours, curveColour } from "./colours";
+// Curves over time below each other, with a line at the tick that is shown. Lengths are in mm.
+import { colours, components, curveColour, darkPage, eventColours } from "./colours";
 import type { Column, Run } from "./data";
 import { digits, round125 } from "./data";
+import type { TimeAxis } from "./time_axis";
 
-export interface Curve { column: Column; colour: string; label: string; dashed: boolean }
+// part: of a vector; without it a vector is shown by its length.
+export interface Curve { column: Column; colour: string; label: string; dashed: boolean; part?: number }
+
+// The part of a canvas's context that draws plots: a picture in SVG is drawn by the same calls.
+export type Pen = Pick<CanvasRenderingContext2D, "beginPath" | "moveTo" | "lineTo" | "stroke" | "fillText" | "fillRect" | "setLineDash"
+  | "strokeStyle" | "fillStyle" | "lineWidth" | "font" | "textAlign" | "textBaseline">;
+// Colours of the ground; isDark chooses those of the curves.
+export interface Ink { line: string; quiet: string; isDark: boolean }
+
+// Plots are drawn without the graphics interface: where software does its work, a zoom is six times as fast.
+const plain: CanvasRenderingContext2DSettings = { willReadFrequently: true };
 
 // A unit as it is plotted, how many of them the stored one is, and the least range of an axis: below it changes are those
 // of rounding.
@@ -16,14 +27,23 @@ function unitOf(column: Column): Unit {
   return units[column.unit] ?? { name: column.unit, factor: 1, least: 1e-6 };
 }
 
+// The value of a curve at a tick, in the unit of the plot.
+function valuesOf({ column, part }: Curve): (tick: number) => number {
+  const { factor } = unitOf(column);
+  return part === undefined ? (tick) => factor * column.magnitude(tick) : (tick) => factor * column.value(tick, part);
+}
+
 // The first and last value on the axis and the distance of its ticks.
 function scaleOf(curves: Curve[], begin: number, end: number): [number, number, number] {
   let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
-  for (const curve of curves)
+  for (const curve of curves) {
+    const valueAt = valuesOf(curve);
     for (let tick = begin; tick < end; ++tick) {
-      const value = unitOf(curve.column).factor * curve.column.magnitude(tick);
-      if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+      const value = valueAt(tick);
+      if (value < low && Number.isFinite(value)) low = value;
+      if (value > high && Number.isFinite(value)) high = value;
     }
+  }
   if (!(high >= low)) return [0, 1, 1];
   const { least } = unitOf(curves[0].column);
   if (high - low < least) {
@@ -47,30 +67,25 @@ export class Plot {
   private first = 0; // tick that is drawn
   private isLive = false;
 
-  // goTo: null where a click goes nowhere.
-  constructor(private curves: Curve[], private ticks: number, private readonly rateHz: number, goTo: ((tick: number) => void) | null) {
+  // axis: null where the shown time moves by itself, in a live run.
+  constructor(private curves: Curve[], private ticks: number, private readonly rateHz: number, private readonly axis: TimeAxis | null) {
     this.element.append(this.caption, this.canvas);
+    this.canvas.role = "img";
     this.setCurves(curves);
     new ResizeObserver(() => this.draw()).observe(this.canvas);
-    if (goTo) this.listen(goTo);
-  }
-  private listen(goTo: (tick: number) => void): void {
-    const pick = (event: PointerEvent) => {
-      const box = this.canvas.getBoundingClientRect();
-      goTo(((event.clientX - box.left - this.left) / Math.max(box.width - this.left, 1)) * (this.ticks - 1));
-    };
-    this.canvas.addEventListener("pointerdown", (event) => {
-      this.canvas.setPointerCapture(event.pointerId);
-      pick(event);
-    });
-    this.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 1) pick(event); });
+    axis?.listen(this.canvas, this.left);
+    axis?.onChange(() => this.showAxis(axis));
   }
 
   setCurves(curves: Curve[]): void {
     this.curves = curves;
+    this.canvas.ariaLabel = `${curves.map((curve) => curve.label).join(", ")} over time`;
     this.drawn = false;
     this.scale = scaleOf(curves, this.first, Math.min(this.first + this.ticks, this.last + 1));
     this.draw();
+  }
+  redraw(): void {
+    this.setCurves(this.curves);
   }
   // Other ticks than before, of a run that goes on.
   showWindow(first: number, ticks: number, tick: number): void {
@@ -84,11 +99,20 @@ export class Plot {
     this.tick = tick;
     this.draw();
   }
+  private showAxis(axis: TimeAxis): void {
+    const first = Math.round(axis.first), ticks = Math.round(axis.shown);
+    if (first === this.first && ticks === this.ticks) this.draw(); // another tick is under the pointer
+    else {
+      this.first = first;
+      this.ticks = ticks;
+      this.redraw();
+    }
+  }
 
   // The curves are drawn once, as long as they and the size stay; then only the line at the tick moves.
   private draw(): void {
     const ratio = window.devicePixelRatio, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
-    const pen = this.canvas.getContext("2d");
+    const pen = this.canvas.getContext("2d", plain);
     if (width < 2 || height < 2 || !pen) return;
     if (!this.drawn || this.canvas.width !== Math.round(ratio * width) || this.canvas.height !== Math.round(ratio * height))
       this.drawCurves(ratio, width, height);
@@ -97,12 +121,11 @@ export class Plot {
     pen.drawImage(this.still, 0, 0);
     pen.scale(ratio, ratio);
     pen.strokeStyle = getComputedStyle(document.body).color;
-    pen.lineWidth = 1;
-    const x = this.x(this.tick, width);
-    pen.beginPath();
-    pen.moveTo(x, 0);
-    pen.lineTo(x, height - this.bottom);
-    pen.stroke();
+    for (const [tick, dash] of [[this.tick, []], [this.axis?.hover ?? Number.NaN, [2, 2]]] as [number, number[]][]) {
+      const x = this.x(tick, width);
+      pen.setLineDash(dash);
+      if (x >= this.left) this.line(pen, x, 0, x, height - this.bottom);
+    }
     this.writeCaption();
   }
   private drawCurves(ratio: number, width: number, height: number): void {
@@ -110,12 +133,23 @@ export class Plot {
       canvas.width = Math.round(ratio * width);
       canvas.height = Math.round(ratio * height);
     }
-    const pen = this.still.getContext("2d");
+    const pen = this.still.getContext("2d", plain);
     if (!pen) return;
     pen.scale(ratio, ratio);
-    this.drawAxis(pen, width, height, getComputedStyle(document.body));
-    for (const curve of this.curves) this.drawCurve(pen, curve, width, height);
+    const style = getComputedStyle(document.body);
+    this.drawOn(pen, width, height, { line: style.getPropertyValue("--line"), quiet: style.getPropertyValue("--quiet"), isDark: darkPage.matches });
     this.drawn = true;
+  }
+  // Everything but the line at the tick.
+  drawOn(pen: Pen, width: number, height: number, ink: Ink): void {
+    this.drawAxis(pen, width, height, ink);
+    this.drawMarks(pen, width, height, ink);
+    for (const curve of this.curves) this.drawCurve(pen, curve, width, height, ink);
+    pen.setLineDash([]);
+  }
+  get labels(): { text: string; colour: string }[] {
+    const unit = unitOf(this.curves[0].column).name;
+    return this.curves.map(({ label, colour }) => ({ text: unit ? `${label} (${unit})` : label, colour }));
   }
   // Of a live run no tick after the newest is known.
   private get last(): number {
@@ -128,13 +162,14 @@ export class Plot {
     const [low, high] = this.scale;
     return height - this.bottom - 3 - ((value - low) / (high - low)) * (height - this.bottom - 7);
   }
-  private drawAxis(pen: CanvasRenderingContext2D, width: number, height: number, style: CSSStyleDeclaration): void {
+  private drawAxis(pen: Pen, width: number, height: number, ink: Ink): void {
     const [low, high, step] = this.scale, foot = height - this.bottom, names = this.curves[0]?.column.names ?? [];
     pen.font = "11px system-ui, sans-serif";
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    pen.strokeStyle = style.getPropertyValue("--line");
-    pen.fillStyle = style.getPropertyValue("--quiet");
+    pen.lineWidth = 1;
+    pen.strokeStyle = ink.line;
+    pen.fillStyle = ink.quiet;
     for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) {
       const value = Number((n * step).toPrecision(6)), y = this.y(value, height);
       this.line(pen, this.left, y, width, y);
@@ -142,7 +177,7 @@ export class Plot {
     }
     this.drawTimes(pen, width, foot);
   }
-  private drawTimes(pen: CanvasRenderingContext2D, width: number, foot: number): void {
+  private drawTimes(pen: Pen, width: number, foot: number): void {
     const beginS = this.first / this.rateHz, endS = (this.first + this.ticks - 1) / this.rateHz;
     if (!(endS > beginS)) return;
     const stepS = round125((endS - beginS) / 3);
@@ -153,27 +188,50 @@ export class Plot {
       pen.fillText(`${Number((n * stepS).toPrecision(6))} s`, x, foot + 9);
     }
   }
-  private line(pen: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  private line(pen: Pen, x1: number, y1: number, x2: number, y2: number): void {
     pen.beginPath();
     pen.moveTo(x1, y1);
     pen.lineTo(x2, y2);
     pen.stroke();
   }
-  // Of all ticks in a pixel the smallest and the largest value.
-  private drawCurve(pen: CanvasRenderingContext2D, curve: Curve, width: number, height: number): void {
-    const { factor } = unitOf(curve.column);
-    pen.strokeStyle = curveColour(curve.colour);
+  // New frames, where there is room for them, and events.
+  private drawMarks(pen: Pen, width: number, height: number, ink: Ink): void {
+    if (!this.axis) return;
+    const inside = (tick: number) => tick >= this.first && tick < this.first + this.ticks, foot = height - this.bottom;
+    const frames = this.axis.frames.filter(inside);
+    pen.strokeStyle = ink.quiet;
+    pen.setLineDash([1, 3]);
+    if (frames.length < width / 20) for (const tick of frames) this.line(pen, this.x(tick, width), 0, this.x(tick, width), foot);
+    pen.setLineDash([]);
+    for (const { tick, kind } of this.axis.events) {
+      if (!inside(tick)) continue;
+      const x = this.x(tick, width);
+      pen.strokeStyle = pen.fillStyle = eventColours[kind] ?? ink.quiet;
+      this.line(pen, x, 0, x, foot);
+      pen.fillRect(x - 2.5, 0, 5, 6);
+    }
+  }
+  private drawCurve(pen: Pen, curve: Curve, width: number, height: number, ink: Ink): void {
+    pen.strokeStyle = curveColour(curve.colour, ink.isDark);
     pen.lineWidth = 1.4;
     pen.setLineDash(curve.dashed ? [5, 3] : []);
     pen.beginPath();
+    if (this.ticks > width - this.left) this.addColumns(pen, curve, width, height);
+    else this.addTicks(pen, curve, width, height);
+    pen.stroke();
+  }
+  // The smallest and the largest value of all ticks in each column of pixels.
+  private addColumns(pen: Pen, curve: Curve, width: number, height: number): void {
     const pixels = Math.max(Math.floor(width - this.left), 1), perPixel = this.ticks / pixels;
+    const valueAt = valuesOf(curve);
     let down = false;
     for (let pixel = 0; pixel < pixels; ++pixel) {
       const begin = Math.floor(pixel * perPixel), end = Math.max(Math.floor((pixel + 1) * perPixel), begin + 1);
       let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
       for (let k = begin; k < end && k < this.ticks && this.first + k <= this.last; ++k) {
-        const value = factor * curve.column.magnitude(this.first + k);
-        if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+        const value = valueAt(this.first + k);
+        if (value < low && Number.isFinite(value)) low = value;
+        if (value > high && Number.isFinite(value)) high = value;
       }
       if (!(high >= low)) {
         down = false;
@@ -185,18 +243,41 @@ export class Plot {
       if (high > low) pen.lineTo(x, this.y(high, height));
       down = true;
     }
-    pen.stroke();
   }
+  // Each tick, as a small cross where there is room.
+  private addTicks(pen: Pen, curve: Curve, width: number, height: number): void {
+    const valueAt = valuesOf(curve), room = (width - this.left) / this.ticks > 6;
+    let down = false;
+    for (let tick = this.first; tick < this.first + this.ticks && tick <= this.last; ++tick) {
+      const x = this.x(tick, width), y = this.y(valueAt(tick), height), before = down;
+      down = Number.isFinite(y);
+      if (!down) continue;
+      if (before) pen.lineTo(x, y);
+      else pen.moveTo(x, y);
+      if (!room) continue;
+      pen.moveTo(x, y - 2);
+      pen.lineTo(x, y + 2);
+      pen.moveTo(x, y);
+    }
+  }
+  // The values at the tick under the pointer, or at the tick that is shown.
   private writeCaption(): void {
-    this.caption.replaceChildren(...this.curves.map((curve) => {
-      const part = document.createElement("span"), value = curve.column.magnitude(Math.min(this.tick, this.first + this.ticks - 1));
-      const { name, factor } = unitOf(curve.column);
+    const at = this.axis?.hover ?? this.tick, tick = Math.min(at, this.first + this.ticks - 1);
+    const parts = this.curves.map((curve) => {
+      const part = document.createElement("span"), value = valuesOf(curve)(this.axis ? at : tick);
+      const { name } = unitOf(curve.column);
       part.style.setProperty("--dot", curveColour(curve.colour));
       part.title = curve.column.meaning;
-      const shown = Number.isFinite(value) ? `${digits(Number((factor * value).toPrecision(4)))} ${name}` : digits(value);
+      const shown = Number.isFinite(value) ? `${digits(Number(value.toPrecision(4)))} ${name}` : digits(value);
       part.textContent = `${curve.label} ${curve.column.names[value] ?? shown}`;
       return part;
-    }));
+    });
+    if (this.axis && this.axis.hover !== null) {
+      const where = document.createElement("em");
+      where.textContent = `tick ${at}, ${(at / this.rateHz).toFixed(3)} s`;
+      parts.push(where);
+    }
+    this.caption.replaceChildren(...parts);
   }
 }
 
@@ -212,4 +293,11 @@ export function curvesOf(runs: Run[], name: string, colour: string, label: strin
     const column = run.columns.get(name);
     return column ? [{ column, colour: i === 0 ? colour : colours.second, label: i === 0 ? label : "in run 2", dashed: i > 0 }] : [];
   });
+}
+
+// The components of a vector in one run.
+export function componentCurves(run: Run, name: string, label: string): Curve[] {
+  const column = run.columns.get(name);
+  if (column?.width !== 3) return [];
+  return components.map(([colour], part) => ({ column, colour, label: `${label} ${"xyz"[part]}`, dashed: false, part }));
 }

@@ -1,36 +1,16 @@
 // One run, or two together: picture, plots, time and texts.
+import { Address, type RunPlace } from "./address";
 import { button } from "./button";
-import { colours } from "./colours";
-import { differenceOf, type Run, type RunEvent } from "./data";
+import type { Run } from "./data";
 import { FlatView } from "./flat";
 import { Pace } from "./pace";
 import { aboutDialog, helpDialog, legend, licence, Values, whichIsWhich } from "./panel";
 import { Player } from "./player";
-import { type Curve, curvesOf, forceCurves, Plot } from "./plots";
+import { RunPlots } from "./run_plots";
+import { pictureName, savePng } from "./save";
 import { type CameraPreset, SceneView } from "./scene";
+import { EventList, eventsOf, mostImportant } from "./story";
 import { Timeline } from "./timeline";
-
-// The surface of a recording is what its camera measured. Of a tool the distance is that of its centre.
-function distanceLabel(run: Run): string {
-  const { scenario } = run.stored.configuration as { scenario?: { name?: string } };
-  const surface = ["recording", "live-session"].includes(scenario?.name ?? "") ? "measured surface" : run.truthName;
-  return run.stored.tool ? `tool's centre to the ${surface}` : `distance to the ${surface}`;
-}
-
-function standard(run: Run): [string, string, string][] {
-  return [
-    ["signed_distance", colours.truth, distanceLabel(run)],
-    ["contact_count", colours.normal, "contacts"],
-    ["surface_velocity", colours.velocity, "velocity estimate"],
-  ];
-}
-
-// Of two runs those of both, and whose they are.
-function eventsOf(runs: Run[]): RunEvent[] {
-  if (runs.length === 1) return runs[0].stored.events;
-  return runs.flatMap((run, i) => run.stored.events.map((event) =>
-    event.kind === "divergence" ? event : { ...event, text: `Run ${i + 1}: ${event.text}` })).sort((a, b) => a.tick - b.tick);
-}
 
 function firstTicksOfFrames(run: Run): number[] {
   const frames = run.column("frame_index"), list: number[] = [];
@@ -39,92 +19,75 @@ function firstTicksOfFrames(run: Run): number[] {
   return list;
 }
 
-// A column that is the same in all ticks says nothing.
-function changes(curve: Curve): boolean {
-  const first = curve.column.numbers[0];
-  return curve.column.numbers.some((value) => Number.isFinite(value) && value !== first);
-}
+interface Picture { box: HTMLElement; show: (tick: number) => void; save: (name: string) => void; scene: SceneView | null }
 
-function makePlots(runs: Run[], player: Player): HTMLElement {
-  const box = document.createElement("section");
-  const plotOf = (curves: Curve[]) => new Plot(curves, player.ticks, runs[0].stored.haptic_rate_hz, (tick) => player.go(tick));
-  const standards = standard(runs[0]).map(([name, colour, label]) => curvesOf(runs, name, colour, label));
-  const plots = [forceCurves(runs), ...standards].map((curves) => curves.filter(changes)).filter((curves) => curves.length > 0).map(plotOf);
-  for (const [name, colour] of runs.length === 2 ? [["force", colours.force], ["proxy_position", colours.proxy]] : []) {
-    const column = differenceOf(runs, name);
-    if (column) plots.push(plotOf([{ column, colour, label: column.name, dashed: false }]));
-  }
-  const chosen = plotOf([]), choice = document.createElement("select");
-  for (const name of runs[0].columns.keys()) choice.add(new Option(name, name));
-  const choose = () => chosen.setCurves(curvesOf(runs, choice.value, colours.proxy, choice.value));
-  choice.addEventListener("change", () => {
-    choose();
-    choice.blur(); // keys are for the time
-  });
-  choice.value = "nearest_distance";
-  choose();
-  box.append(...plots.map((plot) => plot.element), choice, chosen.element);
-  for (const plot of [...plots, chosen]) player.onChange(() => plot.show(player.tick));
-  return box;
-}
-
-function makePicture(runs: Run[]): { box: HTMLElement; show: (tick: number) => void; scene: SceneView | null } {
+function makePicture(runs: Run[]): Picture {
   const box = document.createElement("div"), canvas = document.createElement("canvas"), bar = document.createElement("span");
   box.className = "picture";
   bar.className = "bar";
   box.append(canvas, bar);
   try {
     const scene = new SceneView(canvas, bar, runs);
-    return { box, scene, show: (tick) => scene.show(tick) };
+    const save = (name: string) => {
+      scene.draw();
+      savePng(canvas, bar, name);
+    };
+    return { box, scene, save, show: (tick) => scene.show(tick) };
   } catch (error) {
     const note = document.createElement("p");
     note.className = "note";
     note.textContent = `No 3-D here (${(error as Error).message}). From the side instead: x to the right, y up.`;
     const plain = document.createElement("canvas"); // the first may have a context already
+    plain.role = "img";
+    plain.ariaLabel = "the scene from the side: x to the right, y up";
     box.replaceChildren(plain, note);
     const flat = new FlatView(plain, runs);
-    return { box, scene: null, show: (tick) => flat.show(tick) };
+    return { box, scene: null, save: (name) => savePng(plain, null, name), show: (tick) => flat.show(tick) };
   }
 }
 
+const presets: CameraPreset[] = ["sensor", "side", "follow", "across"];
+const meaningOf: Record<CameraPreset, string> = {
+  sensor: "where the sensor is", side: "beside the whole scene", follow: "near the proxy", across: "beside the force, as the page opens",
+};
+
 function cameraButtons(scene: SceneView): HTMLElement[] {
-  return (["sensor", "side", "follow"] as CameraPreset[]).map((preset, i) =>
-    button(preset, `camera (${i + 1})`, () => scene.setCamera(preset)));
+  return presets.map((preset, i) =>
+    button(preset, `camera ${meaningOf[preset]} (${i + 1})`, () => scene.setCamera(preset)));
 }
 
-function listenToKeys(player: Player, timeline: Timeline, scene: SceneView | null, dialogs: Record<string, HTMLDialogElement>,
-  signal: AbortSignal): void {
+// Space presses a button that has the focus, and arrows move a slider that has it: nothing else.
+function isForControl(event: KeyboardEvent): boolean {
+  const { target, key } = event;
+  if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLInputElement) return key !== " ";
+  return key === " " && target instanceof HTMLElement && target.closest("button, summary, a") !== null;
+}
+
+function listenToKeys(player: Player, timeline: Timeline, plots: RunPlots, scene: SceneView | null,
+  dialogs: Record<string, HTMLDialogElement>, signal: AbortSignal): void {
   const hidden = new Set<string>(["spheres"]);
   const toggle = (what: "truth" | "regions" | "spheres") => {
     if (!hidden.delete(what)) hidden.add(what);
     scene?.setVisible(what, !hidden.has(what));
   };
   const acts: Record<string, () => void> = {
-    " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1), e: () => timeline.nextEvent(),
+    " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1),
+    e: () => timeline.goToEvent(1), E: () => timeline.goToEvent(-1),
     ArrowLeft: () => timeline.stepFrame(-1), ArrowRight: () => timeline.stepFrame(1),
     "-": () => timeline.faster(-1), "+": () => timeline.faster(1),
-    1: () => scene?.setCamera("sensor"), 2: () => scene?.setCamera("side"), 3: () => scene?.setCamera("follow"),
+    z: () => plots.zoomIn(), x: () => plots.zoomOut(), "[": () => plots.pan(-0.25), "]": () => plots.pan(0.25),
+    0: () => plots.axis.showAll(), f: () => plots.showFrame(),
     t: () => toggle("truth"), r: () => toggle("regions"), s: () => toggle("spheres"),
     i: () => dialogs.about.showModal(), h: () => dialogs.help.showModal(), "?": () => dialogs.help.showModal(),
   };
+  presets.forEach((preset, i) => { acts[i + 1] = () => scene?.setCamera(preset); });
   document.addEventListener("keydown", (event) => {
     const act = acts[event.key];
-    if (!act || event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLSelectElement || document.querySelector("dialog[open]"))
-      return;
+    if (!act || event.ctrlKey || event.metaKey || event.altKey || isForControl(event) || document.querySelector("dialog[open]")) return;
     event.preventDefault();
     act();
   }, { signal });
-}
-
-// Where two runs part; of one run where the hand begins to feel a good part of the largest force.
-function opensAt(run: Run): number {
-  const divergence = run.stored.events.find((event) => event.kind === "divergence");
-  if (divergence) return divergence.tick;
-  const force = run.column(run.forceName);
-  let largest = 0, tick = 0;
-  for (let i = 0; i < run.ticks; ++i) largest = Math.max(largest, force.magnitude(i) || 0);
-  while (tick < run.ticks - 1 && !(force.magnitude(tick) > 0.4 * largest)) ++tick;
-  return largest > 0 ? tick : 0;
 }
 
 // While it plays, slow graphics draw fewer points; a picture that stands has all of them.
@@ -142,47 +105,84 @@ function keepPace(player: Player, timeline: Timeline, scene: SceneView): void {
   });
 }
 
-// top: shown above the plots. end() takes it off the document.
-export function showRuns(runs: Run[], top: HTMLElement | null, heading = ""): { player: Player; scene: SceneView | null; end: () => void } {
-  const run = runs[0], ended = new AbortController();
+// The page opens at the moment of its address, or else at the most important event; its address follows.
+function listenToAddress(address: Address, player: Player, timeline: Timeline, goToEvent: (tick: number) => void, opensAt: number,
+  signal: AbortSignal): void {
+  const go = (other: number) => {
+    const { tick, problem } = address.read(player.ticks);
+    timeline.tell(problem);
+    goToEvent(tick ?? other);
+  };
+  go(opensAt);
+  window.addEventListener("hashchange", () => go(player.tick), { signal });
+  player.onChange(() => { if (!player.playing) address.show(player.tick); });
+}
+
+export interface Shown { player: Player; scene: SceneView | null; plots: RunPlots; end: () => void }
+
+// top: shown above the plots. place: null where the page has one run, or two together. end() removes all from the document.
+export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", place: RunPlace | null = null): Shown {
+  const run = runs[0], ended = new AbortController(), events = eventsOf(runs), frames = firstTicksOfFrames(run);
   const player = new Player(Math.max(...runs.map((one) => one.ticks)), run.stored.haptic_rate_hz);
-  const timeline = new Timeline(player, eventsOf(runs), firstTicksOfFrames(run),
-    (tick) => run.column("time").value(Math.min(tick, run.ticks - 1)));
   const picture = makePicture(runs), values = new Values(runs);
+  const goToEvent = (tick: number) => {
+    player.step(tick - player.tick);
+    picture.scene?.showEvent(tick);
+  };
+  const timeline = new Timeline(player, events, frames, (tick) => run.column("time").value(Math.min(tick, run.ticks - 1)), goToEvent);
+  const plots = new RunPlots(runs, player, events, frames, ended.signal), list = new EventList(events, goToEvent);
   const dialogs = { help: helpDialog(), about: aboutDialog(runs, licence) };
-  const head = document.createElement("header"), title = document.createElement("h1"), side = document.createElement("aside");
-  title.textContent = title.title = heading || run.stored.title || run.stored.file;
-  head.append(title, ...(picture.scene ? cameraButtons(picture.scene) : []));
-  head.append(button("What is this?", "configuration and command (i)", () => dialogs.about.showModal()),
-    button("Keys", "mouse and keys (h)", () => dialogs.help.showModal()));
-  const details = document.createElement("details"), summary = document.createElement("summary");
-  summary.textContent = "All columns at this tick";
-  details.append(summary, values.element);
-  side.append(...notes(runs), ...(runs.length === 2 ? [whichIsWhich(runs)] : []), legend(runs, picture.scene?.mmPerN ?? 5),
-    ...(top ? [top] : []), makePlots(runs, player), details);
-  runs.forEach((one, i) => {
-    const shown = document.createElement("p");
-    shown.className = "shown";
-    shown.textContent = runs.length === 2 ? `Run ${i + 1}: ${one.stored.shown}` : one.stored.shown;
-    side.append(shown);
-  });
+  const head = headerOf(heading || run.stored.title || run.stored.file, picture, dialogs, () => pictureName(run.stored.file, player.tick, "png"));
+  const side = document.createElement("aside"), details = detailsOf(values, player);
+  side.append(...notes(runs), ...(runs.length === 2 ? [whichIsWhich(runs)] : []), ...(top ? [top] : []), list.element,
+    legend(runs, picture.scene?.mmPerN ?? 5), plots.element, details, ...shownPoints(runs));
   const parts = [head, picture.box, side, timeline.element, dialogs.help, dialogs.about];
   document.body.append(...parts);
   player.onChange(() => {
     picture.show(player.tick);
+    list.show(player.tick);
     if (details.open) values.show(player.tick);
   });
   if (picture.scene) keepPace(player, timeline, picture.scene);
-  details.addEventListener("toggle", () => values.show(player.tick));
-  listenToKeys(player, timeline, picture.scene, dialogs, ended.signal);
-  player.step(opensAt(run));
+  listenToKeys(player, timeline, plots, picture.scene, dialogs, ended.signal);
+  picture.scene?.setCamera("across");
+  const address = new Address(place);
+  listenToAddress(address, player, timeline, goToEvent, mostImportant(events), ended.signal);
   const end = () => {
     player.stop();
+    address.end();
     ended.abort();
     picture.scene?.dispose();
     for (const part of parts) part.remove();
   };
-  return { player, scene: picture.scene, end };
+  return { player, scene: picture.scene, plots, end };
+}
+
+function headerOf(heading: string, picture: Picture, dialogs: Record<string, HTMLDialogElement>, fileName: () => string): HTMLElement {
+  const head = document.createElement("header"), title = document.createElement("h1");
+  title.textContent = title.title = heading;
+  head.append(title, ...(picture.scene ? cameraButtons(picture.scene) : []));
+  head.append(button("Save picture", "the scene as a picture in PNG", () => picture.save(fileName())),
+    button("What is this?", "configuration and command (i)", () => dialogs.about.showModal()),
+    button("Keys", "mouse and keys (h)", () => dialogs.help.showModal()));
+  return head;
+}
+
+function detailsOf(values: Values, player: Player): HTMLDetailsElement {
+  const details = document.createElement("details"), summary = document.createElement("summary");
+  summary.textContent = "All columns at this tick";
+  details.append(summary, values.element);
+  details.addEventListener("toggle", () => values.show(player.tick));
+  return details;
+}
+
+function shownPoints(runs: Run[]): HTMLElement[] {
+  return runs.map((one, i) => {
+    const shown = document.createElement("p");
+    shown.className = "shown";
+    shown.textContent = runs.length === 2 ? `Run ${i + 1}: ${one.stored.shown}` : one.stored.shown;
+    return shown;
+  });
 }
 
 function notes(runs: Run[]): HTMLElement[] {

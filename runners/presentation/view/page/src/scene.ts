@@ -3,14 +3,18 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { CloudView } from "./cloud";
 import { round125, type Run, type Vector } from "./data";
+import { DepthCue } from "./depth_cue";
 import { HandView, longestForce } from "./hand";
 import { TruthView } from "./truth";
+import { acrossForce, distanceOf } from "./viewpoint";
 
-const fullForce = 0.2; // the arrow of the largest force to expect, as a part of the scene
+const fullForce = 0.2; // the arrow of the largest force to expect, as a part of the hand's scale
+const radiiOfHand = 38; // the hand's scale in contact radii: the head of the force's arrow is 0.039 of it, at most 1.5 r_c
+const leastProxyPx = 30; // how wide the proxy is in the view across the force
 const seen = 0.86; // of the picture: what the camera is to see; the rest is for labels
 const labelHeight = 0.022; // where the camera sees 0.7 at a distance of 1
 
-export type CameraPreset = "sensor" | "side" | "follow";
+export type CameraPreset = "sensor" | "side" | "follow" | "across";
 
 function largestForce(runs: Run[]): number {
   let largest = 0;
@@ -38,6 +42,14 @@ function label(text: string): THREE.Sprite {
   return sprite;
 }
 
+// How far a tool reaches from its centre, mm; 0 without one.
+function toolRadius(run: Run): number {
+  const vertices = run.stored.tool ? run.numbers(run.stored.tool.vertices) : [];
+  let reach = 0;
+  for (let i = 0; i + 2 < vertices.length; i += 3) reach = Math.max(reach, Math.hypot(vertices[i], vertices[i + 1], vertices[i + 2]));
+  return 1000 * reach;
+}
+
 export class SceneView {
   readonly clouds: CloudView[];
   readonly mmPerN: number;
@@ -47,9 +59,13 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly hands: HandView[];
   private readonly truths: TruthView[];
+  private readonly cue: DepthCue;
   private readonly labels: THREE.Sprite[] = []; // of the axes
   private readonly middle = new THREE.Vector3();
   private readonly size: number;
+  private readonly handSize: number; // the scale of hand and arrows
+  private readonly proxyMm: number; // radius of proxy or tool
+  private across = false; // the camera sees across the force, and nobody turned it
   private drawing = 0; // the browser's number of the call; 0: none
   private readonly isLive: boolean;
   private tick = 0;
@@ -66,26 +82,36 @@ export class SceneView {
     const box = this.actionBox();
     box.getCenter(this.middle);
     this.size = Math.max(box.getSize(new THREE.Vector3()).length(), 1);
-    this.mmPerN = (fullForce * this.size) / Math.max(fullN || largestForce(runs), 1e-9);
-    this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, 0.005 * this.size));
-    this.hands = runs.map((run, i) => new HandView(run, this.size, this.mmPerN, i > 0));
+    const radius = runs[0].contactRadiusM;
+    this.handSize = radius > 0 && !runs[0].stored.tool && !this.isLive ? Math.min(this.size, radiiOfHand * 1000 * radius) : this.size;
+    this.proxyMm = toolRadius(runs[0]) || 1000 * radius || 0.008 * this.size;
+    this.mmPerN = (fullForce * this.handSize) / Math.max(fullN || largestForce(runs), 1e-9);
+    const pointMm = this.handSize < this.size ? 0.35 * this.proxyMm : 0.005 * this.size;
+    this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, pointMm));
+    this.hands = runs.map((run, i) => new HandView(run, this.handSize, this.mmPerN, i > 0));
     this.truths = runs.slice(0, 1).map((run) => new TruthView(run));
-    for (const part of [...this.truths, ...this.clouds, ...this.hands]) this.scene.add(part.object);
+    this.cue = new DepthCue(runs[0], runs[0].stored.tool ? 0.2 * this.proxyMm : this.proxyMm);
+    for (const part of [...this.truths, ...this.clouds, ...this.hands, this.cue]) this.scene.add(part.object);
     this.light();
     this.scene.add(this.axes());
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.drawSoon());
+    this.controls.addEventListener("start", () => { this.across = false; });
+    canvas.role = "img";
+    canvas.ariaLabel = "3-D view of points, hand, proxy and force";
+    // A finger that moves up or down scrolls the page; two fingers turn and zoom.
+    if (!this.isLive) canvas.style.touchAction = "pan-y";
     this.setCamera(runs[0].stored.sensor ? "sensor" : this.goesFar() ? "follow" : "side");
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
   // How long the arrow of a force is at most, mm.
   get longestMm(): number {
-    return longestForce * this.size;
+    return longestForce * this.handSize;
   }
   show(tick: number): void {
     this.tick = tick;
-    for (const part of [...this.truths, ...this.clouds]) part.show(Math.min(tick, this.runs[0].ticks - 1));
+    for (const part of [...this.truths, ...this.clouds, this.cue]) part.show(Math.min(tick, this.runs[0].ticks - 1));
     this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
     if (this.follows) this.followProxy(tick);
     if (this.isLive) this.draw();
@@ -93,15 +119,18 @@ export class SceneView {
   }
   setCamera(preset: CameraPreset): void {
     const sensor = this.runs[0].stored.sensor;
-    this.follows = preset === "follow";
+    this.across = preset === "across";
+    this.follows = preset === "follow" || this.across;
     this.camera.up.set(0, 1, 0);
-    if (sensor) this.camera.up.set(...sensor.up);
     const away = new THREE.Vector3(0.35, 0.3, 1);
-    if (preset === "sensor" && sensor) away.set(...sensor.forward).multiplyScalar(-1);
-    else if (preset === "sensor") away.set(0, 1, 0.02);
-    else if (sensor) away.set(...this.besides(sensor.forward, sensor.up));
+    if (preset === "sensor" && sensor) {
+      this.camera.up.set(...sensor.up);
+      away.set(...sensor.forward).multiplyScalar(-1);
+    } else if (preset === "sensor") away.set(0, 1, 0.02);
+    else if (sensor) away.copy(this.beside(sensor.forward));
+    if (this.across) away.copy(this.awayFromForce());
     const far = this.distance(away.normalize());
-    this.camera.position.copy(this.middle).addScaledVector(away, this.follows ? 0.5 * far : far);
+    this.camera.position.copy(this.middle).addScaledVector(away, this.across ? this.nearDistance() : this.follows ? 0.5 * far : far);
     this.controls.target.copy(this.middle);
     this.followed.copy(this.middle);
     this.camera.near = 0.005 * far;
@@ -109,6 +138,11 @@ export class SceneView {
     if (this.follows) this.followProxy(this.tick);
     this.resize();
     this.controls.update();
+  }
+  // The tick is shown as the page opens there: across its force, unless somebody has chosen another view.
+  showEvent(tick: number): void {
+    this.tick = tick;
+    if (this.across) this.setCamera("across");
   }
   setVisible(what: "points" | "truth" | "regions" | "spheres" | "axes", visible: boolean): void {
     if (what === "spheres") for (const hand of this.hands) hand.spheresVisible = visible;
@@ -167,10 +201,30 @@ export class SceneView {
     this.showBar();
   }
 
-  // From the side of what the sensor sees.
-  private besides(forward: Vector, up: Vector): Vector {
-    const f = new THREE.Vector3(...forward), side = f.clone().cross(new THREE.Vector3(...up));
-    return side.addScaledVector(f, -0.5).addScaledVector(new THREE.Vector3(...up), 0.35).toArray() as Vector;
+  // From the side of what the sensor sees, and from above.
+  private beside(forward: Vector): THREE.Vector3 {
+    const f = new THREE.Vector3(...forward), up = new THREE.Vector3(0, 1, 0), side = f.clone().cross(up);
+    if (side.length() < 0.2) side.set(1, 0, 0); // it looks down
+    return side.normalize().addScaledVector(f.setY(0), -0.5).addScaledVector(up, 0.35);
+  }
+  private vector(name: string): THREE.Vector3 {
+    const run = this.runs[0], v = run.vector(name, Math.min(this.tick, run.ticks - 1));
+    return v.every(Number.isFinite) ? new THREE.Vector3(...v) : new THREE.Vector3();
+  }
+  private awayFromForce(): THREE.Vector3 {
+    const sensor = this.runs[0].stored.sensor, normal = this.vector("normal").normalize();
+    const force = this.vector(this.runs[0].forceName), along = force.length() > 1e-9 ? force.normalize() : normal;
+    const preferred = sensor ? new THREE.Vector3(...sensor.forward).negate() : new THREE.Vector3(0.35, 0.3, 1).normalize();
+    return acrossForce(along, normal, preferred);
+  }
+  // From where proxy, hand and force are seen together, and the proxy is wide enough.
+  private nearDistance(): number {
+    const arrow = Math.min(this.mmPerN * this.vector(this.runs[0].forceName).length(), this.longestMm);
+    const hand = 1000 * this.vector("hip_position").distanceTo(this.vector("proxy_position"));
+    const least = this.runs[0].stored.tool ? 0 : 5 * this.proxyMm, { clientWidth: width, clientHeight: height } = this.canvas;
+    const radius = 1.2 * (Math.max(hand, arrow, least) + this.proxyMm);
+    const most = distanceOf((this.proxyMm * (height || 480)) / leastProxyPx, this.camera.fov, 1);
+    return Math.min(distanceOf(radius / seen, this.camera.fov, width / height || 1.5), most);
   }
   // The motion of the proxy takes most of the action: from where all of it is seen, the proxy is small.
   private goesFar(): boolean {
@@ -230,8 +284,10 @@ export class SceneView {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height, false);
+    const changed = this.camera.aspect !== width / height;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (changed && this.across) this.setCamera("across");
     this.drawSoon();
   }
   // How long a millimetre is where the camera looks.

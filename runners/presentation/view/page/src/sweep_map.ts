@@ -42,6 +42,8 @@ export class SweepMap {
       });
       return select;
     });
+    this.canvas.role = "img";
+    this.canvas.ariaLabel = `map of a measure over ${stored.axes.map((axis) => axis.name).join(", ")}; the list below it chooses a run`;
     this.canvas.addEventListener("click", (event) => {
       const run = this.runAt(event);
       if (run >= 0) choose(run);

@@ -1,5 +1,6 @@
 // Play, step, speed, and a slider over all ticks with marks where something happened.
 import { button } from "./button";
+import { eventColours } from "./colours";
 import type { RunEvent } from "./data";
 import { digits } from "./data";
 import { type Player, speeds } from "./player";
@@ -16,15 +17,17 @@ export class Timeline {
   private readonly play: HTMLButtonElement;
   private readonly speed = document.createElement("select");
 
-  // frames: the tick with which each frame is first used.
+  // frames: the tick with which each frame is first used. goTo: shows an event.
   constructor(private readonly player: Player, private readonly events: RunEvent[], private readonly frames: number[],
-    private readonly timeS: (tick: number) => number) {
+    private readonly timeS: (tick: number) => number, private readonly goTo: (tick: number) => void) {
     this.slider.type = "range";
     this.slider.min = "0";
     this.slider.max = String(player.ticks - 1);
     this.slider.ariaLabel = "tick";
     this.slider.addEventListener("input", () => player.go(Number(this.slider.value)));
+    this.slider.addEventListener("pointerup", () => this.slider.blur()); // keys are for the time
     this.play = button("Play", "play or stop (space)", () => player.toggle());
+    this.clock.ariaLive = "off";
     this.speed.title = "speed: 1x is real time";
     for (const speed of speeds) this.speed.add(new Option(speedText(speed), String(speed)));
     this.speed.addEventListener("change", () => {
@@ -36,7 +39,8 @@ export class Timeline {
     track.append(this.slider, ...this.marks());
     this.element.append(
       this.play, button("|<", "one tick back (,)", () => player.step(-1)), button(">|", "one tick on (.)", () => player.step(1)),
-      button("Next event", "to the next event (e)", () => this.nextEvent()), this.speed, track, this.note, this.clock);
+      button("Previous event", "to the event before (E)", () => this.goToEvent(-1)),
+      button("Next event", "to the next event (e)", () => this.goToEvent(1)), this.speed, track, this.note, this.clock);
     player.onChange(() => this.show());
     this.show();
   }
@@ -44,9 +48,12 @@ export class Timeline {
   tell(note: string): void {
     this.note.textContent = note;
   }
-  nextEvent(): void {
-    const next = this.events.find((event) => event.tick > this.player.tick) ?? this.events[0];
-    if (next) this.player.step(next.tick - this.player.tick);
+  // The next or the previous event; beyond the last one the first, and the other way round.
+  goToEvent(by: number): void {
+    const now = this.player.tick, { events } = this;
+    const other = by > 0 ? (events.find((event) => event.tick > now) ?? events[0])
+      : (events.findLast((event) => event.tick < now) ?? events.at(-1));
+    if (other) this.goTo(other.tick);
   }
   stepFrame(by: number): void {
     const now = this.player.tick;
@@ -64,11 +71,13 @@ export class Timeline {
       const before = this.events.slice(0, i).filter((other) => other.tick === event.tick).length;
       const mark = document.createElement("button");
       mark.type = "button";
-      mark.className = `mark ${event.kind.replace(" ", "-")}`;
+      mark.className = "mark";
+      mark.tabIndex = -1; // the list of events is for the keyboard
+      mark.style.background = eventColours[event.kind] ?? "";
       mark.title = `tick ${event.tick}: ${event.text}`;
       mark.ariaLabel = mark.title;
       mark.style.left = `calc(${(100 * event.tick) / Math.max(this.player.ticks - 1, 1)}% + ${8 * before}px)`;
-      mark.addEventListener("click", () => this.player.step(event.tick - this.player.tick));
+      mark.addEventListener("click", () => this.goTo(event.tick));
       return mark;
     });
   }
