@@ -148,8 +148,10 @@ export class Plot {
     pen.setLineDash([]);
   }
   get labels(): { text: string; colour: string }[] {
-    const unit = unitOf(this.curves[0].column).name;
-    return this.curves.map(({ label, colour }) => ({ text: unit ? `${label} (${unit})` : label, colour }));
+    return this.curves.map(({ column, label, colour }) => {
+      const { name } = unitOf(column);
+      return { text: name ? `${label} (${name})` : label, colour };
+    });
   }
   // Of a live run no tick after the newest is known.
   private get last(): number {

@@ -5,6 +5,7 @@ import { differenceOf, type Run, type RunEvent } from "./data";
 import type { Player } from "./player";
 import { componentCurves, type Curve, curvesOf, forceCurves, Plot } from "./plots";
 import { pictureName, saveSvg } from "./save";
+import { leastImportantFirst } from "./story";
 import { plotsAsSvg } from "./svg";
 import { TimeAxis } from "./time_axis";
 
@@ -41,7 +42,7 @@ export class RunPlots {
   private readonly plots: Plot[];
 
   constructor(private readonly runs: Run[], private readonly player: Player, events: RunEvent[], frames: number[], signal: AbortSignal) {
-    this.axis = new TimeAxis(player.ticks, events, frames, (tick) => player.go(tick));
+    this.axis = new TimeAxis(player.ticks, leastImportantFirst(events), frames, (tick) => player.go(tick));
     this.plots = standardCurves(runs).map((curves) => this.plotOf(curves));
     const chosen = this.plotOf([]);
     this.element.append(this.buttons(), ...this.plots.map((plot) => plot.element), this.choiceFor(chosen), chosen.element);

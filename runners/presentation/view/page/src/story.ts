@@ -20,6 +20,12 @@ export function mostImportant(events: RunEvent[]): number {
   return 0;
 }
 
+// Where marks lie on each other, the most important one is drawn last.
+export function leastImportantFirst(events: RunEvent[]): RunEvent[] {
+  const rank = (event: RunEvent) => byImportance.indexOf(event.kind);
+  return [...events].sort((a, b) => rank(b) - rank(a));
+}
+
 export class EventList {
   readonly element = document.createElement("section");
   private readonly list = document.createElement("ol");
