@@ -170,34 +170,34 @@ test("the values under the pointer are those of the columns, with components", a
   });
 });
 
-// In processor time of the page and of the graphics, which other programs on the machine do not change much.
-test("plots of 15 000 ticks zoom at 30 pictures a second", async () => {
+// The work for a picture does not grow with the ticks. The time is printed only: it depends on the machine.
+test("plots of 15 000 ticks draw at most two lines a column of pixels", async () => {
   await withPage("long.html", {}, async (page) => {
-    const session = await page.context().newCDPSession(page), whole = await browser.newBrowserCDPSession();
-    await session.send("Performance.enable", { timeDomain: "threadTicks" });
-    const workMs = async () => {
-      const { metrics } = await session.send("Performance.getMetrics"), { processInfo } = await whole.send("SystemInfo.getProcessInfo");
-      return [metrics.find((one) => one.name === "TaskDuration").value, processInfo.find((one) => one.type === "GPU").cpuTime].map((s) => 1000 * s);
-    };
     assert.equal((await axis(page)).ticks, 15000);
-    let best = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
-    for (let series = 0; series < 4; ++series) {
-      const before = await workMs();
-      await page.evaluate(() => new Promise((done) => {
-        let pictures = 0;
-        const next = () => {
-          window.remoteTouch.plots.axis.zoom(pictures < 10 ? 0.95 : 1 / 0.95, 7000);
-          if (++pictures === 20) done();
-          else requestAnimationFrame(next);
-        };
-        next();
-      }));
-      const after = await workMs();
-      best = best.map((ms, k) => Math.min(ms, (after[k] - before[k]) / 20));
-    }
-    const text = `${best[0].toFixed(1)} ms of the page's work for a picture, ${best[1].toFixed(1)} ms of the graphics' work on two cores`;
-    console.log(`zooming plots of 15 000 ticks: ${text}`);
-    assert.ok(best[0] <= 1000 / 30 && best[1] <= 2000 / 30, text);
+    const [mostLines, width, ms] = await page.evaluate(() => new Promise((done) => {
+      let lines = 0, most = 0, pictures = 0;
+      const drawn = CanvasRenderingContext2D.prototype.lineTo;
+      CanvasRenderingContext2D.prototype.lineTo = function (...place) {
+        ++lines;
+        return drawn.apply(this, place);
+      };
+      const begin = performance.now();
+      const next = () => {
+        most = Math.max(most, lines);
+        lines = 0;
+        if (pictures++ === 20) {
+          CanvasRenderingContext2D.prototype.lineTo = drawn;
+          const plots = [...document.querySelectorAll("figure canvas")];
+          done([most, plots.reduce((sum, plot) => sum + plot.clientWidth, 0), (performance.now() - begin) / 20]);
+          return;
+        }
+        window.remoteTouch.plots.axis.zoom(pictures < 10 ? 0.95 : 1 / 0.95, 7000);
+        requestAnimationFrame(next);
+      };
+      next();
+    }));
+    console.log(`zooming plots of 15 000 ticks: ${ms.toFixed(1)} ms a picture`);
+    assert.ok(mostLines > width && mostLines < 10 * width, `${mostLines} lines on plots that are ${width} pixels wide together`);
   });
 });
 
