@@ -26,9 +26,12 @@ RC = {
     "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
 }
 
-COLOURS = {"hip": "#c96a00", "proxy": "#0072b2", "truth": "#2f9e4f", "force": "#a8123a", "points": "#8c8c8c",
-           "limit": "#000000", "estimate": "#8a3ffc", "fixture": "#4a2a10", "measured": "#1b2a83", "region": "#00a0c0"}
-SERIES = ("measured", "region", "fixture", "estimate", "points", "proxy")  # for curves without a known meaning
+# Those of HIP to estimate are those of the viewer on a light ground: runners/presentation/view/page/src/colours.ts.
+COLOURS = {"hip": "#c08800", "proxy": "#146bab", "truth": "#3691ba", "force": "#b34c00", "normal": "#00a67c",
+           "points": "#81939f", "estimate": "#822055", "limit": "#000000", "fixture": "#452700", "measured": "#1b2a83",
+           "region": "#8a3ffc"}
+COMPONENTS = {"x": "#a81e3c", "y": "#4f9a2a", "z": "#4a55d8"}
+SERIES = ("measured", "normal", "fixture", "region", "points", "proxy")  # for curves without a known meaning
 NOTHING_COLOUR = "#d4d4d4"  # cells without a value
 
 # The meaning of a curve, by its label: the first that matches. Without a label: by its quantity.
@@ -37,11 +40,12 @@ OF_LABEL = (
     (r"(proxy|tool|contact point)\b|r_c$", "proxy"),
     (r"force\b", "force"),
     (r"points\b", "points"),
-    (r"normal$|true |truth|surface$|walls$|exact$", "truth"),
+    (r"normal$", "normal"),
+    (r"true |truth|surface$|walls$|exact$", "truth"),
     (r"bound|limit|.*\bprinted\b|r_1 f_c|r_f \+ r_c$|\d+ \(\d|equal$|assigned\b", "limit"),
     (r".*refitted|with scatter|predicted|mean error of v_hat|its standard deviation|derived$|95 % confidence", "estimate"),
     (r"measured|observed|felt$|maximum of|mean$|half survive|ends of the", "measured"),
-    (r"did not pop through", "region"), (r"red\b", "force"), (r"yellow\b", "hip"),
+    (r"did not pop through", "points"), (r"yellow\b", "hip"),
     (r".*region", "fixture"),
 )
 OF_QUANTITY = ((r".*\bforce\b", "force"), (r".*\btorque\b", "fixture"), (r".*\b(proxy|tool|contact point)\b", "proxy"),
@@ -59,11 +63,10 @@ METHODS = {
     "god-object": ("force", 0, 3), "finger-proxy": ("fixture", 0, 5), "penalty": ("points", 0, 4),
     "metaballs-tuned": ("region", 0, 1), "metaballs-wyvill": ("region", 1, 2), "surfels-wendland": ("fixture", 1, 3),
     "tracked-sheet": ("estimate", 0, 0), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
-    "continuous": ("region", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
+    "continuous": ("normal", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
 }
 OTHER_NAMES = {"as printed": "voxels", "proxy of chapter 4": "proxy", "tracked sheet": "tracked-sheet",
                "tracked sheets": "tracked-sheet", "tracked": "tracked-sheet", "penalty method": "penalty"}
-COMPONENTS = {"x": "measured", "y": "region", "z": "fixture"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -109,8 +112,9 @@ def known_look(curve):
     elif method_look(base(curve.label)):
         return method_look(base(curve.label))
     else:
-        component = re.fullmatch(r".*, ([xyz])", curve.label)
-        name = COMPONENTS[component[1]] if component else meaning(base(curve.label), OF_LABEL)
+        if component := re.fullmatch(r"(?:.*, )?([xyz])|roll \((x)\)|red valve", curve.label):
+            return Look(COMPONENTS[component[1] or component[2] or "x"])
+        name = meaning(base(curve.label), OF_LABEL)
     return Look(COLOURS[name]) if name else None
 
 

@@ -13,7 +13,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::uint32_t kToolColour = 0x0072B2, kDeviceColour = 0xC96A00;
+constexpr std::uint32_t kToolColour = 0x146BAB, kDeviceColour = 0xC08800;
 
 std::vector<double> chosen_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen) {
   std::vector<double> kept;
