@@ -1,5 +1,6 @@
 """Draws one panel of a figure: its curves, scales, limits, ticks and labels."""
 import math
+import re
 
 import matplotlib.ticker
 import numpy as np
@@ -16,6 +17,14 @@ def axis_label(label, columns):
     names, units = ({getattr(column, field) for column in columns} for field in ("long_name", "units"))
     label = label or (names.pop() if len(names) == 1 else "")
     return with_unit(label, units.pop() if len(units) == 1 else "")
+
+
+def wrapped_label(label, letters):
+    """The unit stays with the last word, where that leaves room for both."""
+    last = re.search(r"\S+ \([^()]*\)$", label)
+    if last and len(last[0]) <= letters:
+        label = label[:last.start()] + last[0].replace(" ", "\u00a0")
+    return wrapped(label, letters).replace("\u00a0", " ")
 
 
 def asks_for_log(columns):
@@ -176,5 +185,5 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True, title_in=None):
         add_colour_bar(axes, of_map[0], width_in)
     set_ticks(axes.xaxis, axes.get_xlim(), xs, bool(of_map), width_in)
     set_ticks(axes.yaxis, axes.get_ylim(), ys, bool(of_map))
-    axes.set_xlabel(wrapped(axis_label(panel.x_label, xs), letters))
-    axes.set_ylabel(wrapped(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 22))))
+    axes.set_xlabel(wrapped_label(axis_label(panel.x_label, xs), letters))
+    axes.set_ylabel(wrapped_label(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 22))))

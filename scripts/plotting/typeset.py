@@ -6,6 +6,7 @@ import textwrap
 
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
 SYMBOL = re.compile(rf"\b({'|'.join(GREEK)}|[A-Za-z])_([A-Za-z0-9]{{1,3}})\b")
+POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
 UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
 LENGTH = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?) m(?![\w/^·])")
@@ -30,7 +31,7 @@ def typeset(words):
     words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
     words = re.sub(r"(\d) deg\b", r"\1°", words)
-    return re.sub(r"\^\(?(-?\d+)\)?", r"$^{\1}$", words)
+    return POWER.sub(r"$^{\1\2}$", words)
 
 
 def html_symbol(match):
@@ -43,7 +44,7 @@ def typeset_html(words):
     """As a page shows it. No words make another tag than those of symbols."""
     words = SYMBOL.sub(html_symbol, html.escape(str(words), quote=True))
     words = re.sub(rf"\b({'|'.join(GREEK)})\b", lambda match: GREEK[match[1]], words)
-    return re.sub(r"\^\(?(-?\d+)\)?", r"<sup>\1</sup>", words)
+    return POWER.sub(r"<sup>\1\2</sup>", words)
 
 
 def wrapped(words, letters):
