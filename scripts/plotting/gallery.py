@@ -34,9 +34,9 @@ def verdict_words(claims):
     if list(counts) == ["pass"]:
         said = "1 claim holds" if len(words) == 1 else f"all {len(words)} claims hold"
     else:
-        said = f"of {len(words)} claim{'s' * (len(words) > 1)} " + ", ".join(
-            f"{count} {'holds' if word == 'pass' and count == 1 else 'differs' if word == 'differs' and count == 1 else WORDS[word]}"
-            for word, count in counts.items())
+        one = {"pass": "holds", "differs": "differs"}
+        parts = [f"{count} {one.get(word, WORDS[word]) if count == 1 else WORDS[word]}" for word, count in counts.items()]
+        said = f"of {len(words)} claim{'s' * (len(words) > 1)} {', '.join(parts)}"
     return f"<p class={style}>{said}</p>"
 
 

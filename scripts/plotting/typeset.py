@@ -23,15 +23,14 @@ def symbol(match):
 
 def typeset(words):
     """As matplotlib draws it, with mathematics between dollar signs."""
-    words = CONTROL.sub("?", words).replace("$", r"\$")
+    words = POWER.sub(r"$^{\1\2}$", CONTROL.sub("?", words).replace("$", r"\$"))
     words = re.sub(r" - (?=\S)", " \u2212 ", words)
     words = re.sub(r"(?<=[ (])-(?=\d)", "\u2212", words)
     words = re.sub(r"(?<=\w) x (?=\w)", " × ", words)
     words = re.sub(r"\blog10\b", "log$_{10}$", words)
     words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
-    words = re.sub(r"(\d) deg\b", r"\1°", words)
-    return POWER.sub(r"$^{\1\2}$", words)
+    return re.sub(r"(\d) deg\b", r"\1°", words)
 
 
 def html_symbol(match):
