@@ -24,6 +24,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/live/loop/live_inputs.h"
 #include "runners/live/view/live_view.h"
+#include "runners/live/view/redirect_page.h"
 
 namespace remote_touch {
 
@@ -64,18 +65,15 @@ void set_live_signals() {
   std::signal(SIGTSTP, SIG_IGN);
 }
 
-// Writes a page that redirects to the address. Returns its file, or an empty name if it cannot be written.
-// The browser gets this file as its argument and not the address, because the arguments of all processes can
-// be read, and whoever has the address can move the hand.
-std::string redirect_page(const std::string& address) {
-  std::string file = (std::filesystem::temp_directory_path() / "remote-touch-XXXXXX.html").string();
-  const int descriptor = mkstemps(file.data(), 5);  // only this user can read it
-  if (descriptor < 0) return {};
-  const std::string text =
-      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
-  const bool written = write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  close(descriptor);
-  return written ? file : std::string();
+// Returns the folders to try for the page that leads the browser to the address, in order. A browser that is
+// installed as a snap has a temporary folder of its own, but reads files of the home folder whose names do
+// not begin with a dot.
+std::vector<std::filesystem::path> redirect_folders() {
+  std::vector<std::filesystem::path> folders;
+  if (const char* const home = std::getenv("HOME")) folders.emplace_back(home);
+  std::error_code none;
+  if (const auto temporary = std::filesystem::temp_directory_path(none); !none) folders.push_back(temporary);
+  return folders;
 }
 
 void report_no_browser(const std::string& why) {
@@ -83,11 +81,12 @@ void report_no_browser(const std::string& why) {
 }
 
 // Opens the address in the browser of the desktop; Ctrl-C does not end that browser. Without a desktop
-// nothing is opened, and the user reads the printed address. Returns a file that is to be removed at the end,
-// or an empty name. Reports why no browser could be started.
-std::string show_in_browser(const std::string& address) {
+// nothing is opened, and the user reads the printed address. Returns the page that the browser reads. Reports
+// why no browser could be started.
+RedirectPage show_in_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
-  std::string program = "xdg-open", file = redirect_page(address);
+  RedirectPage page(address, redirect_folders());
+  std::string program = "xdg-open", file = page.file();
   if (file.empty()) {
     report_no_browser("its page cannot be written");
     return {};
@@ -100,7 +99,7 @@ std::string show_in_browser(const std::string& address) {
   const int error = posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
   posix_spawnattr_destroy(&own_session);
   if (error != 0) report_no_browser(program + ": " + std::strerror(error));
-  return file;
+  return page;
 }
 
 std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& request,
@@ -112,22 +111,14 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
   return view;
 }
 
-// Prints the address, and opens it in a browser if there is a desktop. Returns the file that redirects to it,
-// or an empty name. If the session has a device other than browser:, the page only shows the run.
-std::string show_address(const LiveView& view, const std::string& device) {
+// Prints the address, and opens it in a browser if there is a desktop. If the session has a device other than
+// browser:, the page only shows the run.
+RedirectPage show_address(const LiveView& view, const std::string& device) {
   std::printf("open this page to see the run%s: %s\n", device == "browser:" ? " and to move the hand" : "",
               view.address().c_str());
   std::fflush(stdout);
   return show_in_browser(view.address());
 }
-
-// Removes the page when the run has ended.
-struct RedirectPage {
-  std::string file;
-  ~RedirectPage() {
-    if (!file.empty()) unlink(file.c_str());
-  }
-};
 
 // Reports while the run continues. A file that cannot be written does not end the run.
 void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
@@ -214,7 +205,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   const auto view = request.view ? open_view(line, request, experiment, options) : nullptr;
   RedirectPage redirect;
   options.on_start = [&] {
-    if (view) redirect.file = show_address(*view, options.device);
+    if (view) redirect = show_address(*view, options.device);
     if (!line.quiet) print_files(request);
   };
   set_live_signals();

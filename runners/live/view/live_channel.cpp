@@ -7,17 +7,20 @@
 namespace remote_touch {
 
 LiveChannel::LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
-                         std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls)
+                         std::shared_ptr<PageHand> hand, std::shared_ptr<LiveControls> controls,
+                         double near_m)
     : rate_hz_(haptic_rate_hz),
       placement_(placement),
       kernels_(kernels),
-      poses_(std::move(poses)),
-      controls_(std::move(controls)) {}
+      hand_(std::move(hand)),
+      controls_(std::move(controls)),
+      near_m_(near_m) {}
 
 // Drops the waiting ticks if there is no memory: a page that lacks some ticks is better than a run that ends.
 void LiveChannel::take(const LiveTick& tick) noexcept {
   if (!is_open_.load(std::memory_order_relaxed)) return;
   const std::lock_guard lock(mutex_);
+  hip_W_ = tick.device.position_W, proxy_W_ = tick.out.proxy_W;
   try {
     if (rows_.length() >= kMaxRows) rows_ = {};
     rows_.append(tick, rate_hz_, placement_);
@@ -39,7 +42,6 @@ void LiveChannel::open(PageRole role, const std::string& trouble) {
   frame_is_new_ = points_ != nullptr;
   sent_columns_ = was_frame_ = false;
   sent_ = acknowledged_ = 0;
-  hand_ = {};
   role_ = role;
   texts_ = {role_message(role)};
   if (!trouble.empty()) texts_.push_back(trouble);
@@ -48,18 +50,18 @@ void LiveChannel::open(PageRole role, const std::string& trouble) {
   is_open_ = true;
 }
 
-// Releases the buttons, because the user can no longer do so.
+// Only the first call releases buttons: another page may have the hand at the next one.
 void LiveChannel::close() {
-  is_open_ = false;
-  if (hand_.buttons == 0) return;
-  hand_.buttons = 0;
-  poses_->back() = hand_;
-  poses_->publish();
+  if (is_open_.exchange(false) && role_ == PageRole::hand) hand_->release_buttons();
 }
 
-void LiveChannel::give_hand() {
-  role_ = PageRole::hand;
-  tell(role_message(role_));
+// A role that still waits to be sent is dropped, so that pages which take the hand from each other cannot
+// fill the queue of a slow page.
+void LiveChannel::set_role(PageRole role) {
+  role_ = role;
+  const std::lock_guard lock(mutex_);
+  for (const PageRole any : {PageRole::hand, PageRole::watches}) std::erase(texts_, role_message(any));
+  texts_.push_back(role_message(role));
 }
 
 void LiveChannel::tell_parameters() {
@@ -93,10 +95,10 @@ bool LiveChannel::receive(std::string_view bytes) {
     acknowledged_ = acknowledged->number;
   } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {
     tell(parameters_message(*controls_, controls_->change(*changes)));
+  } else if (const auto* pose = std::get_if<HandPose>(&*message)) {
+    hand_->move(*pose);
   } else {
-    hand_ = std::get<HandPose>(*message);
-    poses_->back() = hand_;
-    poses_->publish();
+    return false;  // LivePages handles requests for the hand
   }
   return true;
 }
@@ -145,7 +147,17 @@ LiveChannel::Message LiveChannel::tick_message() {
 
 LiveChannel::Message LiveChannel::frame_message_of(const NeighbourSearch& points, std::int32_t index) {
   PointCloud buffer;
-  return {frame_message(points.every_point(kernels_, buffer), index, kMaxPoints, ++sent_), false};
+  return {frame_message(points.every_point(kernels_, buffer), index, {kMaxPoints, near_hand()}, ++sent_),
+          false};
+}
+
+PointsNear LiveChannel::near_hand() {
+  double reach_m = near_m_;
+  for (std::size_t i = 0; i < controls_->parameters().size(); ++i)
+    if (const LiveParameter& p = controls_->parameters()[i]; p.name == "renderer.r1_m" && p.value > 0)
+      reach_m *= controls_->values()[i] / p.value;
+  const std::lock_guard lock(mutex_);
+  return {hip_W_, proxy_W_, reach_m};
 }
 
 }  // namespace remote_touch

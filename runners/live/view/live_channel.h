@@ -13,10 +13,10 @@
 
 #include "core/kernels/kernels.h"
 #include "core/rendering/frame.h"
-#include "runners/live/devices/browser_device.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/servo.h"
 #include "runners/live/view/live_rows.h"
+#include "runners/live/view/page_hand.h"
 #include "runners/live/view/view_messages.h"
 
 namespace remote_touch {
@@ -27,9 +27,10 @@ class LiveChannel {
   static constexpr std::size_t kMaxPoints = 300000;  // most points of a frame
   static constexpr std::uint32_t kMaxInFlight = 2;   // messages that the page has not acknowledged
 
-  // placement: that of the device in the world.
+  // placement: that of the device in the world. near_m: points that are no farther from the HIP or the proxy
+  // are always sent. It grows with the contact radius when the user changes that.
   LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
-              std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls);
+              std::shared_ptr<PageHand> hand, std::shared_ptr<LiveControls> controls, double near_m);
 
   // The threads of the run call these.
   void take(const LiveTick& tick) noexcept;
@@ -39,8 +40,8 @@ class LiveChannel {
   // The server's thread calls both. `trouble`: the newest trouble_message(); empty if there was none yet.
   void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
-  // Gives the hand to the page, which has only watched until now.
-  void give_hand();
+  // Gives the hand to the page, or takes it away, and tells the page so.
+  void set_role(PageRole role);
   // Sends the parameters to the page, because another page has changed them.
   void tell_parameters();
   bool is_open() const { return is_open_; }
@@ -66,16 +67,19 @@ class LiveChannel {
   bool next_text(Message& message);
   Message tick_message();
   Message frame_message_of(const NeighbourSearch& points, std::int32_t index);
+  PointsNear near_hand();
 
   const double rate_hz_;
   const DevicePlacement placement_;
   const Kernels& kernels_;
-  const std::shared_ptr<HandPoses> poses_;
+  const std::shared_ptr<PageHand> hand_;
   const std::shared_ptr<LiveControls> controls_;
+  const double near_m_;
   std::atomic<bool> is_open_ = false;
   std::mutex mutex_;
-  LiveRows rows_;                                  // ticks since the last message
-  std::shared_ptr<const NeighbourSearch> points_;  // points of the newest frame
+  LiveRows rows_;                                       // ticks since the last message
+  Vec3 hip_W_ = Vec3::Zero(), proxy_W_ = Vec3::Zero();  // at the newest tick
+  std::shared_ptr<const NeighbourSearch> points_;       // points of the newest frame
   std::int32_t index_ = 0;
   bool frame_is_new_ = false;
   std::vector<std::string> texts_;  // texts that wait to be sent
@@ -84,7 +88,6 @@ class LiveChannel {
   // Members used only by the server's thread.
   PageRole role_ = PageRole::hand;
   bool sent_columns_ = false, was_frame_ = false;  // was_frame_: the last message was a frame
-  HandPose hand_;                                  // the newest pose
   std::uint32_t sent_ = 0, acknowledged_ = 0;
 };
 

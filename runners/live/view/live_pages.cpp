@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "runners/live/view/page_message.h"
+
 namespace remote_touch {
 
 LivePages::LivePages(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
-                     const std::shared_ptr<HandPoses>& poses, std::shared_ptr<LiveControls> controls)
-    : controls_(std::move(controls)) {
+                     std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls, double near_m)
+    : hand_(std::make_shared<PageHand>(std::move(poses))), controls_(std::move(controls)) {
   for (Page& page : pages_)
-    page.channel = std::make_unique<LiveChannel>(haptic_rate_hz, placement, kernels, poses, controls_);
+    page.channel =
+        std::make_unique<LiveChannel>(haptic_rate_hz, placement, kernels, hand_, controls_, near_m);
 }
 
 void LivePages::take(const LiveTick& tick) noexcept {
+  hand_->take(tick.device);
   for (Page& page : pages_) page.channel->take(tick);
 }
 
@@ -68,6 +72,7 @@ LiveChannel* LivePages::open(std::string_view name) {
       std::find_if(pages_.begin(), pages_.end(), [](const Page& each) { return !each.is_taken; });
   page->name = name, page->came = ++came_;
   const PageRole role = with_hand() ? PageRole::watches : PageRole::hand;
+  if (role == PageRole::hand) hand_->pass_on();
   const std::lock_guard lock(mutex_);
   page->channel->open(role, trouble_);
   page->is_taken = true;
@@ -82,10 +87,20 @@ void LivePages::close(LiveChannel& channel) {
     if (page.channel.get() == &channel) page.is_taken = false;
     if (page.channel->is_open() && (next == nullptr || page.came < next->came)) next = &page;
   }
-  if (next != nullptr && with_hand() == nullptr) next->channel->give_hand();
+  if (next != nullptr && with_hand() == nullptr) give_hand(*next->channel);
+}
+
+bool LivePages::give_hand(LiveChannel& channel) {
+  if (!channel.is_open() || channel.has_hand()) return false;
+  if (Page* const before = with_hand()) before->channel->set_role(PageRole::watches);
+  hand_->pass_on();
+  channel.set_role(PageRole::hand);
+  return true;
 }
 
 bool LivePages::receive(LiveChannel& channel, std::string_view bytes) {
+  if (const auto message = page_message(bytes); message && std::holds_alternative<HandRequest>(*message))
+    return give_hand(channel);
   const std::vector<double> before = controls_->values();
   const bool is_message = channel.receive(bytes);
   if (controls_->values() != before)

@@ -1,10 +1,10 @@
 // The pages that show one live run. LivePages decides which page has the hand, and passes ticks, frames and
 // texts to all of them.
 //
-// The first page has the hand; later pages watch. When the page with the hand closes, the page that has
-// watched longest gets the hand. A page may lose its connection and connect again before the server has
-// noticed the loss. It then replaces its own older connection and keeps the hand. A page that connects later
-// counts as a new page.
+// The first page has the hand; later pages watch, and may request the hand. When the page with the hand
+// closes, the page that has watched longest gets the hand. A page may lose its connection and connect again
+// before the server has noticed the loss. It then replaces its own older connection and keeps the hand. A
+// page that connects later counts as a new page.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class LivePages {
 
   // The same arguments as for LiveChannel.
   LivePages(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
-            const std::shared_ptr<HandPoses>& poses, std::shared_ptr<LiveControls> controls);
+            std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls, double near_m);
 
   // The threads of the run call these.
   void take(const LiveTick& tick) noexcept;
@@ -43,7 +43,9 @@ class LivePages {
   // True if kMax other pages are connected, or if no channel is free. A page that connects again does not
   // count.
   bool is_full(std::string_view page) const;
-  // See LiveChannel::receive(). If the message has changed parameters, the other pages get the new values.
+  // See LiveChannel::receive(). If the message has changed parameters, the other pages get the new values. A
+  // request for the hand from a page that watches is granted, see PageHand::pass_on(); the page that had the
+  // hand watches from then on.
   bool receive(LiveChannel& channel, std::string_view bytes);
 
  private:
@@ -54,7 +56,9 @@ class LivePages {
     std::uint64_t came = 0;  // the order in which the pages came
   };
   Page* with_hand();
+  bool give_hand(LiveChannel& channel);
 
+  const std::shared_ptr<PageHand> hand_;
   const std::shared_ptr<LiveControls> controls_;
   std::array<Page, 2 * kMax> pages_;  // the older connection of each page may still be there
   std::uint64_t came_ = 0;

@@ -11,6 +11,7 @@ void LiveRows::append(const LiveTick& tick, double haptic_rate_hz, const DeviceP
   const Wrench written_W = placement.in_world(tick.written);
   force_N_.insert(force_N_.end(), written_W.force_N.begin(), written_W.force_N.end());
   torque_Nm_.insert(torque_Nm_.end(), written_W.torque_Nm.begin(), written_W.torque_Nm.end());
+  interval_s_.push_back(tick.since_last_tick_s);
   gate_.push_back(static_cast<std::int32_t>(tick.gate));
 }
 
@@ -20,6 +21,7 @@ std::vector<Column> LiveRows::columns() const {
   if (trace_.has_tool())
     list.push_back(
         {"device_torque", "N m", "torque that is sent to the device, world frame", torque_Nm_, 3, {}});
+  list.push_back({"tick_interval", "s", "time since the start of the tick before", interval_s_, 1, {}});
   list.push_back(
       {"gate", "1", "state of the safety gate", gate_, 1, {"waiting", "ramping", "engaged", "latched"}});
   return list;

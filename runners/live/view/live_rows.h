@@ -18,12 +18,13 @@ class LiveRows {
 
   // Returns the columns of the trace, whose force and torque are those that the renderer commands. Adds
   // `device_force` and, for a tool, `device_torque`, which were written to the device after the safety gate.
-  // Adds `gate`, the state of the gate.
+  // Adds `tick_interval`, by which a page counts missed deadlines, and `gate`, the state of the gate.
   std::vector<Column> columns() const;
 
  private:
   Trace trace_;
   std::vector<double> force_N_, torque_Nm_;  // world frame, three numbers a row
+  std::vector<double> interval_s_;
   std::vector<std::int32_t> gate_;
 };
 

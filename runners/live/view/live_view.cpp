@@ -14,6 +14,9 @@ namespace remote_touch {
 namespace {
 
 constexpr const char* kPageSchema = "remote-touch-live/1";
+// The points near the hand: within so many contact radii, or so far from the surface of a tool, or so far
+// from the hand of a renderer that has neither.
+constexpr double kNearRadii = 4, kNearTool_m = 0.01, kNearHand_m = 0.02;
 
 double length_m(const Json& renderer, const char* name) {
   return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
@@ -42,10 +45,12 @@ Json parameters_json(const LiveControls& controls) {
   return list;
 }
 
-std::string page_of(const Experiment& experiment, const LiveViewSource& source, const LiveControls& controls,
-                    const Kernels& kernels) {
+LivePageFile page_of(const Experiment& experiment, const LiveViewSource& source, const LiveControls& controls,
+                     const Kernels& kernels) {
   const Json configuration = parse_json(experiment.to_json(), "the experiment");
   const Json& renderer = configuration["renderer"];
+  const double contact_radius_m = 0.5 * (length_m(renderer, "r1_m") + length_m(renderer, "r2_m"));
+  double near_m = contact_radius_m > 0 ? kNearRadii * contact_radius_m : kNearHand_m;
   PackedArrays numbers;
   Json run{{"file", "live"},
            {"title", configuration.value("title", "")},
@@ -58,13 +63,18 @@ std::string page_of(const Experiment& experiment, const LiveViewSource& source, 
            {"note", ""},
            {"configuration", configuration},
            {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
-           {"contact_radius_m", 0.5 * (length_m(renderer, "r1_m") + length_m(renderer, "r2_m"))},
+           {"contact_radius_m", contact_radius_m},
            {"touch_radius_m", length_m(renderer, "r2_m")}};
   add_start(run, experiment, source, kernels);
   run["parameters"] = parameters_json(controls);
-  if (renderer.contains("tool_mesh")) run["tool"] = json_of(shown_tool(renderer), numbers);
+  if (renderer.contains("tool_mesh")) {
+    const ShownTool tool = shown_tool(renderer);
+    run["tool"] = json_of(tool, numbers);
+    near_m = tool.tool->reach_m + kNearTool_m;
+  }
+  run["near_m"] = near_m;
   const Json page{{"schema", kPageSchema}, {"runs", Json::array()}, {"live", run}};
-  return page_file(configuration.value("title", "live"), page.dump(), numbers.bytes());
+  return {page_file(configuration.value("title", "live"), page.dump(), numbers.bytes()), near_m};
 }
 
 }  // namespace
@@ -74,9 +84,10 @@ LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, c
     : controls_(std::make_shared<LiveControls>(
           experiment, kernels,
           source.depth == "sim:" ? LiveControls::Camera::simulated : LiveControls::Camera::other)),
+      page_(page_of(experiment, source, *controls_, kernels)),
       pages_(experiment.settings().haptic_rate_hz, DevicePlacement(experiment.live()), kernels, poses_,
-             controls_),
-      server_(serve_view(page_of(experiment, source, *controls_, kernels), pages_, port)) {}
+             controls_, page_.near_m),
+      server_(serve_view(std::move(page_.html), pages_, port)) {}
 
 void LiveView::connect(LiveOptions& options) {
   options.poses = poses_;

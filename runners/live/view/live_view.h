@@ -17,6 +17,12 @@ struct LiveViewSource {
   std::string device, depth;  // arguments of --device and --depth
 };
 
+// The page of a run, and the reach of the points near the hand, which it always shows.
+struct LivePageFile {
+  std::string html;
+  double near_m = 0;
+};
+
 class LiveView {
  public:
   // port: see serve_view(). Throws InputError if the experiment's tool cannot be made or the port is not
@@ -34,6 +40,7 @@ class LiveView {
  private:
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_;
+  LivePageFile page_;
   LivePages pages_;
   const std::unique_ptr<ViewServer> server_;
 };

@@ -7,8 +7,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr unsigned char kHand = 1, kAcknowledgement = 2, kChanges = 3;
-constexpr std::size_t kHandSize = 64, kAcknowledgementSize = 8, kChangesHead = 8, kChangeSize = 16;
+constexpr unsigned char kHand = 1, kAcknowledgement = 2, kChanges = 3, kHandRequest = 4;
+constexpr std::size_t kHandSize = 64, kAcknowledgementSize = 8, kChangesHead = 8, kChangeSize = 16,
+                      kHandRequestSize = 8;
 
 template <class T>
 T number_at(std::string_view bytes, std::size_t at) {
@@ -59,6 +60,8 @@ std::optional<PageMessage> page_message(std::string_view bytes) {
     if (const auto pose = hand(bytes)) return *pose;
   if (kind == kChanges)
     if (const auto wanted = changes(bytes)) return *wanted;
+  if (kind == kHandRequest && bytes.size() == kHandRequestSize && number_at<std::uint32_t>(bytes, 4) == 0)
+    return HandRequest();
   return {};
 }
 

@@ -17,7 +17,10 @@ struct PageAcknowledgement {
   std::uint32_t number = 0;
 };
 
-using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges>;
+// The user of the page asks for the hand and the sliders of another page.
+struct HandRequest {};
+
+using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges, HandRequest>;
 
 inline constexpr std::size_t kMaxPageMessage = 8 + 16 * ParameterChanges::kMax;  // bytes
 inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
@@ -27,6 +30,7 @@ inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, alon
 // - An acknowledgement: 2, three bytes 0, number (u32); 8 bytes.
 // - Changes of parameters: 3, three bytes 0, their count (u32); then for each change its parameter (i32),
 //   0 (u32) and value (f64).
+// - A request for the hand: 4, three bytes 0, 0 (u32); 8 bytes.
 // Returns none for anything else, and for a pose that is not finite or too far away, or whose quaternion is
 // not approximately a unit quaternion.
 std::optional<PageMessage> page_message(std::string_view bytes);

@@ -32,15 +32,16 @@ bool is_hash(const Column& column) {
   return std::holds_alternative<std::vector<std::uint64_t>>(column.values);
 }
 
-std::vector<std::uint32_t> shown_of(const PointCloud& cloud, std::size_t max_points, std::size_t& measured) {
+std::vector<std::uint32_t> shown_of(const PointCloud& cloud, const PointLimit& limit, std::size_t& measured) {
   std::vector<std::uint32_t> all;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.is_measured(i)) all.push_back(static_cast<std::uint32_t>(i));
   measured = all.size();
-  const std::size_t every = (all.size() + max_points - 1) / std::max<std::size_t>(max_points, 1);
+  const std::size_t every = (all.size() + limit.max_points - 1) / std::max<std::size_t>(limit.max_points, 1);
   if (every <= 1) return all;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < all.size(); i += every) all[kept++] = all[i];
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i % every == 0 || limit.near.has(cloud.point(all[i]))) all[kept++] = all[i];
   all.resize(kept);
   return all;
 }
@@ -56,6 +57,11 @@ void append_positions(std::string& bytes, const PointCloud& cloud, const std::ve
 }
 
 }  // namespace
+
+bool PointsNear::has(const Vec3& p_W) const {
+  const double squared = reach_m * reach_m;
+  return (p_W - hip_W).squaredNorm() <= squared || (p_W - proxy_W).squaredNorm() <= squared;
+}
 
 std::string columns_message(const std::vector<Column>& columns) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -106,10 +112,10 @@ std::string ticks_message(const std::vector<Column>& columns, std::uint32_t numb
   return bytes;
 }
 
-std::string frame_message(const PointCloud& cloud, std::int32_t index, std::size_t max_points,
+std::string frame_message(const PointCloud& cloud, std::int32_t index, const PointLimit& limit,
                           std::uint32_t number) {
   std::size_t measured = 0;
-  const std::vector<std::uint32_t> points = shown_of(cloud, max_points, measured);
+  const std::vector<std::uint32_t> points = shown_of(cloud, limit, measured);
   BoundingBox box;
   for (const std::uint32_t i : points) box.extend(cloud.point(i));
   const Vec3 corner_W = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.min());

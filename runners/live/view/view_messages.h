@@ -41,7 +41,21 @@ std::string alive_message();
 // kViewProtocol, by which a page recognises a server of another version. ended: why the run has ended; empty
 // while it runs. full: the maximum number of pages is connected.
 std::string state_message(const std::string& ended, bool is_full);
-inline constexpr int kViewProtocol = 2;
+inline constexpr int kViewProtocol = 3;
+
+// The points near the hand, which the user feels and must see: no farther from the HIP or the proxy than
+// reach_m.
+struct PointsNear {
+  Vec3 hip_W = Vec3::Zero(), proxy_W = Vec3::Zero();
+  double reach_m = 0;
+
+  bool has(const Vec3& p_W) const;
+};
+
+struct PointLimit {
+  std::size_t max_points = 0;  // points near the hand may exceed it
+  PointsNear near;
+};
 
 // 1 (u32), number of the message (u32), rows (u32), 0 (u32); then all rows of each column (f64).
 std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number);
@@ -49,9 +63,9 @@ std::string ticks_message(const std::vector<Column>& columns, std::uint32_t numb
 // 2 (u32), number of the message (u32), index of the frame (i32), points (u32), kinds of data after the
 // positions (u32: 1 colours, 2 radii of forbidden regions, 3 both), measured points (u32), step in metres and
 // the corner in metres (f64 x 4): a position is corner + step * number. Then positions (u16 x 3 each),
-// colours (u8 x 3 each) and radii in metres (f32). If the cloud has more than max_points measured points,
-// only every n-th of them is sent.
-std::string frame_message(const PointCloud& cloud, std::int32_t index, std::size_t max_points,
+// colours (u8 x 3 each) and radii in metres (f32). If the cloud has more than limit.max_points measured
+// points, only every n-th of them is sent, but all points near the hand.
+std::string frame_message(const PointCloud& cloud, std::int32_t index, const PointLimit& limit,
                           std::uint32_t number);
 
 }  // namespace remote_touch

@@ -31,6 +31,7 @@
 #include <thread>
 
 #include "runners/live/view/page_message.h"
+#include "runners/live/view/request_check.h"
 #endif
 
 namespace remote_touch {
@@ -92,7 +93,7 @@ class BeastServer final : public ViewServer {
   BeastServer(std::string page, LivePages& pages, int port)
       : page_(std::move(page)), pages_(pages), acceptor_(context_) {
     open(port);
-    host_ = "127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port());
+    port_ = std::to_string(acceptor_.local_endpoint().port());
     asio::co_spawn(context_, accept_all(), asio::detached);
     thread_ = std::thread([this] { context_.run(); });
   }
@@ -104,7 +105,7 @@ class BeastServer final : public ViewServer {
     context_.stop();
     thread_.join();
   }
-  std::string address() const override { return "http://" + host_ + path_; }
+  std::string address() const override { return "http://127.0.0.1:" + port_ + path_; }
   void end(const std::string& why) override {
     pages_.end(why);
     const auto until = std::chrono::steady_clock::now() + kMaxEndWait;
@@ -171,11 +172,11 @@ class BeastServer final : public ViewServer {
     const beast::string_view place = target.substr(0, target.find('?'));
     const bool is_channel = same(place, path_ + "channel");
     if (!is_channel && !same(place, path_ + "state") && !same(target, path_)) return http::status::not_found;
-    if (!is_ours(request[http::field::host])) return http::status::forbidden;
+    if (!is_loopback_host(header(request, http::field::host))) return http::status::forbidden;
     if (request.method() != http::verb::get) return http::status::method_not_allowed;
     if (!is_channel) return http::status::ok;
-    const beast::string_view origin = request[http::field::origin];
-    if (!origin.starts_with("http://") || !is_ours(origin.substr(7))) return http::status::forbidden;
+    if (!is_own_origin(header(request, http::field::origin), header(request, http::field::host)))
+      return http::status::forbidden;
     if (!websocket::is_upgrade(request) || !is_name(name_in(request))) return http::status::bad_request;
     return pages_.is_full(name_in(request)) ? http::status::conflict : http::status::switching_protocols;
   }
@@ -188,8 +189,9 @@ class BeastServer final : public ViewServer {
     return !name.empty() && name.size() <= LivePages::kMaxName &&
            name.find_first_not_of("0123456789abcdef") == std::string::npos;
   }
-  bool is_ours(beast::string_view host) const {
-    return host == host_ || host == "localhost" + host_.substr(host_.find(':'));
+  static std::string_view header(const Request& request, http::field field) {
+    const beast::string_view text = request[field];
+    return {text.data(), text.size()};
   }
 
   asio::awaitable<void> send(beast::tcp_stream& stream, const Request& request, http::status status) {
@@ -207,11 +209,11 @@ class BeastServer final : public ViewServer {
           "Content-Security-Policy",
           "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src 'self' ws://" +
-              host_);
+              std::string(header(request, http::field::host)));
       response.body() = page_;
     } else {
       response.set(http::field::content_type, "text/plain");
-      response.body() = std::string(http::obsolete_reason(status)) + "\n";
+      response.body() = refusal_text(static_cast<unsigned>(status), port_);
     }
     response.keep_alive(false);
     response.prepare_payload();
@@ -297,7 +299,7 @@ class BeastServer final : public ViewServer {
   LivePages& pages_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
-  std::string host_;
+  std::string port_;
   int connections_ = 0;
   std::atomic<int> open_pages_ = 0;  // pages that are connected
   std::thread thread_;

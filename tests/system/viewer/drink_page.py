@@ -9,7 +9,7 @@ import urllib.parse
 place = urllib.parse.urlsplit(sys.argv[1])
 host = f"{place.hostname}:{place.port}"
 link = socket.create_connection((place.hostname, place.port))
-link.sendall(f"GET {place.path}channel HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\n"
+link.sendall(f"GET {place.path}channel?1 HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\n"
              "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode())
 stream = link.makefile("rb")
 assert b" 101 " in stream.readline()

@@ -56,7 +56,10 @@ class LiveChannelTest : public testing::Test {
     settings.device_rotation_deg = Vec3(0, 90, 0);
     return settings;
   }();
-  LiveChannel channel_{kRate_hz, DevicePlacement(placed_), scenes::kernels(), poses_, controls_};
+  static constexpr double kNear_m = 0.02;
+  LiveChannel channel_{kRate_hz,          DevicePlacement(placed_),
+                       scenes::kernels(), std::make_shared<PageHand>(poses_),
+                       controls_,         kNear_m};
 };
 
 TEST_F(LiveChannelTest, SendsTheColumnsAndThenTheTicks) {
@@ -88,6 +91,7 @@ TEST_F(LiveChannelTest, SendsTheForceThatTheDeviceGets) {
   limited.out.force_N = Vec3(0, 19, 0);
   limited.written.force_N = DevicePlacement(placed_).to_device({Vec3(0, 3, 4), Vec3::Zero()}).force_N;
   limited.gate = GateState::engaged;
+  limited.since_last_tick_s = 0.25F;
   channel_.open();
   channel_.take(limited);
   const auto list = nlohmann::json::parse(next().bytes)["columns"];
@@ -102,6 +106,7 @@ TEST_F(LiveChannelTest, SendsTheForceThatTheDeviceGets) {
   ASSERT_EQ(row["device_force"].size(), 3u);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_NEAR(row["device_force"][k], Vec3(0, 3, 4)[static_cast<int>(k)], 1e-12) << "in the world";
+  EXPECT_EQ(row["tick_interval"], std::vector<double>{0.25});
   EXPECT_EQ(row["gate"], std::vector<double>{2});
   EXPECT_EQ(list.back()["names"][2], "engaged");
 }
@@ -147,6 +152,61 @@ TEST_F(LiveChannelTest, ALargeFrameIsThinned) {
   const auto count = number_at<std::uint32_t>(next().bytes, 12);
   EXPECT_LE(count, LiveChannel::kMaxPoints);
   EXPECT_GT(count, LiveChannel::kMaxPoints / 2);
+}
+
+// Returns the number of points of a frame message that are within reach_m of `centre`.
+std::size_t points_within(const std::string& bytes, const Vec3& centre, double reach_m) {
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < number_at<std::uint32_t>(bytes, 12); ++i) {
+    Vec3 point;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      point[static_cast<int>(axis)] =
+          number_at<double>(bytes, 32 + 8 * axis) +
+          number_at<double>(bytes, 24) * number_at<std::uint16_t>(bytes, 56 + 2 * (3 * i + axis));
+    within += (point - centre).norm() <= reach_m ? 1 : 0;
+  }
+  return within;
+}
+
+// A grid of 800 x 800 points, 1 mm apart, of which every third is sent. About the HIP and about the proxy all
+// points within the reach are sent, and the reach grows with the contact radius.
+TEST_F(LiveChannelTest, ALargeFrameKeepsAllPointsNearTheHand) {
+  PointCloud grid;
+  for (int i = 0; i < 800; ++i)
+    for (int k = 0; k < 800; ++k) grid.append(Vec3(0.001 * i, 0, 0.001 * k));
+  const Vec3 hip(0.2, 0, 0.2), proxy(0.5, 0, 0.5), elsewhere(0.2, 0, 0.6);
+  const auto all_within = [&](const Vec3& centre, double reach_m) {
+    std::size_t within = 0;
+    for (std::size_t i = 0; i < grid.size(); ++i)
+      within += (grid.point(i) - centre).norm() < reach_m - 1e-6 ? 1 : 0;
+    return within;
+  };
+  LiveTick now = tick(1);
+  now.device.position_W = hip, now.out.proxy_W = proxy;
+  channel_.take(scenes::frame(grid));
+  channel_.open();
+  channel_.take(now);
+  next();
+  constexpr double kRounding_m = 2e-5;  // of sent positions
+  const std::string bytes = next().bytes;
+  EXPECT_LE(number_at<std::uint32_t>(bytes, 12), LiveChannel::kMaxPoints);
+  for (const Vec3& centre : {hip, proxy})
+    EXPECT_GE(points_within(bytes, centre, kNear_m + kRounding_m), all_within(centre, kNear_m));
+  EXPECT_LT(points_within(bytes, elsewhere, kNear_m), all_within(elsewhere, kNear_m) / 2);
+  EXPECT_LT(points_within(bytes, hip, 2 * kNear_m), all_within(hip, 2 * kNear_m)) << "beyond the reach";
+
+  std::string twice = page_bytes(3, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    twice += change_bytes(static_cast<std::int32_t>(i), 2 * controls_->parameters()[i].value);
+  ASSERT_EQ(controls_->parameters()[0].name, "renderer.r1_m");
+  EXPECT_TRUE(channel_.receive(twice));
+  channel_.take(scenes::frame(grid, 1));
+  acknowledge(1);
+  next();  // the parameters
+  next();  // the tick
+  acknowledge(2);
+  channel_.take(now);
+  EXPECT_GE(points_within(next().bytes, hip, 2 * kNear_m + kRounding_m), all_within(hip, 2 * kNear_m));
 }
 
 TEST_F(LiveChannelTest, APageThatAcknowledgesNothingGetsTwoMessages) {
@@ -218,6 +278,7 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
   EXPECT_FALSE(poses_->take());
   EXPECT_FALSE(channel_.receive("hello"));
   EXPECT_FALSE(channel_.receive(acknowledgement_bytes(1))) << "nothing was sent";
+  EXPECT_FALSE(channel_.receive(hand_request_bytes())) << "LivePages decides who has the hand";
   EXPECT_TRUE(channel_.receive(hand_bytes({0.1, 0.2, 0.3})));
   ASSERT_TRUE(poses_->take());
   EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));

@@ -40,7 +40,7 @@ class LivePagesTest : public testing::Test {
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
       Experiment::load("fig4.12"), scenes::kernels(), LiveControls::Camera::other);
-  LivePages pages_{1000, DevicePlacement(LiveSettings()), scenes::kernels(), poses_, controls_};
+  LivePages pages_{1000, DevicePlacement(LiveSettings()), scenes::kernels(), poses_, controls_, 0.02};
 };
 
 const nlohmann::json kHand = {{"hand", true}}, kWatches = {{"hand", false}};
@@ -53,9 +53,59 @@ TEST_F(LivePagesTest, TheFirstPageHasTheHandAndTheOthersWatch) {
   EXPECT_FALSE(pages_.receive(second, change_to(450)));
   EXPECT_FALSE(poses_->take()) << "the hand is the other page's";
   EXPECT_FALSE(controls_->has_changed());
-  EXPECT_TRUE(pages_.receive(first, hand_at(0.1)));
+  EXPECT_TRUE(pages_.receive(first, hand_at(0.5))) << "where this page begins to count";
+  EXPECT_TRUE(pages_.receive(first, hand_at(0.6)));
   ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().position_W.x(), 0.1);
+  EXPECT_NEAR(poses_->front().position_W.x(), 0.1, 1e-12);
+}
+
+TEST_F(LivePagesTest, APageThatWatchesTakesTheHandOverAndTheOtherWatches) {
+  LiveChannel &first = open("a"), &second = open("b"), &third = open("c");
+  texts(first), texts(second), texts(third);
+  EXPECT_FALSE(pages_.receive(first, hand_request_bytes())) << "it has the hand";
+  EXPECT_TRUE(pages_.receive(second, hand_request_bytes()));
+  EXPECT_EQ(texts(first), std::vector{kWatches});
+  EXPECT_EQ(texts(second), std::vector{kHand});
+  EXPECT_TRUE(texts(third).empty());
+  EXPECT_FALSE(pages_.receive(first, hand_at(0.3)));
+  EXPECT_FALSE(pages_.receive(first, change_to(450)));
+  EXPECT_FALSE(poses_->take());
+  EXPECT_TRUE(pages_.receive(second, hand_at(0.3)));
+  EXPECT_TRUE(pages_.receive(second, change_to(450)));
+  EXPECT_TRUE(pages_.receive(first, hand_request_bytes())) << "and back";
+  EXPECT_TRUE(first.has_hand());
+  EXPECT_FALSE(second.has_hand());
+}
+
+// The first page drags the hand with its button down. The second one believes that the hand is elsewhere.
+TEST_F(LivePagesTest, ATakeOverStopsTheHandWhereTheRunHasIt) {
+  LiveChannel &first = open("a"), &second = open("b");
+  EXPECT_TRUE(pages_.receive(first, hand_at(0)));
+  EXPECT_TRUE(pages_.receive(first, hand_at(0.4, 1)));
+  LiveTick now;
+  now.device.position_W = Vec3(0.1, 0.2, 0.3);
+  pages_.take(now);
+  EXPECT_TRUE(pages_.receive(second, hand_request_bytes()));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3)) << "not on its way to 0.4 m";
+  EXPECT_EQ(poses_->front().buttons, 0u);
+  EXPECT_TRUE(pages_.receive(second, hand_at(-5)));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_NEAR((poses_->front().position_W - Vec3(0.1, 0.2, 0.3)).norm(), 0, 1e-12);
+  EXPECT_TRUE(pages_.receive(second, hand_at(-4.99)));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_NEAR((poses_->front().position_W - Vec3(0.11, 0.2, 0.3)).norm(), 0, 1e-12);
+}
+
+// Two pages that take the hand from each other, and a network that sends nothing.
+TEST_F(LivePagesTest, TakeOversDoNotFillTheQueueOfASlowPage) {
+  LiveChannel &first = open("a"), &second = open("b");
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_TRUE(pages_.receive(second, hand_request_bytes()));
+    EXPECT_TRUE(pages_.receive(first, hand_request_bytes()));
+  }
+  EXPECT_EQ(texts(first), std::vector{kHand}) << "the newest only";
+  EXPECT_EQ(texts(second), std::vector{kWatches});
 }
 
 TEST_F(LivePagesTest, ThePageThatWatchedLongestGetsTheHand) {

@@ -25,6 +25,10 @@ inline std::string acknowledgement_bytes(std::uint32_t number) {
   return page_bytes(2, number);
 }
 
+inline std::string hand_request_bytes() {
+  return page_bytes(4, 0);
+}
+
 // One change of a parameter, as it follows the head page_bytes(3, count).
 inline std::string change_bytes(std::int32_t parameter, double value, std::uint32_t padding = 0) {
   return raw(parameter) + raw(padding) + raw(value);

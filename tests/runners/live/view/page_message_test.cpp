@@ -32,6 +32,14 @@ TEST(PageMessage, AnAcknowledgementIsRead) {
   EXPECT_EQ(std::get<PageAcknowledgement>(*message).number, 4000000000u);
 }
 
+TEST(PageMessage, ARequestForTheHandIsRead) {
+  const auto message = page_message(hand_request_bytes());
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(std::holds_alternative<HandRequest>(*message));
+  EXPECT_FALSE(page_message(page_bytes(4, 1)));
+  EXPECT_FALSE(page_message(hand_request_bytes() + std::string(1, '\0')));
+}
+
 TEST(PageMessage, InvalidPosesAreRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
                    kInfinity = std::numeric_limits<double>::infinity();

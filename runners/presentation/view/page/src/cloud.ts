@@ -28,6 +28,8 @@ export class CloudView {
   touching = 0;
   private readonly buffer = new PointsBuffer();
   private readonly points: THREE.Points;
+  private readonly around = new PointsBuffer(); // all points near the hand, where only some of the others are drawn
+  private tinted: Uint8Array = new Uint8Array();
   private readonly near: THREE.Points;
   private readonly regions: THREE.InstancedMesh;
   private readonly tint: THREE.InstancedMesh;
@@ -39,6 +41,9 @@ export class CloudView {
   constructor(private readonly run: Run, pointMm: number) {
     this.points = new THREE.Points(this.buffer.geometry,
       new THREE.PointsMaterial({ size: pointMm, vertexColors: true }));
+    const around = new THREE.Points(this.around.geometry, this.points.material);
+    around.frustumCulled = false;
+    this.points.add(around);
     this.near = new THREE.Points(new THREE.BufferGeometry(),
       new THREE.PointsMaterial({ size: 2.6 * pointMm, color: colours.touching }));
     // Thousands of balls that overlap would hide everything behind them. Only their nearest surface is drawn: the first
@@ -65,6 +70,11 @@ export class CloudView {
     const frame = this.run.frameAt(tick);
     if (frame !== this.shown) this.showFrame(frame);
     this.showTouching(frame, tick);
+    this.showAround(frame, tick);
+  }
+  // Points that are drawn near the hand, beside the others.
+  get aroundCount(): number {
+    return this.around.count;
   }
   // Points that are drawn.
   pointCount(): number {
@@ -84,7 +94,8 @@ export class CloudView {
     const positions = frame?.positions ?? new Uint16Array(), { low, step } = this.run.grid();
     this.points.position.set(1000 * low[0], 1000 * low[1], 1000 * low[2]);
     this.points.scale.setScalar(1000 * step);
-    this.buffer.set(positions, frame?.colours ?? this.tints(positions));
+    this.tinted = frame?.colours ?? this.tints(positions);
+    this.buffer.set(positions, this.tinted);
     this.showRegions(frame);
   }
   private tints(positions: Uint16Array): Uint8Array {
@@ -122,6 +133,12 @@ export class CloudView {
     found.forEach((x, i) => { this.nearPlaces[i] = 1000 * x; });
     this.near.geometry.setDrawRange(0, this.touching);
     this.near.geometry.getAttribute("position").needsUpdate = true;
+  }
+  private showAround(frame: Frame | undefined, tick: number): void {
+    const near = frame && this.share < 1 ? this.run.nearHand(frame, tick) : [];
+    const three = (from: Uint16Array | Uint8Array) => near.flatMap((i) => [from[3 * i], from[3 * i + 1], from[3 * i + 2]]);
+    if (near.length > 0 || this.around.count > 0)
+      this.around.set(Uint16Array.from(three(frame?.positions ?? new Uint16Array())), Uint8Array.from(three(this.tinted)));
   }
   private makeRoom(points: number): void {
     this.near.geometry.dispose();

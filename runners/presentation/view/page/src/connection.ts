@@ -65,6 +65,7 @@ export class Connection {
     this.timer = 0;
     this.newest = this.acknowledged = 0;
     this.heardMs = performance.now();
+    if (this.attempt === 0) this.listener.state({ kind: "connecting", text: `Connecting to the run at ${location.host}.` });
     socket.binaryType = "arraybuffer";
     socket.addEventListener("message", (event: MessageEvent<string | ArrayBuffer>) => {
       if (socket === this.socket) this.hear(event.data);
@@ -147,6 +148,12 @@ export class Connection {
       view.setInt32(8 + 16 * i, parameter, true);
       view.setFloat64(16 + 16 * i, value, true);
     });
+    this.send(view);
+  }
+  // Asks for the hand and the sliders of another page.
+  takeHand(): void {
+    const view = new DataView(new ArrayBuffer(8));
+    view.setUint8(0, 4);
     this.send(view);
   }
   // What came is shown: the run may send more.

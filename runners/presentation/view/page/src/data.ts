@@ -28,7 +28,7 @@ export interface StoredRun {
 export interface LiveParameter { name: string; meaning: string; value: number; low: number; high: number; is_switch: boolean }
 // Of a run that is going on; what comes later is not in it.
 export type StoredLive = StoredRun & {
-  touch_radius_m: number; start_m: Vector; device: string; depth: string; parameters: LiveParameter[]; protocol: number;
+  touch_radius_m: number; near_m: number; start_m: Vector; device: string; depth: string; parameters: LiveParameter[]; protocol: number;
 };
 
 const kinds = {
@@ -137,6 +137,10 @@ export class Run {
   touching(frame: Frame, tick: number): number[] {
     const k = tick - frame.firstTick;
     return [...frame.touching.subarray(k > 0 ? frame.touchingEnd[k - 1] : 0, frame.touchingEnd[k])];
+  }
+  // Points that are drawn even where graphics are slow. A stored run has none: all its points are drawn when it is stopped.
+  nearHand(_frame: Frame, _tick: number): number[] {
+    return [];
   }
   numbers(packed: Packed): Numbers {
     return unpacked(this.buffer, packed);

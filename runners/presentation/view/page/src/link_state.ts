@@ -4,6 +4,7 @@
 export type Answer = { status: number; protocol?: number; ended?: string; full?: boolean } | "nothing" | "late";
 
 export type LinkKind =
+  | "connecting" // for the first time
   | "open" // messages come
   | "silent" // connected, but nothing comes
   | "lost" // the run goes on, the connection does not

@@ -1,11 +1,13 @@
 // The page of a live run: the scene as it comes, the mouse as the hand.
+import { Banner, missedText, noticesOf } from "./banner";
 import { button } from "./button";
 import { colours } from "./colours";
 import { Connection } from "./connection";
 import type { StoredLive } from "./data";
 import { ForceSound } from "./force_sound";
+import { KeptRange } from "./kept_range";
 import { type LinkState, stateOf } from "./link_state";
-import { type ColumnInfo, LiveRun, type Trouble, whyLimited } from "./live_run";
+import { type ColumnInfo, type Limit, limitOf, LiveRun, type Trouble } from "./live_run";
 import { MouseHand } from "./mouse_hand";
 import { Pace } from "./pace";
 import { aboutDialog, keysDialog, legend, licence, Values } from "./panel";
@@ -14,8 +16,9 @@ import { type CameraPreset, SceneView } from "./scene";
 import { Sliders } from "./sliders";
 
 const keys: [string, string][] = [
-  ["drag", "moves the hand in the plane of the view"], ["wheel, page up and down", "moves it away from you or towards you"],
-  ["w s a d q e", "turn it"], ["b", "the button of the device"], ["right button, or shift and drag", "turns the camera"],
+  ["drag, arrow keys", "moves the hand in the plane of the view"], ["wheel, page up and down", "moves it away from you or towards you"],
+  ["w s a d q e", "turn it"], ["shift with a key or the wheel", "fine steps"], ["alt with a key or the wheel", "coarse steps"],
+  ["b", "the button of the device"], ["right button, or shift and drag", "turns the camera"],
   ["control and wheel", "zooms"], ["1 2 3", "camera: sensor, side, follow"], ["h, ?", "this help"],
 ];
 const plotted: [string, string, string][] = [
@@ -24,6 +27,7 @@ const plotted: [string, string, string][] = [
 ];
 
 const plottedS = 5;
+const watchedS = 5; // for missed deadlines
 
 class LivePage {
   readonly run: LiveRun;
@@ -38,15 +42,19 @@ class LivePage {
   private readonly pace = new Pace();
   private readonly sound = new ForceSound();
   private readonly hint = document.createElement("span");
-  private readonly limited = document.createElement("span"); // why the device gets another force than is commanded
-  private readonly status = document.createElement("span"); // of connection, camera, haptic loop and safety gate
+  private readonly steps = document.createElement("span"); // of keys and wheel
+  private readonly takeOver = button("Take over", "", () => this.connection.takeHand());
+  private readonly banner = new Banner(this.takeOver); // of connection, camera, haptic loop and safety gate
   private readonly startMs = performance.now();
   private mouse: MouseHand | null = null;
   private begun = false;
   private hasHand: boolean | null = null; // null: the run has not said so yet
+  private hadHand = false; // before another page took it over
   private follows = false; // the mouse's hand is where the run has it
   private link: LinkState = { kind: "open", text: "" };
   private trouble: Trouble = { camera: "", force: "" };
+  private limit: Limit | null = null;
+  private missed = "";
   private tickMs = performance.now(); // when ticks came, or the page woke up
   private pictureMs = performance.now();
 
@@ -55,7 +63,7 @@ class LivePage {
     const box = document.createElement("div"), canvas = document.createElement("canvas"), bar = document.createElement("span");
     box.className = "picture";
     bar.className = "bar";
-    box.append(canvas, bar);
+    box.append(canvas, bar, this.banner.element);
     document.body.append(box);
     this.scene = new SceneView(canvas, bar, [this.run], 5);
     if (this.isHand) this.scene.leaveLeftButtonAndWheel();
@@ -63,7 +71,11 @@ class LivePage {
     this.values = new Values([this.run]);
     this.sliders = new Sliders(stored.parameters, (changes) => this.connection.change(changes));
     const curves = [forceCurves([this.run]), ...plotted.map(([name, colour, label]) => curvesOf([this.run], name, colour, label))];
-    this.plots = curves.map((some) => new Plot(some, 0, stored.haptic_rate_hz, null));
+    this.plots = curves.map((some) => {
+      const plot = new Plot(some, 0, stored.haptic_rate_hz, null), range = new KeptRange();
+      plot.rangeFor = (seen) => range.of(seen, performance.now());
+      return plot;
+    });
     this.layOut(canvas);
     requestAnimationFrame(this.picture);
   }
@@ -87,12 +99,17 @@ class LivePage {
   takeTicks(view: DataView): void {
     this.run.takeTicks(view);
     this.tickMs = performance.now();
-    if (this.follows || !this.begun) return;
-    this.mouse?.start(this.run.vector("hip_position", this.run.ticks - 1), this.orientation(this.run.ticks - 1));
+    if (!this.follows && this.begun) this.follow();
+  }
+  // The mouse's hand begins where the run has it.
+  private follow(): void {
+    const tick = this.run.ticks - 1;
     this.follows = true;
     this.showState();
+    this.mouse?.start(this.run.vector("hip_position", tick), this.orientation(tick));
   }
   showHand(has: boolean): void {
+    this.hadHand = this.hasHand === true && !has;
     this.hasHand = has;
     this.follows = false;
     this.showState();
@@ -104,7 +121,7 @@ class LivePage {
   showLink(link: LinkState): void {
     if (link.kind === this.link.kind && link.text === this.link.text) return;
     this.link = link;
-    if (link.kind !== "open") this.follows = false;
+    if (link.kind !== "open" && link.kind !== "silent") this.follows = false;
     this.showState();
   }
   private get isLive(): boolean {
@@ -114,24 +131,28 @@ class LivePage {
     const mayAct = this.isLive && this.hasHand === true;
     if (this.mouse) this.mouse.isActive = mayAct && this.follows;
     this.sliders.enable(mayAct);
-    this.hint.textContent = this.isLive ? this.whoseHand() : "";
+    this.hint.textContent = this.isLive ? this.howToAct() : "";
+    this.steps.hidden = !mayAct || !this.mouse;
     this.showStatus();
   }
-  private whoseHand(): string {
-    if (this.hasHand === null) return "";
-    if (this.isHand && !this.hasHand) return "Another page controls the hand. This page only watches, and controls the hand when that page is closed. ";
-    if (this.isHand) return this.begun ? "Drag to move the hand, turn the wheel to push it. " : "";
-    const sliders = this.hasHand || this.run.stored.parameters.length === 0 ? "" : "Another page controls the sliders. This page controls them when that page is closed. ";
-    return `The hand is ${this.run.stored.device}. ${sliders}`;
+  private howToAct(): string {
+    if (!this.isHand) return `The hand is ${this.run.stored.device}.`;
+    return this.hasHand && this.begun ? "Drag to move the hand, turn the wheel to push it." : "";
+  }
+  // Empty: this page, or there is nothing to act on.
+  private whoActs(): string {
+    const what = this.isHand ? "hand" : "sliders", it = this.isHand ? "it" : "them";
+    if (this.hasHand !== false || (!this.isHand && this.run.stored.parameters.length === 0)) return "";
+    this.takeOver.textContent = `Take over the ${what}`;
+    this.takeOver.title = `this page controls the ${what}, and the other page watches`;
+    return this.hadHand ? `Another page has taken over the ${what}. This page only watches now.`
+      : `Another page controls the ${what}. This page only watches, and controls ${it} when that page is closed.`;
   }
   private showStatus(): void {
-    const sentence = (text: string) => text && `${text[0].toUpperCase()}${text.slice(1)}. `;
-    const silentS = (performance.now() - this.tickMs) / 1000;
-    const ticks = silentS > 1 ? `No tick has arrived for ${silentS.toFixed(0)} s: the picture is the last one. ` : "";
-    const last = this.link.kind === "ended" ? " The picture is its last one." : "";
-    this.status.textContent = this.isLive
-      ? ticks + sentence(this.trouble.camera) + sentence(this.trouble.force && `force is off: ${this.trouble.force}`) : this.link.text + last;
-    this.status.hidden = this.status.textContent === "";
+    this.banner.show(noticesOf({
+      link: this.link, trouble: this.trouble, limit: this.limit, missed: this.missed, whoActs: this.whoActs(),
+      silentS: (performance.now() - this.tickMs) / 1000,
+    }), this.isLive);
   }
 
   private layOut(canvas: HTMLCanvasElement): void {
@@ -152,9 +173,8 @@ class LivePage {
     side.append(legend([this.run], this.scene.mmPerN, this.scene.longestMm), ...this.plots.map((plot) => plot.element));
     if (this.run.stored.parameters.length > 0) side.append(this.sliders.element);
     side.append(details);
-    this.limited.className = "warning limited";
-    this.status.className = "warning status";
-    foot.append(this.hint, this.status, this.limited, this.clock);
+    this.steps.className = "steps";
+    foot.append(this.hint, this.steps, this.clock);
     this.showState();
     document.body.append(head, side, foot, about, help);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -175,17 +195,16 @@ class LivePage {
       this.showStatus();
       return;
     }
-    if (!this.begun && this.run.frameCount > 0) this.begin(tick);
+    if (!this.begun && this.run.frameCount > 0) this.begin();
     this.scene.show(tick);
     ++this.pictures;
     this.sound.show(this.isLive ? this.run.column(this.run.forceName).magnitude(tick) : 0);
     if (this.pictures % 4 === 0) this.showTexts(tick);
   };
-  private begin(tick: number): void {
-    const hip = this.run.vector("hip_position", tick);
-    if (this.isHand) this.mouse = new MouseHand(this.scene, this.canvas, hip, this.orientation(tick), (pose) => this.connection.move(pose));
-    this.begun = this.follows = true;
-    this.showState();
+  private begin(): void {
+    if (this.isHand) this.mouse = new MouseHand(this.scene, this.canvas, (pose) => this.connection.move(pose));
+    this.begun = true;
+    this.follow();
     document.body.dataset.ready = "yes";
   }
   private orientation(tick: number): number[] {
@@ -195,11 +214,12 @@ class LivePage {
     const shown = Math.round(plottedS * this.run.stored.haptic_rate_hz);
     for (const plot of this.plots) plot.showWindow(Math.max(0, tick + 1 - shown), shown, tick);
     if (this.details.open) this.values.show(tick);
+    this.limit = limitOf(this.run, tick);
+    this.missed = missedText(this.run, tick, watchedS);
     this.showStatus();
-    this.limited.textContent = this.isLive ? whyLimited(this.run, tick, this.trouble) : "";
-    this.limited.hidden = this.limited.textContent === "";
+    this.steps.textContent = this.mouse?.stepText ?? "";
     const seconds = (performance.now() - this.startMs) / 1000, time = `${this.run.column("time").value(tick).toFixed(1)} s`;
-    const thinned = this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn` : "";
+    const thinned = this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn, and all near the hand` : "";
     this.clock.textContent = this.isLive ? `${time}, ${(this.pictures / seconds).toFixed(0)} pictures/s${thinned}` : `last tick: ${time}`;
   }
 }
@@ -227,7 +247,7 @@ export function showLive(stored: StoredLive, buffer: ArrayBuffer): void {
         showText(`No 3-D here, which a live run needs: ${(error as Error).message}`);
         return;
       }
-      Object.assign(window, { remoteTouch: { page, run: page.run, scene: page.scene, connection, stateOf } });
+      Object.assign(window, { remoteTouch: { page, run: page.run, scene: page.scene, connection, stateOf, KeptRange } });
     },
     parameters: (values, refused) => page?.showParameters(values, refused),
     ticks: (view) => page?.takeTicks(view),

@@ -8,18 +8,37 @@ export interface ColumnInfo { name: string; unit: string; meaning: string; width
 // Texts about camera and force that do not work while the run goes on; empty: they work. The server sends both at every change.
 export interface Trouble { camera: string; force: string }
 
-// Why the device gets another force than the renderer commands; empty: it gets that, or the trouble says why.
-export function whyLimited(run: Run, tick: number, trouble: Trouble): string {
-  if (trouble.force) return "";
+// A statement about the force that the safety gate passes. gate: it passes none; limited: it passes less than is commanded.
+export interface Limit { kind: "gate" | "limited"; text: string }
+
+// Why the device gets another force than the renderer commands; null: it gets that.
+export function limitOf(run: Run, tick: number): Limit | null {
   const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
   const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);
-  if (!(apart > 0.01 * size(commanded) + 0.01)) return "";
+  if (!(apart > 0.01 * size(commanded) + 0.01)) return null;
   const newtons = (v: Vector) => `${digits(Number(size(v).toPrecision(3)))} N`, gate = run.column("gate").text(tick);
+  if (gate === "latched") return { kind: "gate", text: "Force is off: the safety gate has switched it off." };
+  if (gate === "waiting" && size(sent) < 0.01)
+    return { kind: "gate", text: `Force is off: the safety gate passes none of ${newtons(commanded)} until the hand is free. Move it out of the surface.` };
   const why = ({
-    waiting: "the force begins when the hand is free", ramping: "the force begins slowly", engaged: "limited for safety, or to what the device can do",
-    latched: "the safety gate has switched the force off",
+    waiting: "the safety gate lets it fall to zero, until the hand is free", ramping: "the force begins slowly",
+    engaged: "limited for safety, or to what the device can do",
   } as Record<string, string>)[gate];
-  return `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}. `;
+  return { kind: "limited", text: `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}.` };
+}
+
+// Of the ticks of the newest seconds. missed: ticks that the haptic loop left out, because it was too late for them.
+export function missedDeadlines(run: Run, tick: number, seconds: number): { missed: number; ticks: number; longestS: number } {
+  const interval = run.column("tick_interval"), rate = run.stored.haptic_rate_hz;
+  const first = Math.max(0, tick + 1 - Math.round(seconds * rate));
+  let missed = 0, longestS = 0;
+  for (let i = first; i <= tick; ++i) {
+    const s = interval.value(i);
+    if (!(s > 0)) continue;
+    missed += Math.max(Math.round(s * rate) - 1, 0);
+    longestS = Math.max(longestS, s);
+  }
+  return { missed, ticks: tick + 1 - first, longestS };
 }
 
 // Its ticks are numbered from the first that came; those before the last keptS seconds are gone.
@@ -70,10 +89,18 @@ export class LiveRun extends Run {
   }
   // Those of the newest frame within the contact radius and the region of the point; of a tool they are not known.
   override touching(frame: Frame, tick: number): number[] {
-    const near: number[] = [], proxy = this.vector("proxy_position", tick);
-    if (!(this.touchRadiusM > 0) || !proxy.every(Number.isFinite)) return near;
-    const { positions: p, fixtureRadiusM: radii } = frame, c = proxy.map((x, k) => (x - this.corner[k]) / this.step);
-    const reach = this.touchRadiusM / this.step;
+    if (!(this.touchRadiusM > 0)) return [];
+    return this.within(frame, this.vector("proxy_position", tick), this.touchRadiusM, frame.fixtureRadiusM);
+  }
+  // Those of the newest frame within near_m of the HIP or the proxy, which grows with the contact radius.
+  override nearHand(frame: Frame, tick: number): number[] {
+    const { near_m, contact_radius_m } = this.stored, reach = contact_radius_m > 0 ? (near_m * this.contactRadiusM) / contact_radius_m : near_m;
+    const around = ["proxy_position", "hip_position"].flatMap((name) => this.within(frame, this.vector(name, tick), reach, null));
+    return [...new Set(around)];
+  }
+  private within(frame: Frame, centre: Vector, reachM: number, radii: Float32Array | null): number[] {
+    const near: number[] = [], p = frame.positions, c = centre.map((x, k) => (x - this.corner[k]) / this.step), reach = reachM / this.step;
+    if (!centre.every(Number.isFinite)) return near;
     for (let i = 0; i < p.length / 3; ++i) {
       const r = radii ? reach + radii[i] / this.step : reach, dx = p[3 * i] - c[0], dy = p[3 * i + 1] - c[1], dz = p[3 * i + 2] - c[2];
       if (dx * dx + dy * dy + dz * dz <= r * r) near.push(i);

@@ -66,6 +66,7 @@ export class Plot {
   private tick = 0;
   private first = 0; // tick that is drawn
   private isLive = false;
+  rangeFor = (seen: [number, number, number]): [number, number, number] => seen; // a live run keeps its range
 
   // axis: null where the shown time moves by itself, in a live run.
   constructor(private curves: Curve[], private ticks: number, private readonly rateHz: number, private readonly axis: TimeAxis | null) {
@@ -81,7 +82,7 @@ export class Plot {
     this.curves = curves;
     this.canvas.ariaLabel = `${curves.map((curve) => curve.label).join(", ")} over time`;
     this.drawn = false;
-    this.scale = scaleOf(curves, this.first, Math.min(this.first + this.ticks, this.last + 1));
+    this.scale = this.rangeFor(scaleOf(curves, this.first, Math.min(this.first + this.ticks, this.last + 1)));
     this.draw();
   }
   redraw(): void {
