@@ -1,4 +1,4 @@
-// When something first happened in a run. Each event has its time, s, and its tick; NaN if it did not happen.
+// Time, s, and tick of events in a run; NaN if the event did not happen.
 #pragma once
 
 namespace remote_touch {
@@ -9,7 +9,8 @@ struct Trace;
 double first_contact_tick(const Trace& trace);
 double first_contact_time_s(const Trace& trace);
 // The first tick in which the proxy's centre (with a tool its centre of mass) passes through the true surface
-// to its back, see surface_side.h. It may have come back later: popped_through() asks where it ended.
+// to its back, see surface_side.h. It may come back later; popped_through() considers only the last
+// tick.
 double first_pop_through_tick(const Trace& trace);
 double first_pop_through_time_s(const Trace& trace);
 // The time of max_force_jump_tick(), see force_change_measures.h.

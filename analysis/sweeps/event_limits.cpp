@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
 
-enum class Place : std::int32_t { inside, below_the_first, above_the_last, no_runs };
+enum class Place : std::int32_t { inside, below_the_first, above_the_last, other_direction, no_runs };
 const std::vector<std::string> kPlaceNames = {"inside", "below the first value", "above the last value",
-                                              "no runs"};
+                                              "changes the other way", "no runs"};
 
 // The counts of one group of cells, in increasing order of the axis.
 struct Counts {
@@ -46,15 +46,24 @@ Counts counts_of(const SweepResult& result, const LimitQuestion& question, const
   return counts;
 }
 
-// Covariance of the share of events with the place on the axis, summed over a group.
+// Covariance of the share of events with the index on the axis, times the number of runs.
 double slope(const Counts& counts) {
-  double runs = 0, events = 0, places = 0, products = 0;
+  double runs = 0, events = 0, indices = 0, products = 0;
   for (std::size_t i = 0; i < counts.x.size(); ++i) {
-    const auto place = static_cast<double>(i);
+    const auto index = static_cast<double>(i);
     runs += counts.runs[i], events += counts.tallies[i].events;
-    places += counts.runs[i] * place, products += counts.tallies[i].events * place;
+    indices += counts.runs[i] * index, products += counts.tallies[i].events * index;
   }
-  return runs > 0 ? products - events * places / runs : 0;
+  return runs > 0 ? products - events * indices / runs : 0;
+}
+
+// True if the share of events at one end of the axis is clearly on the wrong side of that at the other end:
+// their intervals do not overlap.
+bool changes_the_other_way(const Counts& counts, bool rises) {
+  if (counts.tallies.empty()) return false;
+  const Tally &first = counts.tallies.front(), &last = counts.tallies.back();
+  const Tally &less = rises ? last : first, &more = rises ? first : last;
+  return wilson_interval(less.events, less.runs).second < wilson_interval(more.events, more.runs).first;
 }
 
 struct Crossing {
@@ -62,10 +71,10 @@ struct Crossing {
   Place place = Place::no_runs;
 };
 
-// A rising share of events is a falling share of runs without the event.
-Crossing crossing_of(const Counts& counts, const std::vector<double>& shares, double level) {
-  if (shares.empty()) return {};
-  const std::vector<double> falling = isotonic_falling(shares, counts.runs);
+// Where the falling curve that is nearest to the values crosses the level.
+Crossing crossing_of(const Counts& counts, const std::vector<double>& values, double level) {
+  if (values.empty()) return {};
+  const std::vector<double> falling = isotonic_falling(values, counts.runs);
   if (falling.front() < level) return {kOutside, Place::below_the_first};
   if (falling.back() > level) return {kOutside, Place::above_the_last};
   return {crossing(counts.x, falling, level), Place::inside};
@@ -75,16 +84,18 @@ struct Limit {
   Crossing best, low, high;
 };
 
+// A rising share is a falling share with the other sign, so that no share is rounded.
 Limit limit_of(const Counts& counts, bool rises, double level) {
+  const double sign = rises ? -1 : 1;
   std::vector<double> shares, low, high;
   for (const Tally& t : counts.tallies) {
-    const int counted = rises ? t.runs - t.events : t.events;
-    const auto [from, to] = wilson_interval(counted, t.runs);
-    shares.push_back(static_cast<double>(counted) / t.runs), low.push_back(from), high.push_back(to);
+    const auto [from, to] = wilson_interval(t.events, t.runs);
+    shares.push_back(sign * (static_cast<double>(t.events) / t.runs));
+    low.push_back(sign * (rises ? to : from)), high.push_back(sign * (rises ? from : to));
   }
-  const double share = rises ? 1 - level : level;
-  return {crossing_of(counts, shares, share), crossing_of(counts, low, share),
-          crossing_of(counts, high, share)};
+  if (changes_the_other_way(counts, rises)) return {{kOutside, Place::other_direction}, {}, {}};
+  return {crossing_of(counts, shares, sign * level), crossing_of(counts, low, sign * level),
+          crossing_of(counts, high, sign * level)};
 }
 
 }  // namespace
@@ -112,10 +123,14 @@ Table event_limits(const SweepResult& result, const LimitQuestion& question) {
   const Column& axis = result.axes[question.along];
   Table table{"limits", "limit of " + question.measure + " along " + axis.name,
               axes_of(result, others, groups)};
-  table.add("limit", axis.units, "where the event has the given probability; NaN: not within the values",
-            limits);
-  table.add("limit_low", axis.units, "lower end of its 95 % interval; NaN: not within the values", low);
-  table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: not within the values", high);
+  table.add(
+      "limit", axis.units,
+      "value of the axis at which the event has the given probability; NaN: outside the values of the axis",
+      limits);
+  table.add("limit_low", axis.units, "lower end of its 95 % interval; NaN: outside the values of the axis",
+            low);
+  table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: outside the values of the axis",
+            high);
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
   table.add("runs", "1", "number of finished runs", std::move(runs));

@@ -1,4 +1,4 @@
-// Where an event becomes more probable than a level along an axis of a sweep, such as half of the runs.
+// Finds the value on an axis of a sweep at which an event has a given probability, for example 0.5.
 #pragma once
 
 #include <string>
@@ -24,8 +24,9 @@ struct LimitQuestion {
 // with linear interpolation (isotonic_regression.h). The curves of the two ends of the intervals cross it at
 // limit_low and limit_high. They are NaN if the curve crosses the level outside the values of the axis;
 // `place` then states on which side the limit is. All rows have one direction: that in which the shares
-// change over the whole sweep. Values without a finished run are left out; a run whose measure is NaN counts
-// as a run without the event, as in tally().
+// change over the whole sweep. A row that clearly changes the other way has no limit, and `place` says so: at
+// one end of the axis its interval is on the wrong side of that at the other end. Values without a finished
+// run are left out; a run whose measure is NaN counts as a run without the event, as in tally().
 Table event_limits(const SweepResult& result, const LimitQuestion& question);
 
 // True if the event becomes more probable along the axis: the direction of event_limits().

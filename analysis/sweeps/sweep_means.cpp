@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 
+#include "analysis/statistics/mean.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/statistics/proportion.h"
 #include "analysis/statistics/student.h"
@@ -23,12 +26,7 @@ std::vector<double> finished_values(const SweepResult& result, const std::string
   return values;
 }
 
-bool is_event(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return std::isnan(value) || value == 0 || value == 1; });
-}
-
-using Groups = std::vector<std::vector<double>>;  // numbers of each cell
+using Groups = std::vector<std::vector<double>>;  // values of each cell, one for each replicate
 
 MeanDifference share_of(const Groups& cells) {
   int events = 0, runs = 0;
@@ -42,7 +40,7 @@ MeanDifference share_of(const Groups& cells) {
 
 struct Difference {
   MeanDifference mean;
-  double p = 1;
+  double p = kNone;
 };
 
 Difference difference_of_events(const Groups& cells) {
@@ -50,7 +48,7 @@ Difference difference_of_events(const Groups& cells) {
   for (const std::vector<double>& values : cells)
     for (const double value : values)
       if (!std::isnan(value)) plus += value > 0 ? 1 : 0, minus += value < 0 ? 1 : 0, ++pairs;
-  if (pairs == 0) return {{0, kNone, kNone, kNone}, 1};
+  if (pairs == 0) return {{0, kNone, kNone, kNone}};
   const auto [low, high] = paired_difference_interval(plus, minus, pairs);
   return {{pairs, static_cast<double>(plus - minus) / static_cast<double>(pairs), low, high},
           sign_test(plus, minus)};
@@ -58,8 +56,66 @@ Difference difference_of_events(const Groups& cells) {
 
 Difference difference_of_numbers(const Groups& cells) {
   std::vector<double> all;
-  for (const std::vector<double>& values : cells) all.insert(all.end(), values.begin(), values.end());
-  return {student_mean(cells), mean_test(all)};
+  for (const std::vector<double>& values : cells)
+    std::copy_if(values.begin(), values.end(), std::back_inserter(all),
+                 [](double value) { return !std::isnan(value); });
+  if (all.empty()) return {{0, kNone, kNone, kNone}};
+  return {student_mean({all}), mean_test(all)};
+}
+
+// Returns the p values after Holm's adjustment over those that are known.
+std::vector<double> adjusted(const std::vector<double>& p) {
+  std::vector<double> known;
+  std::copy_if(p.begin(), p.end(), std::back_inserter(known),
+               [](double value) { return !std::isnan(value); });
+  const std::vector<double> holm = holm_adjusted(known);
+  std::vector<double> all;
+  auto next = holm.begin();
+  for (const double value : p) all.push_back(std::isnan(value) ? kNone : *next++);
+  return all;
+}
+
+// Returns the means of the known values of several cells, replicate by replicate.
+std::vector<double> mean_of_cells(const Groups& cells) {
+  std::vector<double> means;
+  for (std::size_t replicate = 0; replicate < cells.front().size(); ++replicate)
+    means.push_back(mean_where(
+        cells.size(), [&](std::size_t i) { return !std::isnan(cells[i][replicate]); },
+        [&](std::size_t i) { return cells[i][replicate]; }));
+  return means;
+}
+
+// The values of a group of cells, whose noise is independent of each other.
+struct IndependentValues {
+  Groups cells;
+  bool is_merged = false;  // true if several cells had the same noise
+};
+
+// values_of: values of a cell. shared: the axes with common noise that the group does not have in common.
+template <class ValuesOf>
+IndependentValues independent(const SweepResult& result, const CellGroup& group,
+                              const std::vector<std::size_t>& shared, ValuesOf&& values_of) {
+  std::map<std::size_t, Groups> of_noise;  // by the first cell on the shared axes
+  for (const std::size_t cell : group.cells) {
+    std::vector<std::size_t> indices = result.axis_indices(cell);
+    for (const std::size_t axis : shared) indices[axis] = 0;
+    of_noise[result.cell_at(indices)].push_back(values_of(cell));
+  }
+  IndependentValues all;
+  for (const auto& [first, cells] : of_noise) {
+    all.cells.push_back(cells.size() == 1 ? cells.front() : mean_of_cells(cells));
+    all.is_merged |= cells.size() > 1;
+  }
+  return all;
+}
+
+// Returns the axes with common noise over which a row of the table pools.
+std::vector<std::size_t> pooled(const std::vector<std::size_t>& common_noise,
+                                const std::vector<std::size_t>& kept) {
+  std::vector<std::size_t> axes = common_noise;
+  std::erase_if(axes,
+                [&](std::size_t axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
+  return axes;
 }
 
 // Adds the columns of the means. count: what was counted, "runs" or "pairs".
@@ -74,7 +130,8 @@ void add_means(Table& table, const std::vector<MeanDifference>& means, const std
   table.add("mean", unit, mean_meaning, std::move(mean));
   table.add("low", unit, "lower end of its 95 % interval", std::move(low));
   table.add("high", unit, "upper end of its 95 % interval", std::move(high));
-  table.add(count, "1", "number of " + count + " with a value", std::move(counts));
+  table.add(count, "1", "number of " + count + " with a value; those with the same noise count as one",
+            std::move(counts));
 }
 
 const Column& measure_column(const SweepResult& result, const std::string& measure) {
@@ -91,54 +148,55 @@ std::size_t moved(const SweepResult& result, std::size_t cell, std::size_t axis,
 
 }  // namespace
 
-Table sweep_means(const SweepResult& result, const std::string& measure, const std::vector<std::size_t>& by) {
+Table sweep_means(const SweepResult& result, const std::string& measure, const TableAxes& axes) {
   const std::vector<double> values = finished_values(result, measure);
-  const bool counts_events = is_event(values);
-  const std::vector<CellGroup> groups = cell_groups(result, by);
+  const Column& column = measure_column(result, measure);
+  const std::vector<CellGroup> groups = cell_groups(result, axes.by);
+  const std::vector<std::size_t> shared = pooled(axes.common_noise, axes.by);
+  const auto values_of = [&](std::size_t cell) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(result.run(cell, 0));
+    return std::vector<double>(first, first + result.replicates);
+  };
   std::vector<MeanDifference> means;
   for (const CellGroup& group : groups) {
-    Groups cells;
-    for (const std::size_t cell : group.cells) {
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(result.run(cell, 0));
-      cells.emplace_back(first, first + result.replicates);
-    }
-    means.push_back(counts_events ? share_of(cells) : student_mean(cells));
+    const IndependentValues all = independent(result, group, shared, values_of);
+    means.push_back(is_event(column) && !all.is_merged ? share_of(all.cells) : student_mean(all.cells));
   }
-  const Column& column = measure_column(result, measure);
-  Table table{"mean_" + measure, "mean of " + measure, axes_of(result, by, groups)};
+  Table table{"mean_" + measure, "mean of " + measure, axes_of(result, axes.by, groups)};
   add_means(table, means, column.units, "mean: " + column.long_name, "runs");
   return table;
 }
 
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
-                        const std::vector<std::size_t>& by) {
+                        const TableAxes& axes) {
   const std::vector<double> values = finished_values(result, measure);
-  const bool counts_events = is_event(values);
-  std::vector<std::size_t> axes = by;
-  axes.push_back(between);
-  std::vector<CellGroup> groups = cell_groups(result, axes);
+  const Column& column = measure_column(result, measure);
+  std::vector<std::size_t> kept = axes.by;
+  kept.push_back(between);
+  std::vector<CellGroup> groups = cell_groups(result, kept);
   std::erase_if(groups, [](const CellGroup& group) { return group.indices.back() == 0; });
+  const std::vector<std::size_t> shared = pooled(axes.common_noise, kept);
+  const auto differences_of = [&](std::size_t cell) {
+    const std::size_t first = moved(result, cell, between, 0);
+    std::vector<double> differences;
+    for (int replicate = 0; replicate < result.replicates; ++replicate)
+      differences.push_back(values[result.run(cell, replicate)] - values[result.run(first, replicate)]);
+    return differences;
+  };
   std::vector<MeanDifference> means;
   std::vector<double> p;
   for (const CellGroup& group : groups) {
-    Groups cells;
-    for (const std::size_t cell : group.cells) {
-      const std::size_t first = moved(result, cell, between, 0);
-      std::vector<double>& differences = cells.emplace_back();
-      for (int replicate = 0; replicate < result.replicates; ++replicate)
-        differences.push_back(values[result.run(cell, replicate)] - values[result.run(first, replicate)]);
-    }
-    const Difference difference = counts_events ? difference_of_events(cells) : difference_of_numbers(cells);
+    const IndependentValues all = independent(result, group, shared, differences_of);
+    const Difference difference = is_event(column) && !all.is_merged ? difference_of_events(all.cells)
+                                                                     : difference_of_numbers(all.cells);
     means.push_back(difference.mean), p.push_back(difference.p);
   }
-  const Column& column = measure_column(result, measure);
   Table table{"difference_" + measure,
               "difference of " + measure + " from the first value of " + result.axes[between].name,
-              axes_of(result, axes, groups)};
+              axes_of(result, kept, groups)};
   add_means(table, means, column.units, "mean difference: " + column.long_name, "pairs");
-  std::vector<double> adjusted = holm_adjusted(p);
-  table.add("p", "1", "p value of no difference", std::move(p));
-  table.add("adjusted_p", "1", "p value after Holm's adjustment over the rows", std::move(adjusted));
+  table.add("p", "1", "p value of the null hypothesis that there is no difference", p);
+  table.add("adjusted_p", "1", "p value after Holm's adjustment over the rows", adjusted(p));
   return table;
 }
 

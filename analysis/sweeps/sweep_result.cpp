@@ -47,6 +47,10 @@ const std::vector<double>& SweepResult::measure(const std::string& name) const {
   throw std::out_of_range("the sweep has no measure " + name);
 }
 
+bool is_event(const Column& measure) {
+  return measure.units == "1" && measure.long_name.starts_with("1 when ");
+}
+
 std::vector<NoteCount> note_counts(const SweepResult& result) {
   std::vector<NoteCount> counts;
   for (std::size_t kind = 0; kind < result.note_kinds.size(); ++kind) {

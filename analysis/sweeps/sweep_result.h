@@ -53,6 +53,9 @@ struct SweepResult {
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
 
+// True for a measure that is 1 if an event happened in a run, else 0. Its meaning begins with "1 when".
+bool is_event(const Column& measure);
+
 // The number of finished runs that have a note of one kind.
 struct NoteCount {
   std::string kind;

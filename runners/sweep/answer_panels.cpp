@@ -34,8 +34,14 @@ std::string with_unit(const std::string& text, const std::string& unit) {
 
 struct AnswerCurve {
   std::string label;
+  std::vector<double> values;  // of the other axes; a name by its number
   std::vector<std::size_t> rows;
 };
+
+double number_in(const Column& column, std::size_t row) {
+  if (const auto* numbers = numbers_in(column)) return (*numbers)[row];
+  return std::get<std::vector<std::int32_t>>(column.values)[row];
+}
 
 // Returns the rows of each combination of the other axes, in the order of the table.
 std::vector<AnswerCurve> curves_of(const AnswerTable& answer, std::size_t x) {
@@ -43,15 +49,17 @@ std::vector<AnswerCurve> curves_of(const AnswerTable& answer, std::size_t x) {
   std::vector<AnswerCurve> curves;
   for (std::size_t row = 0; row < value.size(); ++row) {
     std::string label;
+    std::vector<double> others;
     for (std::size_t axis = 0; axis < answer.axes; ++axis) {
       const Column& column = answer.table.columns[axis];
       if (axis == x) continue;
+      others.push_back(number_in(column, row));
       label += (label.empty() ? "" : ", ") + column.name + " = " +
                with_unit(axis_text(column, row), column.value_names.empty() ? column.units : "1");
     }
     auto curve = std::find_if(curves.begin(), curves.end(),
-                              [&](const AnswerCurve& each) { return each.label == label; });
-    if (curve == curves.end()) curve = curves.insert(curve, {label, {}});
+                              [&](const AnswerCurve& each) { return each.values == others; });
+    if (curve == curves.end()) curve = curves.insert(curve, {label, others, {}});
     if (std::isfinite(value[row])) curve->rows.push_back(row);
     if (curves.size() > kMaxCurves) return {};
   }
@@ -83,7 +91,7 @@ bool is_of_curve(const Figure& figure, const Table& table) {
 std::string axis_text(const Column& axis, std::size_t row) {
   if (const auto* numbers = numbers_in(axis)) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.6g", (*numbers)[row]);
+    std::snprintf(text, sizeof text, "%.10g", (*numbers)[row]);
     return text;
   }
   const std::int32_t number = std::get<std::vector<std::int32_t>>(axis.values)[row];

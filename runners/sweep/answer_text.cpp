@@ -28,10 +28,17 @@ std::string text_in(const Column& column, std::size_t row) {
                                     : printable(column.value_names[static_cast<std::size_t>(number)]);
 }
 
+// True for the columns before the answer itself: the axes, whose values must not look alike.
+bool is_axis(const Table& table, const Column& column) {
+  const auto answers = [](const Column& each) { return each.name == "limit" || each.name == "mean"; };
+  return &column < &*std::find_if(table.columns.begin(), table.columns.end(), answers);
+}
+
 // Returns the texts of a column: its name, its unit and the values.
-std::vector<std::string> texts_of(const Column& column, std::size_t rows) {
+std::vector<std::string> texts_of(const Table& table, const Column& column, std::size_t rows) {
   std::vector<std::string> texts = {column.name, column.units == "1" ? "" : column.units};
-  for (std::size_t row = 0; row < rows; ++row) texts.push_back(text_in(column, row));
+  for (std::size_t row = 0; row < rows; ++row)
+    texts.push_back(is_axis(table, column) ? printable(axis_text(column, row)) : text_in(column, row));
   return texts;
 }
 
@@ -39,7 +46,7 @@ std::string table_text(const Table& table) {
   const std::size_t all = table.columns.front().length(), rows = std::min(all, kMostRows);
   std::vector<std::string> lines(rows + 2, "  ");
   for (const Column& column : table.columns) {
-    const std::vector<std::string> texts = texts_of(column, rows);
+    const std::vector<std::string> texts = texts_of(table, column, rows);
     std::size_t width = 0;
     for (const std::string& text : texts) width = std::max(width, text.size());
     for (std::size_t i = 0; i < texts.size(); ++i)

@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// Returns what was asked, and each table with names, units and at most 60 rows; "-" stands for a value that
-// is not known. Tables of single curves, which repeat rows, are left out. Says how many runs are not
+// Returns the caption and each table with names, units and at most 60 rows; "-" stands for a value that is
+// not known. Tables of single curves, which repeat rows, are left out. A note states how many runs are not
 // finished.
 std::string answer_text(const Figure& answer, const SweepResult& sweep);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
@@ -12,13 +13,20 @@ namespace {
 
 using Row = std::vector<ChangedSetting>;
 
-// A name of a coordinate in HDF5, in Python and in --cell NAME=VALUE.
+// The columns of an answer about a sweep, see event_limits.h and sweep_means.h.
+constexpr const char* kAnswerColumns[] = {"limit", "limit_low", "limit_high", "place", "runs",      "mean",
+                                          "low",   "high",      "pairs",      "p",     "adjusted_p"};
+
+// A name of a coordinate in HDF5, in Python, in --cell NAME=VALUE and in the tables of an answer.
 void require_identifier(const std::string& name, const std::string& label) {
   const auto may_follow = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
       !std::all_of(name.begin(), name.end(), may_follow))
     throw InputError(label + ".name = " + shown(name),
                      "expected a letter, then letters, digits and _, for example \"r_c\"");
+  if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) != std::end(kAnswerColumns))
+    throw InputError(label + ".name = " + shown(name),
+                     "a column of analyse has this name: expected another one");
 }
 
 const Json& list_of(const Json& json, const char* key, const std::string& label, const char* expected) {
@@ -40,12 +48,20 @@ void refuse_overlap_in(const Row& row, const std::string& label) {
     }
 }
 
+// Throws InputError for a path without a key, or with an empty one.
+const std::string& require_path(const std::string& path, const std::string& label) {
+  const std::vector<std::string> keys = path_keys(path);
+  if (keys.empty() || std::any_of(keys.begin(), keys.end(), [](const auto& key) { return key.empty(); }))
+    throw InputError(label, shown(path) + ": expected the path of a parameter");
+  return path;
+}
+
 std::vector<std::string> read_paths(const Json& json, const std::string& label) {
   std::vector<std::string> paths;
   for (const Json& path : list_of(json, "parameters", label, "a list of paths of parameters")) {
-    if (!path.is_string() || path.get<std::string>().empty())
+    if (!path.is_string())
       throw InputError(label + ".parameters", shown(path) + ": expected the path of a parameter");
-    paths.push_back(path.get<std::string>());
+    paths.push_back(require_path(path.get<std::string>(), label + ".parameters"));
   }
   return paths;
 }
@@ -121,7 +137,8 @@ Row read_variant(const Json& json, std::string& name, const std::string& label) 
   const auto set = json.find("set");
   if (set == json.end()) return row;
   if (!set->is_object()) throw InputError(label + ".set", "expected {\"path\": value, ...}");
-  for (const auto& item : set->items()) row.emplace_back(item.key(), item.value());
+  for (const auto& item : set->items())
+    row.emplace_back(require_path(item.key(), label + ".set"), item.value());
   refuse_overlap_in(row, label + ".set");
   return row;
 }

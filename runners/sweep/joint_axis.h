@@ -1,4 +1,4 @@
-// An axis of a sweep that sets several parameters together.
+// A joint axis of a sweep: it sets several parameters together, or has named variants.
 #pragma once
 
 #include "runners/sweep/sweep_axis.h"

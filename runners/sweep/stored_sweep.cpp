@@ -57,9 +57,4 @@ StoredSweep read_stored_sweep(const std::filesystem::path& file) {
   return with_present_names(read_sweep(file));
 }
 
-std::string title_of(const StoredSweep& sweep) {
-  const Json config = parse_json(attribute(sweep.attributes, "config"), "the configuration of the sweep");
-  return config.is_object() ? config.value("title", std::string()) : std::string();
-}
-
 }  // namespace remote_touch

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "analysis/sweeps/sweep_file.h"
 
@@ -13,7 +12,5 @@ namespace remote_touch {
 // and it has the attribute translated_from.
 StoredSweep read_stored_sweep(const Hdf5Reader& file);
 StoredSweep read_stored_sweep(const std::filesystem::path& file);
-// Returns the title in the configuration; an empty text if there is none.
-std::string title_of(const StoredSweep& sweep);
 
 }  // namespace remote_touch

@@ -32,8 +32,9 @@ class Sweep {
   // shards are `elsewhere`.
   SweepResult plan(const Shard& shard = {}) const;
   // Returns the experiment of one run. It has the values that the result states for its cell; throws
-  // InputError otherwise. Each run has its own noise, because cell and replicate are part of the noise key.
-  // On an axis with common noise, the cell of the first value is taken.
+  // InputError otherwise. The noise key contains cell and replicate, so each run has its own noise. For an
+  // axis with common noise the key contains the cell of the first value, so runs that differ only on this
+  // axis have the same noise.
   Experiment experiment(std::size_t cell, int replicate) const;
   // Throws InputError, with the name of the file, for a stored result with other axes, measures or
   // replicates: none of its runs belongs to this sweep.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/answer_panels.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
@@ -62,13 +64,11 @@ std::vector<std::size_t> axes_by(const SweepResult& result, const std::vector<st
 }
 
 std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit) {
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "Limit: the %s at which %s is above %.6g in %.6g %% of the runs; along the axis this becomes "
-                "%s probable. ",
-                result.axes[limit.along].name.c_str(), limit.measure.c_str(), limit.threshold,
-                100 * limit.level, event_rises(result, limit) ? "more" : "less");
-  return text;
+  char text[80];
+  std::snprintf(text, sizeof text, " is above %.6g in %.6g %% of the runs. ", limit.threshold,
+                100 * limit.level);
+  return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text +
+         "Along the axis the event becomes " + (event_rises(result, limit) ? "more" : "less") + " probable. ";
 }
 
 void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& question,
@@ -84,27 +84,68 @@ void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& 
 }
 
 void add_means(Figure& figure, const SweepResult& result, const std::vector<std::string>& measures,
-               const std::vector<std::size_t>& by) {
+               const TableAxes& axes) {
   for (const std::string& measure : measures) {
     number_of_column(result.measures, measure, "mean");
-    const Table table = sweep_means(result, measure, by);
+    const Table table = sweep_means(result, measure, axes);
     figure.tables.push_back(table);
-    add_answer_panel(figure, {table, by.size(), "mean", "low", "high"});
+    add_answer_panel(figure, {table, axes.by.size(), "mean", "low", "high"});
   }
+  if (!measures.empty() && !result.round.empty() && axes.by.size() < result.axes.size())
+    figure.caption += "The sweep was refined: a mean over several cells counts only those that have runs. ";
 }
 
-void add_differences(Figure& figure, const SweepResult& result, const SweepQuestion& question) {
+void add_differences(Figure& figure, const SweepResult& result, const SweepQuestion& question,
+                     TableAxes axes) {
   const std::size_t between = axis_between(result, question.between);
-  std::vector<std::size_t> by = axes_by(result, question.by);
-  std::erase(by, between);
+  std::erase(axes.by, between);
   const Column& axis = result.axes[between];
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) + ", in pairs of runs. ";
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
-    const Table table = sweep_differences(result, measure, between, by);
+    const Table table = sweep_differences(result, measure, between, axes);
     figure.tables.push_back(table);
-    add_answer_panel(figure, {table, by.size() + 1, "mean", "low", "high"});
+    add_answer_panel(figure, {table, axes.by.size() + 1, "mean", "low", "high"});
   }
+}
+
+bool names_no_measure(const SweepQuestion& question) {
+  return question.limit.empty() && question.means.empty() && question.differences.empty();
+}
+
+// Returns the event whose limit is asked for; an empty text if none is.
+std::string event_of(const SweepResult& result, const SweepQuestion& question) {
+  if (!question.limit.empty()) return question.limit;
+  const bool has_axis = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {
+    return has_numbers(axis) && axis.length() > 1;
+  });
+  if (question.along.empty() && !(names_no_measure(question) && has_axis)) return {};
+  const std::string event = default_event(result);
+  if (event.empty() && !question.along.empty())
+    throw InputError("along " + printable(question.along),
+                     "no run has popped_through or tool_popped_through: expected the measure of an event as "
+                     "limit");
+  return event;
+}
+
+void refuse_options_without_effect(const SweepQuestion& question, bool has_limit) {
+  if (!question.between.empty() && question.differences.empty())
+    throw InputError("between " + printable(question.between), "without effect: expected also a difference");
+  if (!has_limit && (question.level != 0.5 || question.threshold != 0.5))
+    throw InputError("level and above", "without effect: expected also a limit");
+  if (!question.by.empty() && question.means.empty() && question.differences.empty() &&
+      !names_no_measure(question))
+    throw InputError("by", "without effect: expected also a mean or a difference");
+}
+
+// Returns the numbers of the axes whose values have common noise, from the configuration of the sweep.
+std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t count) {
+  std::vector<std::size_t> numbers;
+  const Json axes = config.is_object() ? config.value("axes", Json::array()) : Json::array();
+  for (std::size_t i = 0; axes.is_array() && i < std::min(axes.size(), count); ++i)
+    if (axes[i].is_object() && axes[i].value("common_noise", axes[i].contains("variants")))
+      numbers.push_back(i);
+  return numbers;
 }
 
 }  // namespace
@@ -119,24 +160,17 @@ std::string default_event(const SweepResult& result) {
   return {};
 }
 
-Figure sweep_answer(const SweepResult& result, const SweepQuestion& question, const std::string& title) {
+Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question) {
   if (result.runs_in(RunState::done).empty())
     throw InputError("the sweep", "has no finished run: expected at least one");
-  Figure figure{kAnswerName, title, {}};
-  const bool is_open = question.limit.empty() && question.means.empty() && question.differences.empty();
-  const bool can_have_limit = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {
-    return has_numbers(axis) && axis.length() > 1;
-  });
-  std::string event = question.limit;
-  if (event.empty() && (!question.along.empty() || (is_open && can_have_limit)))
-    event = default_event(result);
-  if (event.empty() && !question.along.empty())
-    throw InputError("along " + printable(question.along),
-                     "no run has popped_through: expected the measure of an event as limit");
+  const Json json = parse_json(config, "the configuration of the sweep");
+  Figure figure{kAnswerName, json.is_object() ? json.value("title", std::string()) : "", {}};
+  const std::string event = event_of(result, question);
+  refuse_options_without_effect(question, !event.empty());
   if (!event.empty()) add_limits(figure, result, question, event);
-  add_means(figure, result, is_open ? names_of(result.measures) : question.means,
-            axes_by(result, question.by));
-  if (!question.differences.empty()) add_differences(figure, result, question);
+  const TableAxes axes{axes_by(result, question.by), axes_with_common_noise(json, result.axes.size())};
+  add_means(figure, result, names_no_measure(question) ? names_of(result.measures) : question.means, axes);
+  if (!question.differences.empty()) add_differences(figure, result, question, axes);
   if (!figure.caption.empty()) figure.caption.pop_back();
   return figure;
 }

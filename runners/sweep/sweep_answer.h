@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 // Measures and axes by name. A question that names no measure asks for the limit of the event that
-// default_event() finds and for the means of all measures.
+// default_event() finds and for the means of all measures. Options without an effect are refused.
 struct SweepQuestion {
   // Where does an event become more probable than `level` along an axis? Empty `along`: the last axis of at
   // least two numbers. See event_limits.h.
@@ -37,8 +37,9 @@ inline constexpr const char* kAnswerName = "analysis";
 
 // Returns a figure with the tables `limits`, `mean_MEASURE` and `difference_MEASURE`, and with a panel for
 // each of them whose rows fit into at most 8 curves over one axis of numbers. The caption states the
-// questions. Throws InputError for a name that the sweep does not have, an axis that does not fit, and a
-// sweep without a finished run.
-Figure sweep_answer(const SweepResult& result, const SweepQuestion& question, const std::string& title);
+// questions. config: the configuration of the sweep as JSON; its title is that of the figure, and it states
+// which axes have common noise. Throws InputError for a name that the sweep does not have, an axis that does
+// not fit, and a sweep without a finished run.
+Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
 
 }  // namespace remote_touch

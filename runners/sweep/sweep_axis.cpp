@@ -138,7 +138,7 @@ void refuse_repeated(const std::vector<Json>& values, const std::string& label) 
 }
 
 bool is_index(const std::string& key) {
-  return key.find_first_not_of("0123456789") == std::string::npos;
+  return !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
 }
 
 // Returns the name of a column of Rows, which has a unit of its own: "ry_deg" for "trajectory.poses.2.4".
@@ -209,8 +209,10 @@ namespace {
 SweepAxis read_any_axis(const Json& json, const std::string& label, int levels) {
   if (is_joint(json)) return read_joint_axis(json, label);
   if (!json.is_object() || !json.contains("parameter"))
-    throw InputError(label,
-                     "expected {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...} or values");
+    throw InputError(
+        label,
+        "expected {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...}, or an axis with \"values\", "
+        "\"parameters\" or \"variants\"");
   return json.contains("values") ? list_axis(json, label) : range_axis(json, label, levels);
 }
 

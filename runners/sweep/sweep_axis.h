@@ -1,4 +1,4 @@
-// One axis of a sweep: its coordinate, and the settings that a run gets for each value of it.
+// One axis of a sweep: its coordinate, and the settings of a run for each value of it.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,8 +19,8 @@ struct SweepAxis {
   // round, and those between them that refinement may add.
   std::vector<std::vector<ChangedSetting>> settings;
   std::size_t stride = 1;     // index step between values of the first round
-  bool is_joint = false;      // true: it sets several parameters, see joint_axis.h
-  bool common_noise = false;  // true: the runs that differ on this axis only have the same noise
+  bool is_joint = false;      // true: a joint axis ("parameters" or "variants"), see joint_axis.h
+  bool common_noise = false;  // true: runs that differ only on this axis have the same noise
   std::string definition;     // complete JSON, as in a file
 
   std::size_t length() const { return settings.size(); }
@@ -36,7 +36,7 @@ struct SweepAxis {
 //   {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"}: refinement may halve
 //   the steps `levels` times
 //   {"parameter": PATH, "values": [...]}
-//   several parameters together, see joint_axis.h
+//   a joint axis: several parameters together, or variants, see joint_axis.h
 // Each form may have "common_noise": true or false.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
 

@@ -14,7 +14,7 @@ from plotting.typeset import typeset
 
 NOTHING = "no value"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
-MANY = 3000  # samples that a vector format has as pixels
+MANY = 3000  # plots with more samples are stored as pixels in vector formats
 HALO = [matplotlib.patheffects.withStroke(linewidth=2.6, foreground="white")]  # about a line over cells
 
 
@@ -60,7 +60,8 @@ def draw_line(axes, curve, panel, look, **options):
 
 
 def interval_series(curve, panel):
-    """Number and count of the curves with intervals that are vertical lines, or None: of this curve they stand before it."""
+    """Index of the interval series of this curve, and the number of such series in the panel; None without one. The
+    intervals of a curve come directly before it in panel.curves."""
     at = [i for i, other in enumerate(panel.curves) if other.style == "intervals"]
     i = next(i for i, other in enumerate(panel.curves) if other is curve)
     mine = [k for k, interval in enumerate(at) if interval in (i, i - 1)]

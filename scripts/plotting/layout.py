@@ -91,9 +91,9 @@ def guess(canvas, drawn, size):
 
 
 def arrange(canvas, drawn, size, top_in):
-    """Panels of a column are equally wide, rows as high as their panels ask, and the canvas as high as the rows.
-    Returns the share of their height that they got, because a picture fits on a page. (Constrained layout measures
-    everything twice, which takes half of the time of a figure.)"""
+    """All panels are equally wide, rows as high as their panels ask, and the canvas as high as the rows. Returns the
+    factor by which the heights were reduced to fit on a page; 1: not reduced. (Constrained layout measures everything
+    twice, which takes half of the time of a figure.)"""
     rows, columns = size
     guess(canvas, drawn, size)
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
@@ -137,7 +137,8 @@ def is_plot(panel):
 
 
 def say_once(drawn):
-    """A label of an axis that the panel to the left, or the one below, repeats. Below, the limits are the same too."""
+    """Removes an axis label that repeats that of the panel to the left, or of the panel below if its limits are equal
+    too."""
     at = {cell: (axes, panel) for cell, axes, panel in drawn if is_plot(panel)}
     heights = {cell: axes.get_ylabel() for cell, (axes, _) in at.items()}
     for (row, column), (axes, panel) in at.items():

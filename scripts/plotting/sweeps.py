@@ -20,7 +20,7 @@ MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
 FEW = 5  # values of an axis that has a line for each
 DONE = 2  # state of a run
 Z95 = 1.959964
-EVENT = "1 when "  # with this begins what a measure says of an event
+EVENT = "1 when "  # the long_name of a measure of an event begins with this
 
 
 def student_t(freedom):
@@ -122,11 +122,14 @@ class Axis:
 
     def value(self, i):
         """In words: `noise sigma = 2 mm`."""
-        value = self.at.values[i]
-        shown = self.at.names.get(value, f"{value:.6g}")
         name = with_shown_unit(self.name, "1" if self.at.units in ("", "1") else self.at.units).split(" (")[0]
         unit = f" {unit_words(self.at.units)}" if self.at.units not in ("", "1") else ""
-        return f"{name} = {shown}{unit}"
+        return f"{name} = {self.words()[i]}{unit}"
+
+    def words(self):
+        """Of each value; with more digits if six do not tell all values apart."""
+        six, twelve = ([self.at.names.get(value, f"{value:.{digits}g}") for value in self.at.values] for digits in (6, 12))
+        return six if len(set(six)) == len(six) else twelve
 
 
 def read_axes(file):
@@ -144,13 +147,23 @@ def chosen_cells(axes, wanted):
         i = next((i for i, axis in enumerate(axes) if axis.name == name), None)
         if i is None:
             raise PlotError(f"--slice {name}={value}: no such axis: expected one of {', '.join(a.name for a in axes)}")
-        at = axes[i].at
-        known = [at.names.get(each, f"{each:.6g}") for each in at.values]
-        same = [k for k, words in enumerate(known) if words == value or (not at.names and is_number(value, at.values[k]))]
-        if not same:
-            raise PlotError(f"--slice {name}={value}: no such value: expected one of {', '.join(known)} {at.units}".rstrip())
-        index[i] = same[0]
+        index[i] = chosen_value(axes[i], value)
     return tuple(index)
+
+
+def chosen_value(axis, value):
+    """Index of the value that equals these words exactly, else of the only one that equals them at six digits."""
+    known = axis.words()
+    is_number = not axis.at.names
+    found = [k for k, words in enumerate(known) if words == value or is_number and equals(value, axis.at.values[k])]
+    if not found and is_number:
+        found = [k for k, each in enumerate(axis.at.values) if equals(value, float(f"{each:.6g}"), 1e-6)]
+    if len(found) == 1:
+        return found[0]
+    what = "fits several values" if found else "no such value"
+    expected = ", ".join(known[k] for k in found or range(len(known)))
+    unit = f" {axis.at.units}" if axis.at.units not in ("", "1") else ""
+    raise PlotError(f"--slice {axis.name}={value}: {what}: expected one of {expected}{unit}")
 
 
 def shown_axes(every, wanted):
@@ -159,15 +172,17 @@ def shown_axes(every, wanted):
     return [axis for axis, at in zip(every, chosen) if isinstance(at, slice)], chosen
 
 
-def is_number(words, value):
+def equals(words, value, tolerance=1e-12):
+    """Whether the words are this number; the default tolerance is that of rounding by a change of units."""
     try:
-        return math.isclose(float(words), value, rel_tol=1e-6, abs_tol=1e-12)
+        return math.isclose(float(words), value, rel_tol=tolerance)
     except ValueError:
         return False
 
 
 def roles(axes):
-    """Numbers of the axes: across, of the lines or up (None: there is one axis), and of the slices; whether a map."""
+    """Returns the index of the horizontal axis, the index of the axis of the lines or of the vertical axis of a map (None:
+    there is one axis), the indices of the slice axes, and whether a map is drawn."""
     order = sorted(range(len(axes)), key=lambda i: (bool(axes[i].at.names), -axes[i].at.values.size, i))
     if len(axes) == 1:
         return 0, None, [], False
@@ -253,7 +268,7 @@ def sweep_panels(file, wanted=()):
     """wanted: pairs of an axis and a value, in words."""
     axes, chosen = shown_axes(read_axes(file), wanted)
     if not axes:
-        raise PlotError(f"{file.filename}: --slice for all axes leaves one cell: expected an axis without")
+        raise PlotError(f"{file.filename}: --slice for all axes leaves one cell: expected at least one axis without --slice")
     is_done = dataset(file, "/sweep/state")[()] == DONE
     part = roles(axes)
     shown = list(slices(axes, part))[:MAX_SLICES]
@@ -269,11 +284,11 @@ def sweep_panels(file, wanted=()):
     return panels
 
 
-def notes(file, is_done):
-    """How many of the finished runs have each kind of note, in words; results of earlier versions have none."""
+def notes(file, chosen, is_done):
+    """How many finished runs of the chosen cells have each kind of note, in words; results of earlier versions have none."""
     if "/sweep/notes" not in file:
         return []
-    bits, kinds = np.ravel(dataset(file, "/sweep/notes")[()])[is_done], text(file.attrs, "note_kinds").split(",")
+    bits, kinds = np.ravel(dataset(file, "/sweep/notes")[()][chosen])[is_done], text(file.attrs, "note_kinds").split(",")
     counts = [(kind, int(np.count_nonzero(bits >> bit & 1))) for bit, kind in enumerate(kinds)]
     return [f"{count} of {bits.size} runs: {kind}" for kind, count in counts if count]
 
@@ -281,7 +296,7 @@ def notes(file, is_done):
 def left_out(file, wanted=()):
     """What of a sweep the picture does not show, in words."""
     words = [f"only {name} = {value}" for name, value in wanted]
-    axes = shown_axes(read_axes(file), wanted)[0]
+    axes, chosen = shown_axes(read_axes(file), wanted)
     count = math.prod(axes[i].at.values.size for i in roles(axes)[2]) if axes else 1
     if count > MAX_SLICES:
         words.append(f"the first {MAX_SLICES} of {count} slices (--slice AXIS=VALUE chooses)")
@@ -290,12 +305,12 @@ def left_out(file, wanted=()):
     if measures > shown:
         words.append(f"the first {shown} of {measures} measures")
     state = dataset(file, "/sweep/state")
-    names = enum_names(state)
-    states = [names.get(value) for value in np.ravel(state[()])]
+    names, of_chosen = enum_names(state), np.ravel(state[()][chosen])
+    states = [names.get(value) for value in of_chosen]
     planned = len(states) - states.count("not_sampled")
     for what, count in (("failed", states.count("failed")),
                         ("are not done", states.count("pending") + states.count("elsewhere"))):
         if count:
             words.append(f"without {count} of {planned} runs, which {what}")
-    words += notes(file, np.ravel(state[()]) == DONE)
+    words += notes(file, chosen, of_chosen == DONE)
     return "".join(f"; {each}" for each in words)

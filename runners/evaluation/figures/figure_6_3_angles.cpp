@@ -113,7 +113,7 @@ void add_claims(Figure& figure, const std::vector<Turning>& runs) {
       "contact rule voxels: no point is deeper in the tool than a voxel (0.5 mm) at the end of a tick: "
       "depth of the deepest point",
       max_of_rule(runs, "voxels", depth), 5e-4, "m");
-  claims.at_most("no tick uses up its detections: largest fraction of the ticks of a run",
+  claims.at_most("no tick uses up its budget of detections: largest fraction of the ticks of a run",
                  max_of_rule(runs, "", exhausted), 0, "fraction");
 }
 

@@ -240,9 +240,8 @@ void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
       wilson_interval(ours.held, ours.runs).first, 0.97, "fraction");
   for (const Table& table : jumps)
     for (const char* what : {"_force", "_torque"})
-      claims.at_most(table.title +
-                         ": tracked sheets jump less than look-ahead at frames: largest ratio of the" +
-                         (what[1] == 'f' ? " forces" : " torques"),
+      claims.at_most(table.title + ": at frames the " + (what[1] == 'f' ? "force" : "torque") +
+                         " jumps less with tracked sheets than with look-ahead: largest ratio of the jumps",
                      max_ratio(table, what), 1.0 / 3, "ratio");
   claims.at_most("noise up to 2 r_c hardly changes the height of a plate on a flat surface: largest change",
                  max_raised(shapes, "flat"), 0.1, "r_c");

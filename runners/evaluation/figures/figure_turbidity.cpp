@@ -157,18 +157,20 @@ void add_claims(Figure& figure, const std::vector<Level>& levels) {
           ->score[k];
     };
     claims.at_least(" is found in clear water: recall", at(0).recall(), 0.99, "fraction");
-    claims.at_least(" is not mistaken in clear water: precision", at(0).precision(), 0.99, "fraction");
+    claims.at_least(" is not confused with other things in clear water: precision", at(0).precision(), 0.99,
+                    "fraction");
     claims.at_least(" is found at a turbidity of 0.6 per metre: recall", at(kDefault_per_m).recall(), 0.95,
                     "fraction");
-    claims.at_least(" is not mistaken at a turbidity of 0.6 per metre: precision",
+    claims.at_least(" is not confused with other things at a turbidity of 0.6 per metre: precision",
                     at(kDefault_per_m).precision(), 0.95, "fraction");
     claims.at_most(" is found less in more turbid water: largest rise of recall from a level to the next",
                    max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction");
     claims.at_most(
         " has less depth in more turbid water: largest rise of the share with depth from a level to the next",
         max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction");
-    claims.at_least(" is not mistaken where 100 pixels or more are picked: smallest precision",
-                    min_precision(levels, k), 0.95, "fraction");
+    claims.at_least(
+        " is not confused with other things where 100 pixels or more are picked: smallest precision",
+        min_precision(levels, k), 0.95, "fraction");
     claims.at_most(" is missed at a turbidity of 3 per metre: recall", at(3).recall(), 0.05, "fraction");
   }
   Claims(figure).at_most(

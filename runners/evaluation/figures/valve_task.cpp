@@ -194,7 +194,7 @@ void add_task_claims(Figure& figure, const ValveTask& task) {
   const Claims claims(figure, task.label + ": ");
   claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(t), 0,
                  "fraction");
-  claims.at_most("the tool stays out of the regions: depth of its deepest leaf at the end of a tick",
+  claims.at_most("the tool stays out of the regions: depth of its deepest sphere at the end of a tick",
                  max_of(t.tool_penetration_m), kSettled_m, "m", "very small");
 }
 

@@ -33,8 +33,8 @@ class StoredResult {
 
   // The stored configuration with the present names, as JSON.
   std::string config() const;
-  // What the configuration of a trace or of hashes, and of a sweep, describes. Throw InputError if this
-  // program cannot read it.
+  // Return the experiment of a trace or of hashes, and the sweep of a sweep, from the stored configuration.
+  // Both throw InputError if this program cannot read it.
   Experiment experiment() const;
   Sweep sweep() const;
 

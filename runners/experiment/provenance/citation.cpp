@@ -63,7 +63,7 @@ std::string typewriter(const std::string& text) {
   return value.append(braced(text));
 }
 
-// The values have their braces.
+// Names and values of fields; each value includes its braces.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
 std::string bibtex_entry(const std::string& kind, const std::string& key, const Fields& fields) {
@@ -96,7 +96,8 @@ std::string build_text(const TextAttributes& attributes) {
   return text;
 }
 
-// The program or the plug-ins that have entries of their own; empty if there are none.
+// Returns the names of the user's program or plug-ins that add renderers and the like to the catalog; empty
+// if there are none.
 std::string own_programs(const TextAttributes& attributes) {
   std::string text;
   if (const std::string program = attribute(attributes, "program"); !program.empty())
@@ -139,12 +140,12 @@ std::string bibtex_text(const std::string& text) {
 }
 
 std::string program_entry(const TextAttributes& attributes) {
-  const std::string version_there = attribute(attributes, "version");
+  const std::string stored_version = attribute(attributes, "version");
   const std::string commit = attribute(attributes, "git_commit");
   std::string key = "remote_touch_";
-  key += key_of(commit.empty() || commit == "unknown" ? version_there : commit.substr(0, 12));
-  Fields fields = {{"author", kAuthor}, {"title", kTitle}, {"version", braced(version_there)}};
-  if (version_there == version()) fields.emplace_back("year", kYear);
+  key += key_of(commit.empty() || commit == "unknown" ? stored_version : commit.substr(0, 12));
+  Fields fields = {{"author", kAuthor}, {"title", kTitle}, {"version", braced(stored_version)}};
+  if (stored_version == version()) fields.emplace_back("year", kYear);
   fields.emplace_back("note", braced(build_text(attributes)));
   return bibtex_entry("software", key, fields);
 }

@@ -19,8 +19,8 @@ struct MeasuredValue {
 // Returns the measures of a list that apply to the trace, with their values, in the order of the list. The
 // pointers are valid as long as the list.
 std::vector<MeasuredValue> measured_values(std::span<const Measure> list, const Trace& trace);
-// Returns of these the five built-in measures that matter most and have a value, and then all measures that
-// are not built in, because their author wants to see them.
+// Returns at most five built-in measures from `all`, those that matter most and have a value, and then all
+// measures that are not built in, because their author wants to see them.
 std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, Fixtures fixtures);
 
 // Returns "metres" for "m". Empty for pure numbers ("1"); an unknown unit is returned as it is.

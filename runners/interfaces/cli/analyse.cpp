@@ -74,7 +74,8 @@ int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   if (!request.output.empty() && ending != ".h5" && ending != ".csv")
     throw InputError("--output " + request.output, "expected a file that ends with .h5 or .csv");
   const StoredSweep stored = read_stored_sweep(request.sweep);
-  const Figure answer = sweep_answer(stored.result, question_of(request), title_of(stored));
+  const Figure answer =
+      sweep_answer(stored.result, attribute(stored.attributes, "config"), question_of(request));
   if (ending == ".h5") write_hdf5(line, request, stored, answer);
   if (ending == ".csv") write_tables(line, request, answer);
   std::fputs(answer_text(answer, stored.result).c_str(), stdout);

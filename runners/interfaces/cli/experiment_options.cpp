@@ -131,8 +131,9 @@ void add_analyse(Subcommands& commands) {
                                              const char* meaning) {
     command->add_option(option, list, meaning)->delimiter(',')->allow_extra_args(false);
   };
-  command->add_option("--limit", analyse->limit,
-                      "measure of an event (default: popped_through): where does it become probable?");
+  command->add_option(
+      "--limit", analyse->limit,
+      "measure of an event (default: popped_through or tool_popped_through): where does its probability cross --level?");
   command->add_option("--along", analyse->along, "axis of the limit (default: the last axis of numbers)");
   command->add_option("--above", analyse->threshold, "the event happens above this value (default 0.5)");
   command
@@ -141,10 +142,11 @@ void add_analyse(Subcommands& commands) {
       ->check(between(0, 1));
   add_list("--mean", analyse->means, "measure whose means are wanted; may be given several times");
   add_list("--by", analyse->by, "axes of the means and differences, A,B (default: all); others are pooled");
-  add_list("--difference", analyse->differences, "measure whose differences between variants are wanted");
+  add_list("--difference", analyse->differences,
+           "measure whose differences between the values of --between are wanted");
   command->add_option(
       "--between", analyse->between,
-      "axis of the variants; the first value is the reference (default: the first axis of names)");
+      "axis whose values are compared with its first value (default: the first axis of names)");
   command->add_option("-o,--output", analyse->output,
                       "file for the tables: .h5 (also for scripts/plot) or .csv");
 }

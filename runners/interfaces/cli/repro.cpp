@@ -19,6 +19,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -120,6 +121,10 @@ class Repro {
                          ours(sweep.to_json(), input_hashes(sweep.inputs())), {});
   }
   ResultComparison figure_again(Progress& progress) const {
+    if (of("figure") == kAnswerName)
+      throw InputError(result_.file(),
+                       "is an answer about a sweep: expected its own command, which `repro` "
+                       "prints without --run");
     const auto is_it = [&](const FigureEntry& entry) { return entry.name == of("figure"); };
     const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
     if (entry == figures().end())

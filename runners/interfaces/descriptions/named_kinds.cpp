@@ -63,7 +63,7 @@ NamedKind named_kind(const std::string& name) {
     if (kind.kind == name) return std::move(kind);
     known.append(known.empty() ? "" : ", ").append(kind.kind);
   }
-  throw InputError(name, "is no kind of names: expected " + known);
+  throw InputError(name, "is not a kind: expected " + known);
 }
 
 }  // namespace remote_touch

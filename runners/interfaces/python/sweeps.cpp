@@ -82,9 +82,9 @@ SweepResult result_of(const py::tuple& parts) {
   return result;
 }
 
-// file: of a sweep, or empty for one in memory.
-py::dict analyse(const std::string& file, const py::tuple& parts, const SweepQuestion& question,
-                 const std::string& title) {
+// file: of a sweep, or empty for one in memory, which has parts and a configuration.
+py::dict analyse(const std::string& file, const py::tuple& parts, const std::string& config,
+                 const SweepQuestion& question) {
   StoredSweep stored;
   if (file.empty()) stored.result = result_of(parts);
   Figure answer;
@@ -94,7 +94,8 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const SweepQue
       const FileTurn turn;
       stored = read_stored_sweep(file);
     }
-    answer = sweep_answer(stored.result, question, file.empty() ? title : title_of(stored));
+    answer =
+        sweep_answer(stored.result, file.empty() ? config : attribute(stored.attributes, "config"), question);
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {
@@ -148,12 +149,12 @@ void bind_sweeps(py::module_& module) {
   using Names = std::vector<std::string>;
   module.def(
       "analyse",
-      [](const std::string& file, const py::tuple& parts, const std::string& title, const std::string& limit,
+      [](const std::string& file, const py::tuple& parts, const std::string& config, const std::string& limit,
          const std::string& along, double above, double level, const Names& mean, const Names& by,
          const Names& difference, const std::string& between) {
-        return analyse(file, parts, {limit, along, above, level, mean, by, difference, between}, title);
+        return analyse(file, parts, config, {limit, along, above, level, mean, by, difference, between});
       },
-      py::arg("file"), py::arg("parts"), py::arg("title"), py::arg("limit"), py::arg("along"),
+      py::arg("file"), py::arg("parts"), py::arg("config"), py::arg("limit"), py::arg("along"),
       py::arg("above"), py::arg("level"), py::arg("mean"), py::arg("by"), py::arg("difference"),
       py::arg("between"), "Limits, means and differences of a sweep, as tables.");
 }

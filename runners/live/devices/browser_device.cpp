@@ -12,12 +12,25 @@ BrowserDevice::BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState
           {.name = "mouse in a browser", .sensed_axes = 6, .actuated_axes = 0, .tick_rate_hz = rate_hz}),
       poses_(std::move(poses)),
       placement_(placement),
-      wanted_{start.position_W, start.orientation_W, 0},
+      stopped_{start.position_W, start.orientation_W, 0},
+      wanted_(stopped_),
       now_(start) {}
 
 void BrowserDevice::run(DeviceCycle& cycle) {
   start_s_ = clock().now_s();
   HapticDevice::run(cycle);
+}
+
+void BrowserDevice::request(const HandMotion& motion) {
+  if (motion.stops != stops_) stopped_ = {now_.position_W, now_.orientation_W, 0};
+  stops_ = motion.stops;
+  const HandPose &from = motion.from, &to = motion.to;
+  wanted_.position_W = (stopped_.position_W + to.position_W - from.position_W)
+                           .cwiseMax(-kMaxHandDistance_m)
+                           .cwiseMin(kMaxHandDistance_m);
+  wanted_.orientation_W =
+      (to.orientation_W * from.orientation_W.conjugate() * stopped_.orientation_W).normalized();
+  wanted_.buttons = to.buttons;
 }
 
 // x'' = w^2 (wanted - x) - 2 w x', the velocity first: stable for steps far below 1 / w.
@@ -39,7 +52,7 @@ void BrowserDevice::turn(double interval_s) {
 }
 
 DeviceFault BrowserDevice::read(DeviceReading& reading) noexcept {
-  if (poses_->take()) wanted_ = poses_->front();
+  if (poses_->take()) request(poses_->front());
   const long long first = ticks_;
   ticks_ = std::max(ticks_ + 1, static_cast<long long>((clock().now_s() - start_s_) * traits_.tick_rate_hz));
   const double interval_s = 1 / traits_.tick_rate_hz;

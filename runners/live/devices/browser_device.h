@@ -16,15 +16,24 @@
 
 namespace remote_touch {
 
-// The pose that the page requests for the hand, in the world frame.
+// A pose of the hand that a page requests, in the world frame.
 struct HandPose {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   std::uint32_t buttons = 0;
 };
+inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
 
-// Passes the newest pose from the thread of the page to the haptic loop.
-using HandPoses = TripleBuffer<HandPose>;
+// The motion that a page requests: by `to` relative to `from`, from where the hand was stopped. The buttons
+// are those of `to`. When `stops` has changed, the tick that reads it stops the hand where it is then,
+// because only the loop knows the present place.
+struct HandMotion {
+  HandPose from, to;
+  std::uint32_t stops = 0;
+};
+
+// Passes the newest motion from the thread of the page to the haptic loop.
+using HandPoses = TripleBuffer<HandMotion>;
 
 class BrowserDevice final : public HapticDevice {
  public:
@@ -44,6 +53,7 @@ class BrowserDevice final : public HapticDevice {
   bool rearm() noexcept override { return true; }
 
  private:
+  void request(const HandMotion& motion);
   void follow(double interval_s);
   void turn(double interval_s);
 
@@ -52,7 +62,8 @@ class BrowserDevice final : public HapticDevice {
 
   const std::shared_ptr<HandPoses> poses_;
   const DevicePlacement placement_;
-  HandPose wanted_;
+  HandPose stopped_, wanted_;
+  std::uint32_t stops_ = 0;
   DeviceState now_;
   Vec3 velocity_m_per_s_ = Vec3::Zero();
   double start_s_ = 0;

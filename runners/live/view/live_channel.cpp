@@ -45,7 +45,7 @@ void LiveChannel::open(PageRole role, const std::string& trouble) {
   role_ = role;
   texts_ = {role_message(role)};
   if (!trouble.empty()) texts_.push_back(trouble);
-  if (controls_->has_changed()) texts_.push_back(parameters_message(*controls_, {}));
+  if (controls_->has_changed()) texts_.push_back(values_text_ = parameters_message(*controls_, {}));
   is_ended_ = false;
   is_open_ = true;
 }
@@ -64,8 +64,13 @@ void LiveChannel::set_role(PageRole role) {
   texts_.push_back(role_message(role));
 }
 
-void LiveChannel::tell_parameters() {
-  tell(parameters_message(*controls_, {}));
+// A waiting text has older values. Without this, changes of one page would fill the queue of a slow one.
+void LiveChannel::tell_parameters(const std::string& refused) {
+  std::string text = parameters_message(*controls_, refused);
+  const std::lock_guard lock(mutex_);
+  std::erase(texts_, values_text_);
+  if (refused.empty()) values_text_ = text;
+  texts_.push_back(std::move(text));
 }
 
 void LiveChannel::tell(std::string text) {
@@ -94,7 +99,7 @@ bool LiveChannel::receive(std::string_view bytes) {
   if (acknowledged) {
     acknowledged_ = acknowledged->number;
   } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {
-    tell(parameters_message(*controls_, controls_->change(*changes)));
+    tell_parameters(controls_->change(*changes));
   } else if (const auto* pose = std::get_if<HandPose>(&*message)) {
     hand_->move(*pose);
   } else {
@@ -151,7 +156,7 @@ LiveChannel::Message LiveChannel::frame_message_of(const NeighbourSearch& points
           false};
 }
 
-PointsNear LiveChannel::near_hand() {
+NearHand LiveChannel::near_hand() {
   double reach_m = near_m_;
   for (std::size_t i = 0; i < controls_->parameters().size(); ++i)
     if (const LiveParameter& p = controls_->parameters()[i]; p.name == "renderer.r1_m" && p.value > 0)

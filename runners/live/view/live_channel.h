@@ -27,8 +27,8 @@ class LiveChannel {
   static constexpr std::size_t kMaxPoints = 300000;  // most points of a frame
   static constexpr std::uint32_t kMaxInFlight = 2;   // messages that the page has not acknowledged
 
-  // placement: that of the device in the world. near_m: points that are no farther from the HIP or the proxy
-  // are always sent. It grows with the contact radius when the user changes that.
+  // placement: that of the device in the world. near_m: points within this distance of the HIP or the proxy,
+  // m, are always sent. It grows with the contact radius when the user changes that.
   LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
               std::shared_ptr<PageHand> hand, std::shared_ptr<LiveControls> controls, double near_m);
 
@@ -40,10 +40,11 @@ class LiveChannel {
   // The server's thread calls both. `trouble`: the newest trouble_message(); empty if there was none yet.
   void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
-  // Gives the hand to the page, or takes it away, and tells the page so.
+  // Gives the hand to the page, or takes it away, and sends the page its role.
   void set_role(PageRole role);
-  // Sends the parameters to the page, because another page has changed them.
-  void tell_parameters();
+  // Sends the parameters to the page, and why changes from it were refused. A text of parameters that still
+  // waits is dropped, unless it states a refusal.
+  void tell_parameters(const std::string& refused = {});
   bool is_open() const { return is_open_; }
   bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
   // tell(): queues a text for the page, see view_messages.h. end(): queues the last text; the server closes
@@ -67,7 +68,7 @@ class LiveChannel {
   bool next_text(Message& message);
   Message tick_message();
   Message frame_message_of(const NeighbourSearch& points, std::int32_t index);
-  PointsNear near_hand();
+  NearHand near_hand();
 
   const double rate_hz_;
   const DevicePlacement placement_;
@@ -83,6 +84,7 @@ class LiveChannel {
   std::int32_t index_ = 0;
   bool frame_is_new_ = false;
   std::vector<std::string> texts_;  // texts that wait to be sent
+  std::string values_text_;         // the newest text of parameters without a refusal; may be among texts_
   std::string last_;                // last text; waits to be sent when is_ended_
   bool is_ended_ = false;
   // Members used only by the server's thread.

@@ -16,7 +16,6 @@ LivePages::LivePages(double haptic_rate_hz, const DevicePlacement& placement, co
 }
 
 void LivePages::take(const LiveTick& tick) noexcept {
-  hand_->take(tick.device);
   for (Page& page : pages_) page.channel->take(tick);
 }
 

@@ -2,9 +2,9 @@
 // texts to all of them.
 //
 // The first page has the hand; later pages watch, and may request the hand. When the page with the hand
-// closes, the page that has watched longest gets the hand. A page may lose its connection and connect again
-// before the server has noticed the loss. It then replaces its own older connection and keeps the hand. A
-// page that connects later counts as a new page.
+// closes, the page that has watched longest receives the hand. A page may lose its connection and connect
+// again before the server has noticed the loss. It then replaces its own older connection and keeps the hand.
+// A page that connects later counts as a new page.
 #pragma once
 
 #include <array>
@@ -43,9 +43,9 @@ class LivePages {
   // True if kMax other pages are connected, or if no channel is free. A page that connects again does not
   // count.
   bool is_full(std::string_view page) const;
-  // See LiveChannel::receive(). If the message has changed parameters, the other pages get the new values. A
-  // request for the hand from a page that watches is granted, see PageHand::pass_on(); the page that had the
-  // hand watches from then on.
+  // See LiveChannel::receive(). If the message has changed parameters, the other pages receive the new
+  // values. A request for the hand from a page that watches is granted, see PageHand::pass_on(); the page
+  // that had the hand watches from then on.
   bool receive(LiveChannel& channel, std::string_view bytes);
 
  private:

@@ -14,8 +14,8 @@ namespace remote_touch {
 namespace {
 
 constexpr const char* kPageSchema = "remote-touch-live/1";
-// The points near the hand: within so many contact radii, or so far from the surface of a tool, or so far
-// from the hand of a renderer that has neither.
+// The points near the hand: within kNearRadii contact radii of HIP and proxy; with a tool, within kNearTool_m
+// of the ball around it; without either, within kNearHand_m.
 constexpr double kNearRadii = 4, kNearTool_m = 0.01, kNearHand_m = 0.02;
 
 double length_m(const Json& renderer, const char* name) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "runners/live/devices/browser_device.h"
@@ -11,36 +10,27 @@
 namespace remote_touch {
 
 // Poses are in the world frame, lengths in metres. The safety gate and the speed limit of BrowserDevice apply
-// as well.
+// as well. Only the server's thread calls the functions.
 class PageHand {
  public:
   explicit PageHand(std::shared_ptr<HandPoses> poses) : poses_(std::move(poses)) {}
 
-  // The state of the device at the newest tick. Any thread may call it.
-  void take(const DeviceState& now);
-
-  // The server's thread calls the following functions.
-  // A page receives the hand. If a page has moved the hand before, this stops it where the newest tick has
-  // it, with no button pressed. The hand stays there until the page moves it.
+  // A page receives the hand. BrowserDevice stops the hand in its next tick, with no button pressed. The hand
+  // stays there until the page moves it.
   void pass_on();
-  // A pose from the page that has the hand. The first one after pass_on() only says where that page begins
-  // to count: the hand does not move with it. Each later one moves the hand from where it was stopped by the
-  // page's own motion since the first. So no page can make the hand jump by a wrong idea of where it is.
+  // A pose from the page that has the hand. The first pose after pass_on() is the reference and does not move
+  // the hand. Each later pose displaces the hand, from where it was stopped, by the motion of the page since
+  // the reference. So no page can make the hand jump by a wrong idea of where it is.
   void move(const HandPose& of_page);
   // Releases the buttons, because the user can no longer do so.
   void release_buttons();
 
  private:
-  void publish(const HandPose& pose);
-  std::optional<HandPose> newest();
+  void publish();
 
   const std::shared_ptr<HandPoses> poses_;
-  std::mutex mutex_;
-  std::optional<HandPose> newest_;  // pose at the newest tick; none before the first tick
-  // Members used only by the server's thread.
-  std::optional<HandPose> sent_;   // the newest pose published
-  std::optional<HandPose> start_;  // pose of the hand at which the page with the hand began
-  std::optional<HandPose> begin_;  // the first pose that this page sent
+  std::optional<HandPose> page_start_;  // the first pose of the page that has the hand
+  HandMotion motion_;                   // the newest motion published
 };
 
 }  // namespace remote_touch

@@ -23,7 +23,6 @@ struct HandRequest {};
 using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges, HandRequest>;
 
 inline constexpr std::size_t kMaxPageMessage = 8 + 16 * ParameterChanges::kMax;  // bytes
-inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
 
 // Decodes a message; all numbers are little endian.
 // - A hand: 1, three bytes 0, buttons (u32), position in metres and quaternion w x y z (f64); 64 bytes.

@@ -1,7 +1,7 @@
 // A file that leads a browser to the page of a live run.
 //
-// The browser gets this file as its argument and not the address, because the arguments of all processes can
-// be read, and whoever has the address can move the hand.
+// The browser receives this file as its argument and not the address, because the arguments of all processes
+// can be read, and whoever has the address can move the hand.
 #pragma once
 
 #include <filesystem>

@@ -42,9 +42,9 @@ std::string refusal_text(unsigned status, const std::string& port) {
       return "No run is at this address. Each run has an address of its own: open the whole address\n"
              "that the terminal prints, with the 32 letters and digits at its end.\n";
     case 409:
-      return "As many pages as possible show this run already. Close one of them.\n";
+      return "This run is already shown by the maximum number of pages. Close one of them.\n";
     default:
-      return "This is no request of a page of a live run. Open the address that the terminal prints in a "
+      return "This request does not come from the page of a live run. Open the address that the terminal prints in a "
              "browser.\n";
   }
 }

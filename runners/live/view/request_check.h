@@ -1,4 +1,4 @@
-// Decides from the headers of a request whether the page server may answer it, and tells the user what to do
+// Decides from the headers of a request whether the page server may answer it, and says what the user can do
 // if not. The secret in the address is checked before.
 #pragma once
 

@@ -41,7 +41,7 @@ std::vector<std::uint32_t> shown_of(const PointCloud& cloud, const PointLimit& l
   if (every <= 1) return all;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (i % every == 0 || limit.near.has(cloud.point(all[i]))) all[kept++] = all[i];
+    if (i % every == 0 || limit.near.contains(cloud.point(all[i]))) all[kept++] = all[i];
   all.resize(kept);
   return all;
 }
@@ -58,7 +58,7 @@ void append_positions(std::string& bytes, const PointCloud& cloud, const std::ve
 
 }  // namespace
 
-bool PointsNear::has(const Vec3& p_W) const {
+bool NearHand::contains(const Vec3& p_W) const {
   const double squared = reach_m * reach_m;
   return (p_W - hip_W).squaredNorm() <= squared || (p_W - proxy_W).squaredNorm() <= squared;
 }

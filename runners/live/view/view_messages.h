@@ -43,18 +43,18 @@ std::string alive_message();
 std::string state_message(const std::string& ended, bool is_full);
 inline constexpr int kViewProtocol = 3;
 
-// The points near the hand, which the user feels and must see: no farther from the HIP or the proxy than
-// reach_m.
-struct PointsNear {
+// The region near the hand: within reach_m of the HIP or the proxy. The user feels its points and must see
+// them.
+struct NearHand {
   Vec3 hip_W = Vec3::Zero(), proxy_W = Vec3::Zero();
   double reach_m = 0;
 
-  bool has(const Vec3& p_W) const;
+  bool contains(const Vec3& p_W) const;
 };
 
 struct PointLimit {
   std::size_t max_points = 0;  // points near the hand may exceed it
-  PointsNear near;
+  NearHand near;
 };
 
 // 1 (u32), number of the message (u32), rows (u32), 0 (u32); then all rows of each column (f64).

@@ -56,8 +56,8 @@ void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& eve
     if (jump_N > largest_jump_N) largest_jump_N = jump_N, jump_tick = i / 3;
   }
   if (largest_jump_N > 0)
-    events.push_back(
-        {jump_tick, "force jump", text_with("The largest force jump, %.3g N in a tick.", largest_jump_N)});
+    events.push_back({jump_tick, "force jump",
+                      text_with("The largest change of the force, %.3g N in one tick.", largest_jump_N)});
   if (largest_N > 0)
     events.push_back({tick, "largest force", text_with("The largest force, %.3g N.", largest_N)});
 }

@@ -48,7 +48,7 @@ TEST(EventTimes, TheFirstPopThroughCountsAlsoIfTheProxyComesBack) {
   EXPECT_EQ(first_pop_through_time_s(trace), trace.time_s[3]);
 }
 
-TEST(EventTimes, AWayWithAnUnknownDistanceIsNoPopThrough) {
+TEST(EventTimes, APathWithAnUnknownDistanceIsNotAPopThrough) {
   EXPECT_TRUE(std::isnan(first_pop_through_tick(trace_of({{0, 0.001}, {0, kUnknown}, {0, -0.001}}))));
 }
 
@@ -60,7 +60,7 @@ TEST(EventTimes, TheJumpIsTheFirstOfTheLargestAtAFrameUpdate) {
   EXPECT_EQ(max_force_jump_N(trace), 3);
 }
 
-TEST(EventTimes, WhatDidNotHappenHasNone) {
+TEST(EventTimes, AnEventThatDidNotHappenIsNan) {
   const Trace calm = trace_of({{0, 0.01, 2, 0}, {0, 0.01, 2, 1}});
   EXPECT_EQ(max_force_jump_N(calm), 0);
   for (const char* name : {"first_contact", "first_pop_through", "max_force_jump"})

@@ -88,6 +88,18 @@ TEST(EventLimits, OutsideTheValuesAreNotKnown) {
   EXPECT_EQ(place(table, 2), "inside");
 }
 
+TEST(EventLimits, ARowThatChangesTheOtherWayHasNone) {
+  const Table table = limits_of(sweep_of({1, 2, 3}, {{0, 50, 100}, {0, 50, 100}, {100, 100, 0}}));
+  EXPECT_EQ(place(table, 0), "inside");
+  EXPECT_EQ(place(table, 2), "changes the other way");
+  EXPECT_TRUE(std::isnan(numbers(table, "limit")[2]));
+}
+
+TEST(EventLimits, ALevelThatIsReachedExactlyIsInside) {
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{0, 90}}), 0.9), "limit")[0], 2);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{70, 100}}), 0.7), "limit")[0], 1);
+}
+
 TEST(EventLimits, DoNotDependOnTheOrderOfTheValues) {
   const Table sorted = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}));
   const Table mixed = limits_of(sweep_of({4, 1, 2}, {{75, 0, 25}}));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "analysis/statistics/paired_test.h"
@@ -17,12 +18,13 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Two values of x and two methods, the second running fastest; values[cell] has the measure of each
 // replicate.
-SweepResult sweep_of(const std::vector<std::vector<double>>& values) {
+SweepResult sweep_of(const std::vector<std::vector<double>>& values, const std::string& unit = "m",
+                     const std::string& meaning = "depth of it") {
   SweepResult result;
   result.axes = {{"x", "m", "", std::vector<double>{0.1, 0.2}},
                  {"method", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"old", "new"}}};
   result.replicates = static_cast<int>(values.front().size());
-  result.measures = {{"depth", "m", "depth of it", {}}};
+  result.measures = {{"depth", unit, meaning, {}}};
   result.start(false);
   auto& all = std::get<std::vector<double>>(result.measures[0].values);
   for (std::size_t cell = 0; cell < values.size(); ++cell)
@@ -41,7 +43,8 @@ std::vector<std::int32_t> counts(const Table& table, const char* name) {
 
 // The 97.5 % point of Student's t with 2 degrees of freedom is 4.30265, with 4 it is 2.77645.
 TEST(SweepMeans, HaveStudentsIntervalOfEachCell) {
-  const Table table = sweep_means(sweep_of({{1, 2, 3}, {5, 5, 5}, {0, 4, 8}, {1, 1, 4}}), "depth", {0, 1});
+  const Table table =
+      sweep_means(sweep_of({{1, 2, 3}, {5, 5, 5}, {0, 4, 8}, {1, 1, 4}}), "depth", {{0, 1}, {}});
   EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{2, 5, 4, 2}));
   EXPECT_NEAR(numbers(table, "high")[0], 2 + 4.30265 / std::sqrt(3.0), 1e-5);
   EXPECT_NEAR(numbers(table, "low")[2], 4 - 4 * 4.30265 / std::sqrt(3.0), 1e-4);
@@ -52,7 +55,8 @@ TEST(SweepMeans, HaveStudentsIntervalOfEachCell) {
 
 // The scatter is that within the cells, not that between them.
 TEST(SweepMeans, PoolTheAxesThatAreNotNamed) {
-  const Table table = sweep_means(sweep_of({{1, 2, 3}, {11, 12, 13}, {0, 0, 0}, {0, 0, 0}}), "depth", {0});
+  const Table table =
+      sweep_means(sweep_of({{1, 2, 3}, {11, 12, 13}, {0, 0, 0}, {0, 0, 0}}), "depth", {{0}, {}});
   EXPECT_EQ(numbers(table, "mean")[0], 7);
   EXPECT_NEAR(numbers(table, "high")[0], 7 + 2.77645 / std::sqrt(6.0), 1e-5);
   EXPECT_EQ(counts(table, "runs")[0], 6);
@@ -61,8 +65,9 @@ TEST(SweepMeans, PoolTheAxesThatAreNotNamed) {
 }
 
 TEST(SweepMeans, OfAnEventHaveWilsonsInterval) {
-  const Table table =
-      sweep_means(sweep_of({{0, 1, 1, 1}, {0, 0, 0, 0}, {1, 1, 1, 1}, {0, 1, 0, 1}}), "depth", {0, 1});
+  const Table table = sweep_means(
+      sweep_of({{0, 1, 1, 1}, {0, 0, 0, 0}, {1, 1, 1, 1}, {0, 1, 0, 1}}, "1", "1 when it happened"), "depth",
+      {{0, 1}, {}});
   const auto [low, high] = wilson_interval(3, 4);
   EXPECT_EQ(numbers(table, "mean")[0], 0.75);
   EXPECT_EQ(numbers(table, "low")[0], low);
@@ -72,16 +77,52 @@ TEST(SweepMeans, OfAnEventHaveWilsonsInterval) {
 TEST(SweepMeans, LeaveOutWhatHasNoValue) {
   SweepResult result = sweep_of({{1, 2, kUnknown}, {kUnknown, kUnknown, kUnknown}, {4, 6, 8}, {1, 1, 4}});
   result.state[result.run(2, 0)] = RunState::failed;
-  const Table table = sweep_means(result, "depth", {0, 1});
+  const Table table = sweep_means(result, "depth", {{0, 1}, {}});
   EXPECT_EQ(numbers(table, "mean")[0], 1.5);
   EXPECT_TRUE(std::isnan(numbers(table, "mean")[1]));
   EXPECT_EQ(numbers(table, "mean")[2], 7);
   EXPECT_EQ(counts(table, "runs"), (std::vector<std::int32_t>{2, 0, 2, 3}));
 }
 
+// A force that is 0 in every run is no event: its interval is not one of a proportion.
+TEST(SweepMeans, OfZerosHaveNoScatter) {
+  const Table table = sweep_means(sweep_of({{0, 0}, {0, 0}, {0, 1}, {1, 1}}), "depth", {{0, 1}, {}});
+  EXPECT_EQ(numbers(table, "high")[0], 0);
+  EXPECT_GT(numbers(table, "high")[2], 1);
+}
+
+// Two methods with the same noise are not two samples of it.
+TEST(SweepMeans, RunsWithCommonNoiseCountAsOne) {
+  const SweepResult result = sweep_of({{1, 2, 3}, {3, 4, 5}, {0, 0, 0}, {0, 0, 0}});
+  const Table table = sweep_means(result, "depth", {{0}, {1}});
+  EXPECT_EQ(numbers(table, "mean")[0], 3);
+  EXPECT_NEAR(numbers(table, "high")[0], 3 + 4.30265 / std::sqrt(3.0), 1e-5);  // of 2, 3, 4
+  EXPECT_EQ(counts(table, "runs")[0], 3);
+  EXPECT_EQ(counts(sweep_means(result, "depth", {{0}, {}}), "runs")[0], 6);
+}
+
+TEST(SweepDifferences, PairsWithCommonNoiseCountAsOne) {
+  const SweepResult result = sweep_of({{1, 2, 3}, {3, 4, 5}, {2, 4, 6}, {6, 8, 10}});
+  const Table table = sweep_differences(result, "depth", 0, {{}, {1}});
+  EXPECT_EQ(counts(table, "pairs")[0], 3);
+  EXPECT_EQ(numbers(table, "mean")[0], 3);  // of 2, 3, 4
+  EXPECT_NEAR(numbers(table, "high")[0], 3 + 4.30265 / std::sqrt(3.0), 1e-5);
+}
+
+TEST(SweepDifferences, RowsWithoutPairsAreNotAdjusted) {
+  SweepResult result =
+      sweep_of({{0, 0, 0, 0, 0, 1}, {1, 1, 1, 1, 0, 1}, {0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}}, "1",
+               "1 when it happened");
+  for (int replicate = 0; replicate < 6; ++replicate)
+    result.state[result.run(2, replicate)] = RunState::failed;
+  const Table table = sweep_differences(result, "depth", 1, {{0}, {}});
+  EXPECT_EQ(numbers(table, "adjusted_p")[0], 0.125);
+  EXPECT_TRUE(std::isnan(numbers(table, "p")[1]) && std::isnan(numbers(table, "adjusted_p")[1]));
+}
+
 TEST(SweepDifferences, AreThoseOfPairs) {
   const SweepResult result = sweep_of({{1, 2, 3}, {2, 4, 3}, {10, 20, 30}, {11, 21, 31}});
-  const Table table = sweep_differences(result, "depth", 1, {0});
+  const Table table = sweep_differences(result, "depth", 1, {{0}, {}});
   EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{1, 1}));
   EXPECT_EQ(counts(table, "pairs"), (std::vector<std::int32_t>{3, 3}));
   EXPECT_NEAR(numbers(table, "high")[0], 1 + 4.30265 / std::sqrt(3.0), 1e-5);
@@ -92,8 +133,9 @@ TEST(SweepDifferences, AreThoseOfPairs) {
 
 TEST(SweepDifferences, OfAnEventCountThePairsThatDiffer) {
   const SweepResult result =
-      sweep_of({{0, 0, 0, 0, 0, 1}, {1, 1, 1, 1, 0, 1}, {0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}});
-  const Table table = sweep_differences(result, "depth", 1, {0});
+      sweep_of({{0, 0, 0, 0, 0, 1}, {1, 1, 1, 1, 0, 1}, {0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}}, "1",
+               "1 when it happened");
+  const Table table = sweep_differences(result, "depth", 1, {{0}, {}});
   const auto [low, high] = paired_difference_interval(4, 0, 6);
   EXPECT_DOUBLE_EQ(numbers(table, "mean")[0], 4.0 / 6);
   EXPECT_EQ(numbers(table, "low")[0], low);
@@ -106,7 +148,7 @@ TEST(SweepDifferences, OfAnEventCountThePairsThatDiffer) {
 TEST(SweepDifferences, SkipPairsOfWhichOneHasNoValue) {
   SweepResult result = sweep_of({{1, 2, 3}, {2, kUnknown, 3}, {0, 0, 2}, {1, 1, 2}});
   result.state[result.run(2, 2)] = RunState::failed;
-  const Table table = sweep_differences(result, "depth", 1, {0});
+  const Table table = sweep_differences(result, "depth", 1, {{0}, {}});
   EXPECT_EQ(counts(table, "pairs"), (std::vector<std::int32_t>{2, 2}));
   EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{0.5, 1}));
 }

@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* kRadii = R"({"name": "r_c", "parameters": ["renderer.r1_m", "renderer.r2_m"],
   "values": [[0.004, 0.0042], [0.005, 0.0052]]})";
-constexpr const char* kSpeeds = R"({"name": "method", "variants": [{"name": "as printed"},
+constexpr const char* kSpeeds = R"({"name": "variant", "variants": [{"name": "as printed"},
   {"name": "slow", "set": {"renderer.steps_per_tick": 1}}, {"name": "other", "set": {"renderer.xi": 0.25}}]})";
-constexpr const char* kMethods = R"({"name": "method", "variants": [{"name": "as printed"},
+constexpr const char* kVariants = R"({"name": "variant", "variants": [{"name": "as printed"},
   {"name": "slow", "set": {"renderer.steps_per_tick": 1, "renderer.xi": 0.25}},
   {"name": "other", "set": {"renderer": {"name": "proxy", "stiffness_N_per_m": 400}}}]})";
 
@@ -61,19 +61,19 @@ TEST(JointAxes, HaveACoordinateWithNameAndUnit) {
 
 TEST(JointAxes, CellsAreNamedByTheCoordinate) {
   const SweepResult plan = along(std::string(kRadii) + ", " + kSpeeds).plan();
-  EXPECT_EQ(cell_of({"--cell", "r_c=0.005,method=slow"}, plan), 4u);
-  EXPECT_EQ(cell_of({"--cell", "method=as printed,r_c=0.004"}, plan), 0u);
+  EXPECT_EQ(cell_of({"--cell", "r_c=0.005,variant=slow"}, plan), 4u);
+  EXPECT_EQ(cell_of({"--cell", "variant=as printed,r_c=0.004"}, plan), 0u);
   EXPECT_HAS(refusal([&] {
-               cell_of({"--cell", "r_c=0.02,method=slow"}, plan);
+               cell_of({"--cell", "r_c=0.02,variant=slow"}, plan);
              }),
              "expected for r_c one of 0.004, 0.005");
 }
 
 TEST(JointAxes, TitlesStateTheCoordinate) {
   const Sweep sweep = along(std::string(kRadii) + ", " + kSpeeds);
-  EXPECT_TRUE(sweep.title().ends_with(", over r_c and method")) << sweep.title();
+  EXPECT_TRUE(sweep.title().ends_with(", over r_c and variant")) << sweep.title();
   const std::string title = value_in(sweep, 4, "/title");
-  EXPECT_TRUE(title.ends_with("changed: r_c=0.005, method=slow")) << title;
+  EXPECT_TRUE(title.ends_with("changed: r_c=0.005, variant=slow")) << title;
 }
 
 TEST(JointAxes, SurviveARoundTrip) {
@@ -91,7 +91,7 @@ TEST(JointAxes, CanBeThinned) {
 }
 
 TEST(Variants, SetOnlyWhatTheyName) {
-  const Sweep sweep = along(kMethods);
+  const Sweep sweep = along(kVariants);
   const Json printed = value_in(sweep, 0, "/renderer");
   EXPECT_EQ(printed, value_in(along(R"({"parameter": "seed", "values": [1]})"), 0, "/renderer"));
   Json slow = printed;
@@ -104,11 +104,11 @@ TEST(Variants, SetOnlyWhatTheyName) {
 TEST(Variants, HaveCommonNoiseUnlessToldOtherwise) {
   const std::string noise = R"({"parameter": "scenario.noise_sigma_m", "values": [0.001, 0.002]})";
   const auto cell = [](const Sweep& sweep, std::size_t i) { return value_in(sweep, i, "/cell"); };
-  const Sweep common = along(noise + ", " + kMethods);
+  const Sweep common = along(noise + ", " + kVariants);
   EXPECT_EQ(cell(common, 4), cell(common, 3));
   EXPECT_NE(cell(common, 3), cell(common, 0));
   EXPECT_EQ(value_in(common, 4, "/replicate"), 1);
-  const Sweep own = along(noise + R"(, {"common_noise": false, )" + std::string(kMethods + 1));
+  const Sweep own = along(noise + R"(, {"common_noise": false, )" + std::string(kVariants + 1));
   EXPECT_EQ(cell(own, 4), 4);
   EXPECT_EQ(Sweep::from_json(own.to_json(), "again").to_json(), own.to_json());
   const Sweep values =
@@ -131,16 +131,22 @@ TEST(JointAxes, RefuseWhatTheyCannotState) {
   EXPECT_HAS(axis(radii + R"("values": [[0.005, 0.006]], "label": [1])"), "axes.0.label");
   EXPECT_HAS(axis(R"("parameters": ["renderer", "renderer.r1_m"], "values": [[{"name": "proxy"}, 0.01]])"),
              "axes.0.parameters: renderer.r1_m overlaps renderer");
+  EXPECT_HAS(axis(R"("parameters": ["trajectory.poses.0.."], "values": [[1]])"),
+             "axes.0.parameters: \"trajectory.poses.0..\": expected the path of a parameter");
   EXPECT_HAS(axis(R"("parameters": ["renderer.r9_m"], "values": [[1]])"), "r9_m");
   EXPECT_HAS(axis(R"("parameters": ["safety.max_force_N"], "values": [[1]])"), "only live runs use section");
 }
 
 TEST(Variants, RefuseWhatTheyCannotState) {
   const auto axis = [](const std::string& variants) {
-    return why(R"({"name": "method", "variants": )" + variants + "}");
+    return why(R"({"name": "variant", "variants": )" + variants + "}");
   };
   EXPECT_HAS(axis("[]"), "axes.0.variants: expected a list of");
   EXPECT_HAS(axis(R"([{"name": "a"}, {"name": "b"}])"), "axes.0.variants: none sets a parameter");
+  EXPECT_HAS(axis(R"([{"name": "a", "set": {"": 1}}])"),
+             "axes.0.variants.0.set: \"\": expected the path of a parameter");
+  EXPECT_HAS(why(R"({"name": "low", "variants": [{"name": "a", "set": {"seed": 1}}]})"),
+             "axes.0.name = \"low\": a column of analyse has this name");
   EXPECT_HAS(axis(R"([{"set": {"seed": 1}}])"), "axes.0.variants.0.name: expected a name");
   EXPECT_HAS(axis(R"([{"name": "a", "set": {"seed": 1}}, {"name": "a", "set": {"seed": 2}}])"),
              "\"a\" appears twice");

@@ -13,6 +13,7 @@ namespace remote_touch::sweep_answer_test {
 namespace {
 
 constexpr int kRuns = 10;
+constexpr const char* kConfig = R"({"title": "a sweep"})";
 
 // A sweep over r_c (2), a method (2) and x (3). In one of ten runs more of each cell the proxy popped
 // through: 3, 4, 5, ...
@@ -36,15 +37,15 @@ SweepResult sweep() {
 
 std::vector<std::string> tables(const SweepQuestion& question) {
   std::vector<std::string> names;
-  for (const Table& table : sweep_answer(sweep(), question, "a sweep").tables) names.push_back(table.name);
+  for (const Table& table : sweep_answer(sweep(), kConfig, question).tables) names.push_back(table.name);
   return names;
 }
 std::string why(const SweepQuestion& question, const SweepResult& result = sweep()) {
-  return refusal([&] { sweep_answer(result, question, "a sweep"); });
+  return refusal([&] { sweep_answer(result, kConfig, question); });
 }
 
 TEST(SweepAnswers, WithoutAQuestionHaveLimitsAndMeans) {
-  const Figure answer = sweep_answer(sweep(), {}, "a sweep");
+  const Figure answer = sweep_answer(sweep(), kConfig, {});
   EXPECT_EQ(answer.name, kAnswerName);
   EXPECT_EQ(answer.title, "a sweep");
   EXPECT_EQ(answer.tables.front().name, "limits");
@@ -63,7 +64,7 @@ TEST(SweepAnswers, HaveWhatWasAsked) {
   EXPECT_EQ(tables(means).front(), "mean_max_force");
   SweepQuestion differences;
   differences.differences = {"max_force"};
-  const Figure answer = sweep_answer(sweep(), differences, "");
+  const Figure answer = sweep_answer(sweep(), kConfig, differences);
   EXPECT_EQ(answer.tables.front().name, "difference_max_force");
   EXPECT_HAS(answer.caption, "from method = old");
 }
@@ -72,7 +73,7 @@ TEST(SweepAnswers, HaveWhatWasAsked) {
 TEST(SweepAnswers, DrawTheLimitOverTheFirstAxisOfNumbers) {
   SweepQuestion question;
   question.limit = "popped_through", question.along = "x";
-  const Figure answer = sweep_answer(sweep(), question, "");
+  const Figure answer = sweep_answer(sweep(), kConfig, question);
   ASSERT_EQ(answer.panels.size(), 1u);
   const Panel& panel = answer.panels.front();
   EXPECT_EQ(panel.x_label, "r_c");
@@ -108,10 +109,47 @@ TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHave) {
   EXPECT_EQ(why({}, pending), "the sweep: has no finished run: expected at least one");
 }
 
+TEST(SweepAnswers, RefuseOptionsWithoutEffect) {
+  SweepQuestion between;
+  between.means = {"max_force"}, between.between = "method";
+  EXPECT_EQ(why(between), "between method: without effect: expected also a difference");
+  SweepQuestion level;
+  level.means = {"max_force"}, level.level = 0.9;
+  EXPECT_HAS(why(level), "without effect: expected also a limit");
+  SweepQuestion by;
+  by.limit = "popped_through", by.by = {"r_c"};
+  EXPECT_EQ(why(by), "by: without effect: expected also a mean or a difference");
+}
+
+// The names are those of the configuration.
+TEST(SweepAnswers, TakeTheAxesWithCommonNoiseFromTheConfiguration) {
+  SweepQuestion question;
+  question.means = {"max_force"}, question.by = {"r_c", "x"};
+  const auto runs = [&](const char* config) {
+    const Table table = sweep_answer(sweep(), config, question).tables.front();
+    return std::get<std::vector<std::int32_t>>(table.columns.back().values).front();
+  };
+  EXPECT_EQ(runs(R"({"axes": [{}, {"variants": []}, {}]})"), kRuns);
+  EXPECT_EQ(runs(R"({"axes": [{}, {"common_noise": true}, {}]})"), kRuns);
+  EXPECT_EQ(runs(R"({"axes": [{}, {"variants": [], "common_noise": false}, {}]})"), 2 * kRuns);
+  EXPECT_EQ(runs("{}"), 2 * kRuns);
+}
+
+TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
+  SweepResult result = sweep();
+  result.axes[1] = {"seed", "1", "", std::vector<double>{10000001, 10000002}};
+  SweepQuestion question;
+  question.limit = "popped_through", question.along = "x";
+  const Figure answer = sweep_answer(result, kConfig, question);
+  ASSERT_EQ(answer.panels.front().curves.size(), 4u);
+  EXPECT_EQ(answer.panels.front().curves[3].label, "seed = 10000002");
+  EXPECT_HAS(answer_text(answer, result), "10000002");
+}
+
 TEST(AnswerText, HasEachTableWithUnits) {
   SweepQuestion question;
   question.limit = "popped_through", question.along = "x";
-  const Figure answer = sweep_answer(sweep(), question, "");
+  const Figure answer = sweep_answer(sweep(), kConfig, question);
   const std::string text = answer_text(answer, sweep());
   EXPECT_HAS(text, "  r_c    method  limit  limit_low  limit_high  place   runs\n");
   EXPECT_HAS(text, "  m              m/s^2  m/s^2      m/s^2\n");
@@ -122,9 +160,9 @@ TEST(AnswerText, HasEachTableWithUnits) {
 TEST(AnswerText, SaysWhatIsLeftOut) {
   SweepResult part = sweep();
   part.state[0] = part.state[7] = RunState::failed;
-  EXPECT_HAS(answer_text(sweep_answer(part, {}, ""), part),
+  EXPECT_HAS(answer_text(sweep_answer(part, kConfig, {}), part),
              "note: 2 of 120 runs are not finished and are left out");
-  EXPECT_EQ(answer_text(sweep_answer(sweep(), {}, ""), sweep()).find("note"), std::string::npos);
+  EXPECT_EQ(answer_text(sweep_answer(sweep(), kConfig, {}), sweep()).find("note"), std::string::npos);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ async function pointsNearTheHandAreAllDrawn(page) {
     const ends = [run.vector("hip_position", tick), run.vector("proxy_position", tick)], count = frame.positions.length / 3;
     const near = Array.from({ length: count }, (_, i) => run.point(frame, i)).filter((p) =>
       ends.some((end) => Math.hypot(...p.map((x, k) => x - end[k])) <= 4 * run.contactRadiusM)).length;
-    const found = { around: cloud.aroundCount, near, drawn: cloud.pointCount(), all: count };
+    const found = { around: cloud.nearHandCount, near, drawn: cloud.pointCount(), all: count };
     cloud.setShare(before);
     return found;
   });

@@ -100,7 +100,7 @@ export async function dragMovesTheHand(page) {
 export const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
 
 // Until the hand, which follows the mouse with a lag, has not moved for 0.2 s.
-async function rests(page) {
+export async function rests(page) {
   let since = await newest(page);
   await until(page, (now) => {
     if (distance(now.hip, since.hip) > 1e-9) since = now;

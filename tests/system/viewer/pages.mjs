@@ -142,7 +142,7 @@ test("two traces open where they part", async () => {
     assert.match(beside, /difference of force/);
     assert.match(beside, /run 1: a\.h5; renderer\.stiffness_N_per_m 600/);
     assert.match(beside, /run 2: b\.h5; renderer\.stiffness_N_per_m 300/);
-    assert.equal(await page.locator('.mark[title*="Run 2: The largest force jump"]').count(), 1);
+    assert.equal(await page.locator('.mark[title*="Run 2: The largest change of the force"]').count(), 1);
     await showsMotion(page, [400, 1700]);
   });
 });

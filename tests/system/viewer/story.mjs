@@ -278,6 +278,6 @@ test("picture and plots are saved as PNG and SVG", async () => {
     assert.equal(groups, await page.locator("aside figure").count());
     assert.ok(texts.some((text) => /force x \(N\).*force y \(N\)/.test(text)), texts.join("\n"));
     assert.ok(paths > 3 * groups, `${paths} lines`);
-    assert.match(plots.bytes.toString(), /fill="#bf7c00"/, "the mark of the largest force jump");
+    assert.match(plots.bytes.toString(), /fill="#bf7c00"/, "the mark of the largest change of the force");
   });
 });

@@ -135,7 +135,7 @@ def scorecard(
 def analyse(
     file: _Text,
     parts: tuple[Any, ...],
-    title: str,
+    config: str,
     limit: _Text,
     along: _Text,
     above: float,

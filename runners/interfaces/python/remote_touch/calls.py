@@ -65,15 +65,16 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     sweep: a file, or what sweep() returned. limit: the measure of an event, which happens above the value `above`: where
     along the axis `along` does it become more probable than `level`? mean: measures whose means are wanted, by the axes
     `by` (all if empty). difference: measures whose differences between the first and each other value of the axis
-    `between` are wanted. Without a question: the limit of popped_through, and all means. The intervals are of 95 %.
+    `between` are wanted. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
+    all means. The intervals are of 95 %.
     """
     from remote_touch import dataset
-    file, parts, title = b"", (), ""
+    file, parts, config = b"", (), "{}"
     if isinstance(sweep, (str, os.PathLike)):
         file = _native(sweep)
     else:
-        parts, title = dataset.parts_of_sweep(sweep), json.loads(sweep.attrs.get("config", "{}")).get("title", "")
-    return dataset.of_figure(_core.analyse(file, parts, title, _name(limit), _name(along), _number("above", above),
+        parts, config = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("config", "{}"))
+    return dataset.of_figure(_core.analyse(file, parts, config, _name(limit), _name(along), _number("above", above),
                                            _number("level", level), _names(mean), _names(by), _names(difference),
                                            _name(between)))
 

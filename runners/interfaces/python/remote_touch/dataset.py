@@ -105,9 +105,9 @@ def columns_of(trace):
 
 def parts_of_sweep(sweep):
     """The axes, measures, states and replicates of a sweep that of_sweep() made, for an analysis."""
-    if not isinstance(sweep, xr.Dataset) or not {"state", "replicate"} <= {*sweep.variables}:
+    dimensions = [*sweep["state"].dims] if isinstance(sweep, xr.Dataset) and "state" in sweep else []
+    if len(dimensions) < 2 or dimensions[-1] != "replicate":
         raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
-    dimensions = [*sweep["state"].dims]
     axes = []
     for name in dimensions[:-1]:
         values, names = sweep[name].values, []

@@ -28,7 +28,7 @@ Names main_names(const Trace& trace, Fixtures fixtures) {
   return names;
 }
 
-TEST(MainMeasures, OfAProxyAskForTheTrueSurfaceFirst) {
+TEST(MainMeasures, ProxyRunsReportTheTrueSurfaceFirst) {
   const Trace trace = run("fig4.12", {});
   EXPECT_EQ(main_names(trace, Fixtures::none),
             (Names{"popped_through", "max_penetration", "rms_contact_error", "max_force", "max_force_jump"}));

@@ -68,7 +68,7 @@ TEST(NamedKind, HasTheRowsOfTheList) {
 
 TEST(NamedKind, IsRefusedWithAllKinds) {
   const std::string message = refusal([] { named_kind("robots"); });
-  EXPECT_HAS(message, "robots: is no kind of names: expected sections, scenarios, fixture rules, ");
+  EXPECT_HAS(message, "robots: is not a kind: expected sections, scenarios, fixture rules, ");
   for (const NamedKind& kind : named_kinds()) EXPECT_HAS(message, kind.kind);
 }
 

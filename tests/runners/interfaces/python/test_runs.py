@@ -120,12 +120,12 @@ def test_attributes_are_texts():
 
 def test_measures_are_those_that_the_command_prints(command_line, tmp_path):
     run = rt.run("fig4.12", seed=5)
-    lines = command_line("run", "fig4.12", "--set", "seed=5", "-o", tmp_path / "a.h5").splitlines()[1:]
-    printed = {line.split()[0]: line.split()[1:] for line in lines}
+    lines = command_line("run", "fig4.12", "--all", "--set", "seed=5", "-o", tmp_path / "a.h5").splitlines()[1:]
+    printed = {line.split()[0]: line for line in lines}
     assert len(printed) > 20
-    for name, (value, unit) in printed.items():
-        assert f"{float(run[name]):.6g}" == value, name
-        assert run[name].attrs["units"] == unit, name
+    for name, line in printed.items():
+        assert f"{float(run[name]):.6g}" == line.split()[1], name
+        assert line.endswith(run[name].attrs["long_name"]), name
         assert run[name].dims == ()
 
 

@@ -118,13 +118,13 @@ def test_a_figure_is_a_dict_of_tables(command_line, tmp_path):
             assert variable.attrs["units"]
 
 
-METHODS = {"name": "variant", "variants": [{"name": "printed"}, {"name": "slow", "set": {"renderer.steps_per_tick": 1}}]}
+VARIANTS = {"name": "variant", "variants": [{"name": "printed"}, {"name": "slow", "set": {"renderer.steps_per_tick": 1}}]}
 
 
 def test_joint_axes_are_coordinates():
     radii = {"name": "r_c", "unit": "m", "parameters": ["renderer.r1_m", "renderer.r2_m"],
              "values": [[0.00399, 0.00401], [0.00499, 0.00501]], "labels": [0.004, 0.005]}
-    sweep = rt.sweep({**SWEEP, "axes": [radii, METHODS]})
+    sweep = rt.sweep({**SWEEP, "axes": [radii, VARIANTS]})
     assert sweep.max_force.dims == ("r_c", "variant", "replicate")
     assert [*sweep.r_c.values] == [0.004, 0.005] and sweep.r_c.attrs["units"] == "m"
     assert [*sweep["variant"].values] == ["printed", "slow"]
@@ -134,7 +134,7 @@ def test_joint_axes_are_coordinates():
 
 def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
     file = tmp_path / "map.h5"
-    sweep = rt.sweep({**SWEEP, "axes": [SWEEP["axes"][0], METHODS]}, output=file)
+    sweep = rt.sweep({**SWEEP, "axes": [SWEEP["axes"][0], VARIANTS]}, output=file)
     question = {"limit": "max_force", "above": float(sweep.max_force.median()), "mean": ["max_force"], "by": "noise_sigma_m",
                 "difference": "max_force"}
     stored, given = rt.analyse(file, **question), rt.analyse(sweep, **question)

@@ -24,8 +24,9 @@ class BrowserDeviceTest : public testing::Test {
     }
     return reading;
   }
-  void want(const HandPose& pose) {
-    poses_->back() = pose;
+  void want(const HandPose& pose) { request({{start_.position_W, start_.orientation_W, 0}, pose}); }
+  void request(const HandMotion& motion) {
+    poses_->back() = motion;
     poses_->publish();
   }
 
@@ -79,6 +80,17 @@ TEST_F(BrowserDeviceTest, TurnsToThePoseAndReportsTheButtons) {
   want(turned);
   EXPECT_EQ(after(1).buttons, 3u);
   EXPECT_NEAR(after(1000).orientation.angularDistance(turned.orientation_W), 0, 1e-8);
+}
+
+// The stop and the first motion after it may reach the loop together.
+TEST_F(BrowserDeviceTest, ANewStopHoldsTheHandWhereThatTickHasIt) {
+  after(1);
+  want({start_.position_W + Vec3(1, 0, 0)});
+  const Vec3 there = after(300).position_m;
+  request({{}, {Vec3(0, 0.01, 0)}, 1});
+  EXPECT_NEAR((after(500).position_m - there - Vec3(0, 0.01, 0)).norm(), 0, 1e-9);
+  request({{}, {Vec3(0, 0.03, 0)}, 1});
+  EXPECT_NEAR((after(500).position_m - there - Vec3(0, 0.03, 0)).norm(), 0, 1e-9) << "the same stop";
 }
 
 // A loop that missed ticks finds the hand where it would be by then.

@@ -1,14 +1,18 @@
 // The presets of data/devices: experiments with the limits of a haptic device.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/live/devices/device_placement.h"
 #include "tests/support/scenes.h"
 
@@ -37,8 +41,14 @@ std::string file_of(const Preset& preset) {
   return std::string("data/devices/") + preset.name + ".json";
 }
 
-Experiment load(const Preset& preset) {
-  return Experiment::load((kRoot / file_of(preset)).string());
+Experiment load(const Preset& preset, const std::vector<std::string>& overrides = {}) {
+  return Experiment::load((kRoot / file_of(preset)).string(), overrides);
+}
+
+void expect_in_workspace(const Preset& preset, const DevicePlacement& placement, const Vec3& p_W) {
+  const Vec3 p_D = placement.of_device({.position_W = p_W}).position_m;
+  EXPECT_TRUE((p_D.cwiseAbs().array() <= preset.half_width_m.array()).all())
+      << preset.name << ": " << p_D.transpose();
 }
 
 TEST(DevicePresets, AreOneFileForEachDeviceAndAPageNamesIt) {
@@ -60,13 +70,27 @@ TEST(DevicePresets, KeepTheHandInTheWorkspace) {
     const auto scenario = experiment.build_scenario(scenes::kernels());
     const auto hand = experiment.build_trajectory(*scenario);
     const DevicePlacement placement(experiment.live());
-    for (int i = 0; i <= 100; ++i) {
-      const double time_s = 0.01 * i * experiment.settings().duration_s;
-      const Vec3 p_D = placement.of_device(hand->at(time_s)).position_m;
-      EXPECT_TRUE((p_D.cwiseAbs().array() <= preset.half_width_m.array()).all())
-          << preset.name << " at " << time_s << " s: " << p_D.transpose();
-    }
+    for (int i = 0; i <= 100; ++i)
+      expect_in_workspace(preset, placement,
+                          hand->at(0.01 * i * experiment.settings().duration_s).position_W);
     EXPECT_LE(hand->duration_s(), experiment.settings().duration_s) << preset.name;
+  }
+}
+
+// The hand of a run yields to the force, so it is not where the trajectory is. Fewer pixels make the run
+// short.
+TEST(DevicePresets, KeepTheHandOfARunInTheWorkspace) {
+  for (const Preset& preset : kPresets) {
+    const Experiment experiment =
+        load(preset, {"scenario.width=160", "scenario.height=120", "scenario.focal_px=131"});
+    const DevicePlacement placement(experiment.live());
+    const Trace trace = simulate(experiment);
+    double yields_m = 0;
+    for (std::size_t i = 0; i < trace.length(); ++i) {
+      expect_in_workspace(preset, placement, trace.hip_position_m[i]);
+      yields_m = std::max(yields_m, (trace.hip_position_m[i] - trace.intended_position_m[i]).norm());
+    }
+    EXPECT_EQ(yields_m > 0.001, preset.max_force_N > 0) << preset.name << " yields by " << yields_m << " m";
   }
 }
 

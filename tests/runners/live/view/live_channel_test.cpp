@@ -281,7 +281,7 @@ TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
   EXPECT_FALSE(channel_.receive(hand_request_bytes())) << "LivePages decides who has the hand";
   EXPECT_TRUE(channel_.receive(hand_bytes({0.1, 0.2, 0.3})));
   ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(poses_->front().to.position_W, Vec3(0.1, 0.2, 0.3));
 }
 
 // The values and the reason of a refusal come back as JSON, also to the page that is opened next.
@@ -319,11 +319,11 @@ TEST_F(LiveChannelTest, ReleasesTheButtonWhenThePageCloses) {
   channel_.open();
   EXPECT_TRUE(channel_.receive(hand_bytes({0.1, 0.2, 0.3}, 1)));
   ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().buttons, 1u);
+  EXPECT_EQ(poses_->front().to.buttons, 1u);
   channel_.close();
   ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().buttons, 0u);
-  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(poses_->front().to.buttons, 0u);
+  EXPECT_EQ(poses_->front().to.position_W, Vec3(0.1, 0.2, 0.3));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/doubles/simulated_clock.h"
 #include "tests/runners/live/view/page_bytes.h"
 #include "tests/support/scenes.h"
 
@@ -37,10 +38,22 @@ class LivePagesTest : public testing::Test {
     return *channel;
   }
 
+  // The position of the hand in the world after so many ticks of the loop, whose rows do not reach the pages.
+  Vec3 hand_after(int ticks) {
+    DeviceReading reading;
+    for (int i = 0; i < ticks; ++i) {
+      clock_.sleep_s(0.001);
+      EXPECT_FALSE(device_.read(reading));
+    }
+    return reading.position_m;
+  }
+
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
       Experiment::load("fig4.12"), scenes::kernels(), LiveControls::Camera::other);
   LivePages pages_{1000, DevicePlacement(LiveSettings()), scenes::kernels(), poses_, controls_, 0.02};
+  SimulatedClock clock_;
+  BrowserDevice device_{poses_, {}, DevicePlacement(LiveSettings()), 1000, clock_};
 };
 
 const nlohmann::json kHand = {{"hand", true}}, kWatches = {{"hand", false}};
@@ -51,12 +64,11 @@ TEST_F(LivePagesTest, TheFirstPageHasTheHandAndTheOthersWatch) {
   EXPECT_EQ(texts(second), std::vector{kWatches});
   EXPECT_FALSE(pages_.receive(second, hand_at(0.2)));
   EXPECT_FALSE(pages_.receive(second, change_to(450)));
-  EXPECT_FALSE(poses_->take()) << "the hand is the other page's";
+  EXPECT_EQ(hand_after(500), Vec3::Zero()) << "the hand is the other page's";
   EXPECT_FALSE(controls_->has_changed());
   EXPECT_TRUE(pages_.receive(first, hand_at(0.5))) << "where this page begins to count";
   EXPECT_TRUE(pages_.receive(first, hand_at(0.6)));
-  ASSERT_TRUE(poses_->take());
-  EXPECT_NEAR(poses_->front().position_W.x(), 0.1, 1e-12);
+  EXPECT_NEAR(hand_after(500).x(), 0.1, 1e-9);
 }
 
 TEST_F(LivePagesTest, APageThatWatchesTakesTheHandOverAndTheOtherWatches) {
@@ -67,6 +79,7 @@ TEST_F(LivePagesTest, APageThatWatchesTakesTheHandOverAndTheOtherWatches) {
   EXPECT_EQ(texts(first), std::vector{kWatches});
   EXPECT_EQ(texts(second), std::vector{kHand});
   EXPECT_TRUE(texts(third).empty());
+  hand_after(1);
   EXPECT_FALSE(pages_.receive(first, hand_at(0.3)));
   EXPECT_FALSE(pages_.receive(first, change_to(450)));
   EXPECT_FALSE(poses_->take());
@@ -77,24 +90,35 @@ TEST_F(LivePagesTest, APageThatWatchesTakesTheHandOverAndTheOtherWatches) {
   EXPECT_FALSE(second.has_hand());
 }
 
-// The first page drags the hand with its button down. The second one believes that the hand is elsewhere.
-TEST_F(LivePagesTest, ATakeOverStopsTheHandWhereTheRunHasIt) {
+// A stalled disk delays the rows: the pages know only where the hand was 40 ms ago, 40 mm back. The second
+// page believes that the hand is elsewhere. The hand comes to rest where it was at the take-over.
+TEST_F(LivePagesTest, ATakeOverStopsTheHandWhereItIsEvenIfTheRowsAreLate) {
   LiveChannel &first = open("a"), &second = open("b");
+  hand_after(1);
   EXPECT_TRUE(pages_.receive(first, hand_at(0)));
-  EXPECT_TRUE(pages_.receive(first, hand_at(0.4, 1)));
-  LiveTick now;
-  now.device.position_W = Vec3(0.1, 0.2, 0.3);
-  pages_.take(now);
+  EXPECT_TRUE(pages_.receive(first, hand_at(1)));
+  LiveTick late;
+  late.device.position_W = hand_after(300);
+  pages_.take(late);
+  const double there_m = hand_after(40).x();
+  ASSERT_GT(there_m, late.device.position_W.x() + 0.039);
   EXPECT_TRUE(pages_.receive(second, hand_request_bytes()));
-  ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3)) << "not on its way to 0.4 m";
-  EXPECT_EQ(poses_->front().buttons, 0u);
   EXPECT_TRUE(pages_.receive(second, hand_at(-5)));
-  ASSERT_TRUE(poses_->take());
-  EXPECT_NEAR((poses_->front().position_W - Vec3(0.1, 0.2, 0.3)).norm(), 0, 1e-12);
+  for (int i = 0; i < 500; ++i) EXPECT_GE(hand_after(1).x(), there_m - 1e-9) << i << " ms: pulled back";
+  EXPECT_NEAR(hand_after(1).x(), there_m, 1e-9);
   EXPECT_TRUE(pages_.receive(second, hand_at(-4.99)));
-  ASSERT_TRUE(poses_->take());
-  EXPECT_NEAR((poses_->front().position_W - Vec3(0.11, 0.2, 0.3)).norm(), 0, 1e-12);
+  EXPECT_NEAR(hand_after(500).x(), there_m + 0.01, 1e-9);
+}
+
+TEST_F(LivePagesTest, APageThatIsClosedStopsTheHandWhereItIsEvenIfTheRowsAreLate) {
+  LiveChannel& first = open("a");
+  open("b");
+  hand_after(1);
+  EXPECT_TRUE(pages_.receive(first, hand_at(0)));
+  EXPECT_TRUE(pages_.receive(first, hand_at(1, 1)));
+  const double there_m = hand_after(300).x();
+  pages_.close(first);
+  EXPECT_NEAR(hand_after(500).x(), there_m, 1e-9);
 }
 
 // Two pages that take the hand from each other, and a network that sends nothing.
@@ -108,6 +132,20 @@ TEST_F(LivePagesTest, TakeOversDoNotFillTheQueueOfASlowPage) {
   EXPECT_EQ(texts(second), std::vector{kWatches});
 }
 
+// The pages have shown nothing since these changes: only the newest values, and each refusal, wait for them.
+TEST_F(LivePagesTest, ChangesOfParametersDoNotFillTheQueueOfASlowPage) {
+  LiveChannel &first = open("a"), &second = open("b");
+  texts(first), texts(second);
+  for (const double value : {450.0, -1.0, 460.0, 470.0, 480.0}) pages_.receive(first, change_to(value));
+  const auto waiting = texts(second);
+  ASSERT_EQ(waiting.size(), 1u);
+  EXPECT_EQ(waiting[0]["values"][3], 480);
+  const auto own = texts(first);
+  ASSERT_EQ(own.size(), 2u);
+  EXPECT_NE(own[0]["refused"], "");
+  EXPECT_EQ(own[1]["values"][3], 480);
+}
+
 TEST_F(LivePagesTest, ThePageThatWatchedLongestGetsTheHand) {
   LiveChannel &first = open("a"), &second = open("b"), &third = open("c");
   texts(second), texts(third);
@@ -115,7 +153,7 @@ TEST_F(LivePagesTest, ThePageThatWatchedLongestGetsTheHand) {
   ASSERT_TRUE(poses_->take());
   pages_.close(first);
   ASSERT_TRUE(poses_->take());
-  EXPECT_EQ(poses_->front().buttons, 0u) << "nobody holds the button";
+  EXPECT_EQ(poses_->front().to.buttons, 0u) << "nobody holds the button";
   EXPECT_EQ(texts(second), std::vector{kHand});
   EXPECT_TRUE(texts(third).empty());
   EXPECT_TRUE(pages_.receive(second, hand_at(0.3)));

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "runners/live/view/page_message.h"
 #include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch::page_hand_test {
@@ -16,78 +15,60 @@ Eigen::Quaterniond about_z(double degrees) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitZ()));
 }
 
+// The hand that the loop reads, and the page that moves it, as in a live run at 1 kHz.
 class PageHandTest : public testing::Test {
  protected:
-  HandPose newest() {
-    EXPECT_TRUE(poses_->take());
-    return poses_->front();
-  }
-
-  const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
-  PageHand hand_{poses_};
-};
-
-TEST_F(PageHandTest, TheFirstPoseOfAPageDoesNotMoveTheHand) {
-  hand_.take({Vec3(0.1, 0, 0), about_z(90), 0});
-  hand_.pass_on();
-  EXPECT_FALSE(poses_->take()) << "nobody has moved the hand yet";
-  hand_.move({Vec3(7, 7, 7), about_z(20), 0});
-  const HandPose first = newest();
-  EXPECT_NEAR((first.position_W - Vec3(0.1, 0, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(first.orientation_W.angularDistance(about_z(90)), 0, 1e-7);
-  hand_.move({Vec3(7, 7.01, 7), about_z(25), 2});
-  const HandPose second = newest();
-  EXPECT_NEAR((second.position_W - Vec3(0.1, 0.01, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(second.orientation_W.angularDistance(about_z(95)), 0, 1e-7);
-  EXPECT_EQ(second.buttons, 2u);
-}
-
-// The hand is on its way to the newest pose. It stops where the newest tick has it.
-TEST_F(PageHandTest, PassingOnStopsTheHandAndReleasesItsButtons) {
-  hand_.take({Vec3::Zero(), about_z(0), 0});
-  hand_.move({Vec3::Zero(), about_z(0), 0});
-  hand_.move({Vec3(1, 0, 0), about_z(0), 3});
-  hand_.take({Vec3(0.25, 0, 0), about_z(0), 3});
-  hand_.pass_on();
-  EXPECT_EQ(newest().position_W, Vec3(0.25, 0, 0));
-  EXPECT_EQ(poses_->front().buttons, 0u);
-}
-
-TEST_F(PageHandTest, NoPoseIsBeyondTheLimitOfPages) {
-  hand_.take({Vec3(9, 0, 0), about_z(0), 0});
-  hand_.move({Vec3(-10, 0, 0), about_z(0), 0});
-  hand_.move({Vec3(10, 0, 0), about_z(0), 0});
-  EXPECT_EQ(newest().position_W.x(), kMaxHandDistance_m);
-}
-
-TEST_F(PageHandTest, BeforeTheFirstTickThePoseOfThePageCounts) {
-  hand_.pass_on();
-  hand_.move({Vec3(0.3, 0, 0), about_z(0), 0});
-  EXPECT_EQ(newest().position_W, Vec3(0.3, 0, 0));
-}
-
-// The hand that the loop reads, and the page that moves it, as in a live run at 1 kHz.
-class TakeOver : public PageHandTest {
- protected:
-  // Returns the position of the hand after so many ticks.
-  Vec3 after(int ticks) {
+  DeviceReading read_after(int ticks) {
     DeviceReading reading;
     for (int i = 0; i < ticks; ++i) {
       clock_.sleep_s(0.001);
       EXPECT_FALSE(device_.read(reading));
-      hand_.take({reading.position_m, reading.orientation, 0});
     }
-    return reading.position_m;
+    return reading;
   }
+  Vec3 after(int ticks) { return read_after(ticks).position_m; }
   void page_at(double x_m) { hand_.move({Vec3(x_m, 0, 0), about_z(0), 0}); }
 
+  const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
+  PageHand hand_{poses_};
   SimulatedClock clock_;
-  BrowserDevice device_{
-      poses_, {.position_W = Vec3(0.1, 0.2, 0.3)}, DevicePlacement(LiveSettings{}), 1000, clock_};
+  const DeviceState start_{.position_W = Vec3(0.1, 0.2, 0.3), .orientation_W = about_z(90)};
+  BrowserDevice device_{poses_, start_, DevicePlacement(LiveSettings{}), 1000, clock_};
 };
 
+TEST_F(PageHandTest, TheFirstPoseOfAPageDoesNotMoveTheHand) {
+  hand_.pass_on();
+  hand_.move({Vec3(7, 7, 7), about_z(20), 0});
+  const DeviceReading first = read_after(1000);
+  EXPECT_NEAR((first.position_m - start_.position_W).norm(), 0, 1e-12);
+  EXPECT_NEAR(first.orientation.angularDistance(about_z(90)), 0, 1e-7);
+  hand_.move({Vec3(7, 7.01, 7), about_z(25), 2});
+  const DeviceReading second = read_after(1000);
+  EXPECT_NEAR((second.position_m - Vec3(0.1, 0.21, 0.3)).norm(), 0, 1e-9);
+  EXPECT_NEAR(second.orientation.angularDistance(about_z(95)), 0, 1e-7);
+  EXPECT_EQ(second.buttons, 2u);
+}
+
+TEST_F(PageHandTest, PassingOnStopsTheRotationAndReleasesTheButtons) {
+  hand_.move({Vec3::Zero(), about_z(0), 0});
+  hand_.move({Vec3::Zero(), about_z(90), 3});
+  const DeviceReading turning = read_after(50);
+  EXPECT_EQ(turning.buttons, 3u);
+  EXPECT_GT(turning.orientation.angularDistance(start_.orientation_W), 0.1);
+  hand_.pass_on();
+  const DeviceReading stopped = read_after(500);
+  EXPECT_NEAR(stopped.orientation.angularDistance(turning.orientation), 0, 1e-7);
+  EXPECT_EQ(stopped.buttons, 0u);
+}
+
+// The pages are limited to 20 m of motion, and the hand begins at 0.1 m.
+TEST_F(PageHandTest, NoPoseIsBeyondTheLimitOfPages) {
+  page_at(-10), page_at(10);
+  EXPECT_NEAR(after(12000).x(), kMaxHandDistance_m, 1e-9);
+}
+
 // A hand that presses keeps its depth, so the force does not jump.
-TEST_F(TakeOver, LeavesAHandAtRestWhereItIs) {
+TEST_F(PageHandTest, ATakeOverLeavesAHandAtRestWhereItIs) {
   after(1);
   page_at(0), page_at(0.02);
   const Vec3 pressed = after(1000);
@@ -98,7 +79,7 @@ TEST_F(TakeOver, LeavesAHandAtRestWhereItIs) {
 
 // A hand at its greatest speed v overshoots by v / (e w), as a critically damped spring does, and then
 // returns.
-TEST_F(TakeOver, StopsAMovingHandWithoutAJump) {
+TEST_F(PageHandTest, ATakeOverStopsAMovingHandWithoutAJump) {
   after(1);
   page_at(0), page_at(1);
   const Vec3 there = after(300);

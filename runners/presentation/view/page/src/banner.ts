@@ -8,7 +8,7 @@ export interface Notice { kind: string; text: string }
 // What the page knows. silentS: time since the newest tick came. whoActs: a statement if another page has the hand.
 export interface LiveState { link: LinkState; trouble: Trouble; silentS: number; whoActs: string; limit: Limit | null; missed: string }
 
-// A force that is limited for a few ticks can be read for so long.
+// A notice of the kind `held` stays for heldMs, so that a limit of a few ticks can be read.
 const heldMs = 1500, held = "limited";
 
 function sentence(text: string): string {
@@ -28,7 +28,7 @@ export function noticesOf({ link, trouble, silentS, whoActs, limit, missed }: Li
   return all.filter(({ text }) => text !== "");
 }
 
-// Of the newest seconds: how many ticks missed their deadline, if more than one in a hundred.
+// Returns a sentence about missed deadlines in the newest `seconds`; empty if at most 1 % of the ticks missed theirs.
 export function missedText(run: Run, tick: number, seconds: number): string {
   const { missed, ticks, longestS } = missedDeadlines(run, tick, seconds);
   if (missed <= 0.01 * (ticks + missed)) return "";
@@ -47,7 +47,7 @@ export class Banner {
     this.element.setAttribute("role", "status");
   }
 
-  // isLive: the run goes on as far as the page knows.
+  // isLive: the run continues as far as the page knows.
   show(notices: Notice[], isLive: boolean): void {
     const now = performance.now(), limited = notices.find(({ kind }) => kind === held);
     if (limited) this.last = { notice: limited, ms: now };

@@ -5,7 +5,7 @@ import type { Frame, Run } from "./data";
 import { PointsBuffer } from "./points_buffer";
 
 const maxRegions = 3000;
-const near = 0.2; // of the radius: of regions in a cube of this size one is drawn
+const regionSpacing = 0.2; // of the radius: of regions in a cube of this size one is drawn
 
 // Of the heights, in the numbers of positions.
 function rangeOf(all: Uint16Array[]): [number, number] {
@@ -28,7 +28,7 @@ export class CloudView {
   touching = 0;
   private readonly buffer = new PointsBuffer();
   private readonly points: THREE.Points;
-  private readonly around = new PointsBuffer(); // all points near the hand, where only some of the others are drawn
+  private readonly nearHand = new PointsBuffer(); // all points near the hand, where only some of the others are drawn
   private tinted: Uint8Array = new Uint8Array();
   private readonly near: THREE.Points;
   private readonly regions: THREE.InstancedMesh;
@@ -41,9 +41,9 @@ export class CloudView {
   constructor(private readonly run: Run, pointMm: number) {
     this.points = new THREE.Points(this.buffer.geometry,
       new THREE.PointsMaterial({ size: pointMm, vertexColors: true }));
-    const around = new THREE.Points(this.around.geometry, this.points.material);
-    around.frustumCulled = false;
-    this.points.add(around);
+    const nearHand = new THREE.Points(this.nearHand.geometry, this.points.material);
+    nearHand.frustumCulled = false;
+    this.points.add(nearHand);
     this.near = new THREE.Points(new THREE.BufferGeometry(),
       new THREE.PointsMaterial({ size: 2.6 * pointMm, color: colours.touching }));
     // Thousands of balls that overlap would hide everything behind them. Only their nearest surface is drawn: the first
@@ -70,11 +70,11 @@ export class CloudView {
     const frame = this.run.frameAt(tick);
     if (frame !== this.shown) this.showFrame(frame);
     this.showTouching(frame, tick);
-    this.showAround(frame, tick);
+    this.showNearHand(frame, tick);
   }
   // Points that are drawn near the hand, beside the others.
-  get aroundCount(): number {
-    return this.around.count;
+  get nearHandCount(): number {
+    return this.nearHand.count;
   }
   // Points that are drawn.
   pointCount(): number {
@@ -122,7 +122,7 @@ export class CloudView {
   private apart(frame: Frame, radii: Float32Array, points: number[]): number[] {
     const taken = new Set<string>();
     return points.filter((i) => {
-      const place = this.run.point(frame, i).map((x) => Math.floor(x / (near * radii[i]))).join();
+      const place = this.run.point(frame, i).map((x) => Math.floor(x / (regionSpacing * radii[i]))).join();
       return !taken.has(place) && taken.add(place);
     });
   }
@@ -134,11 +134,11 @@ export class CloudView {
     this.near.geometry.setDrawRange(0, this.touching);
     this.near.geometry.getAttribute("position").needsUpdate = true;
   }
-  private showAround(frame: Frame | undefined, tick: number): void {
+  private showNearHand(frame: Frame | undefined, tick: number): void {
     const near = frame && this.share < 1 ? this.run.nearHand(frame, tick) : [];
     const three = (from: Uint16Array | Uint8Array) => near.flatMap((i) => [from[3 * i], from[3 * i + 1], from[3 * i + 2]]);
-    if (near.length > 0 || this.around.count > 0)
-      this.around.set(Uint16Array.from(three(frame?.positions ?? new Uint16Array())), Uint8Array.from(three(this.tinted)));
+    if (near.length > 0 || this.nearHand.count > 0)
+      this.nearHand.set(Uint16Array.from(three(frame?.positions ?? new Uint16Array())), Uint8Array.from(three(this.tinted)));
   }
   private makeRoom(points: number): void {
     this.near.geometry.dispose();

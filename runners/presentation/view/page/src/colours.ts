@@ -1,5 +1,6 @@
-// One colour for each thing, in 3-D, plots and legend: on a dark ground, and where curves are drawn on a light one. Any two of
-// a ground differ also for eyes without red or green cones, and have a contrast of 3:1 to it: tests/system/viewer/colours.mjs.
+// One colour for each thing, in 3-D, plots and legend: on a dark ground, and where curves are drawn on a light one. Any two
+// colours for one ground differ also for colour-blind eyes, and each has a contrast of at least 3:1 to the ground:
+// tests/system/viewer/colours.mjs.
 export const table = {
   hip: ["#e9a200", "#c08800"],
   proxy: ["#5590ee", "#146bab"],

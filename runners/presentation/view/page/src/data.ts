@@ -46,7 +46,7 @@ export class Column {
 
   // kept: a live run overwrites its oldest ticks.
   value(tick: number, part = 0): number {
-    const row = tick < this.kept ? tick : tick % this.kept; // a division for each tick of a plot would take most of its time
+    const row = tick < this.kept ? tick : tick % this.kept; // avoids a division, which would take most of the time of a plot
     return this.numbers[row * this.width + part] ?? Number.NaN;
   }
   // Of a vector its length.

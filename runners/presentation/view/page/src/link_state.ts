@@ -28,7 +28,7 @@ export function stateOf(answer: Answer, protocol: number): LinkState {
   if (answer.protocol !== protocol)
     return { kind: "version", final: true, text: `The program at ${host} has another version than this page (protocol ${answer.protocol ?? "unknown"}, here ${protocol}). Load the page again.` };
   if (answer.ended) return { kind: "ended", final: true, text: `The run has ended: ${answer.ended}.` };
-  if (answer.full) return { kind: "full", text: "As many pages as possible show this run already. This page connects when one of them is closed." };
+  if (answer.full) return { kind: "full", text: "This run is already shown by the maximum number of pages. This page connects when one of them is closed." };
   return { kind: "lost", text: "The connection was lost; the run continues." };
 }
 

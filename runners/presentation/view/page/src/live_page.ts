@@ -105,8 +105,8 @@ class LivePage {
   private follow(): void {
     const tick = this.run.ticks - 1;
     this.follows = true;
+    this.mouse?.start(this.run.vector("hip_position", tick), this.orientation(tick)); // first, so that it tells no older place
     this.showState();
-    this.mouse?.start(this.run.vector("hip_position", tick), this.orientation(tick));
   }
   showHand(has: boolean): void {
     this.hadHand = this.hasHand === true && !has;
@@ -141,12 +141,12 @@ class LivePage {
   }
   // Empty: this page, or there is nothing to act on.
   private whoActs(): string {
-    const what = this.isHand ? "hand" : "sliders", it = this.isHand ? "it" : "them";
+    const what = this.isHand ? "hand" : "sliders";
     if (this.hasHand !== false || (!this.isHand && this.run.stored.parameters.length === 0)) return "";
     this.takeOver.textContent = `Take over the ${what}`;
     this.takeOver.title = `this page controls the ${what}, and the other page watches`;
     return this.hadHand ? `Another page has taken over the ${what}. This page only watches now.`
-      : `Another page controls the ${what}. This page only watches, and controls ${it} when that page is closed.`;
+      : `Another page controls the ${what}. This page only watches.`;
   }
   private showStatus(): void {
     this.banner.show(noticesOf({

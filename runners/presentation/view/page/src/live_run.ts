@@ -11,7 +11,7 @@ export interface Trouble { camera: string; force: string }
 // A statement about the force that the safety gate passes. gate: it passes none; limited: it passes less than is commanded.
 export interface Limit { kind: "gate" | "limited"; text: string }
 
-// Why the device gets another force than the renderer commands; null: it gets that.
+// Why the device receives another force than the renderer commands; null: it receives that force.
 export function limitOf(run: Run, tick: number): Limit | null {
   const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
   const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);

@@ -21,7 +21,7 @@ function stepOf(event: KeyboardEvent | WheelEvent): Step {
 }
 
 export class MouseHand {
-  isActive = false; // the mouse and the keys move the hand
+  private active = false;
   private step: Step = "usual";
   private readonly place: THREE.Vector3; // mm
   private readonly turned = new THREE.Quaternion();
@@ -54,6 +54,13 @@ export class MouseHand {
     document.addEventListener("keyup", (event) => this.key(event, false));
   }
 
+  // Whether the mouse and the keys move the hand. Motion that the user cannot see is not counted, but a button that is
+  // released meanwhile is.
+  set isActive(active: boolean) {
+    const begins = active && !this.active;
+    this.active = active;
+    if (begins) this.tell();
+  }
   // What a step is now, and how to get others.
   get stepText(): string {
     const text = (step: Step) => `${steps[step].mm} mm, ${steps[step].degrees}°`;
@@ -73,15 +80,18 @@ export class MouseHand {
     this.tell();
   }
   private drag(right: number, down: number): void {
+    if (!this.active) return;
     const mm = this.scene.mmPerPixel(this.place), [x, y] = this.scene.directions();
     this.place.addScaledVector(x, right * mm).addScaledVector(y, -down * mm);
     this.tell();
   }
   private move(way: [number, number, number], step: Step): void {
+    if (!this.active) return;
     this.scene.directions().forEach((direction, k) => { this.place.addScaledVector(direction, steps[step].mm * way[k]); });
     this.tell();
   }
   private turn(axis: [number, number, number], step: Step): void {
+    if (!this.active) return;
     const about = new THREE.Vector3(), angle = (steps[step].degrees * Math.PI) / 180;
     this.scene.directions().forEach((direction, k) => { about.addScaledVector(direction, axis[k]); });
     this.turned.premultiply(new THREE.Quaternion().setFromAxisAngle(about.normalize(), angle)).normalize();
@@ -90,8 +100,8 @@ export class MouseHand {
   private key(event: KeyboardEvent, down: boolean): void {
     this.step = stepOf(event);
     if (event.key === "b" && !down) this.letGo(); // wherever the focus is now
-    if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
-    if (event.key === "b" && down && !event.repeat) {
+    if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || document.querySelector("dialog[open]")) return;
+    if (event.key === "b" && down && !event.repeat && this.active) {
       this.buttons = 1;
       this.tell();
     }
@@ -102,7 +112,7 @@ export class MouseHand {
     else this.turn(axis, this.step);
   }
   private tell(): void {
-    if (!this.isActive) return;
+    if (!this.active) return;
     const { x, y, z } = this.place, q = this.turned;
     this.send({ position: [x / 1000, y / 1000, z / 1000], orientation: [q.w, q.x, q.y, q.z], buttons: this.buttons });
   }

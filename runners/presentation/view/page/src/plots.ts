@@ -4,7 +4,7 @@ import type { Column, Run } from "./data";
 import { digits, round125 } from "./data";
 import type { TimeAxis } from "./time_axis";
 
-// part: of a vector; without it a vector is shown by its length.
+// part: component of a vector; without it the magnitude is shown.
 export interface Curve { column: Column; colour: string; label: string; dashed: boolean; part?: number }
 
 // The part of a canvas's context that draws plots: a picture in SVG is drawn by the same calls.
@@ -13,7 +13,7 @@ export type Pen = Pick<CanvasRenderingContext2D, "beginPath" | "moveTo" | "lineT
 // Colours of the ground; isDark chooses those of the curves.
 export interface Ink { line: string; quiet: string; isDark: boolean }
 
-// Plots are drawn without the graphics interface: where software does its work, a zoom is six times as fast.
+// Plots are drawn by the CPU: on a machine without a GPU this makes a zoom six times as fast.
 const plain: CanvasRenderingContext2DSettings = { willReadFrequently: true };
 
 // A unit as it is plotted, how many of them the stored one is, and the least range of an axis: below it changes are those

@@ -9,7 +9,7 @@ import { Player } from "./player";
 import { RunPlots } from "./run_plots";
 import { pictureName, savePng } from "./save";
 import { type CameraPreset, SceneView } from "./scene";
-import { EventList, eventsOf, mostImportant } from "./story";
+import { EventList, eventsOf, mostImportantTick } from "./story";
 import { Timeline } from "./timeline";
 
 function firstTicksOfFrames(run: Run): number[] {
@@ -48,7 +48,7 @@ function makePicture(runs: Run[]): Picture {
 
 const presets: CameraPreset[] = ["sensor", "side", "follow", "across"];
 const meaningOf: Record<CameraPreset, string> = {
-  sensor: "where the sensor is", side: "beside the whole scene", follow: "near the proxy", across: "beside the force, as the page opens",
+  sensor: "where the sensor is", side: "beside the whole scene", follow: "near the proxy", across: "across the force, as the page opens",
 };
 
 function cameraButtons(scene: SceneView): HTMLElement[] {
@@ -56,7 +56,8 @@ function cameraButtons(scene: SceneView): HTMLElement[] {
     button(preset, `camera ${meaningOf[preset]} (${i + 1})`, () => scene.setCamera(preset)));
 }
 
-// Space presses a button that has the focus, and arrows move a slider that has it: nothing else.
+// Returns true if the focused control handles the key: a list receives every key, a slider every key but space, and a button
+// or a link only space.
 function isForControl(event: KeyboardEvent): boolean {
   const { target, key } = event;
   if (target instanceof HTMLSelectElement) return true;
@@ -147,7 +148,7 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", pla
   listenToKeys(player, timeline, plots, picture.scene, dialogs, ended.signal);
   picture.scene?.setCamera("across");
   const address = new Address(place);
-  listenToAddress(address, player, timeline, goToEvent, mostImportant(events), ended.signal);
+  listenToAddress(address, player, timeline, goToEvent, mostImportantTick(events), ended.signal);
   const end = () => {
     player.stop();
     address.end();

@@ -139,7 +139,7 @@ export class SceneView {
     this.resize();
     this.controls.update();
   }
-  // The tick is shown as the page opens there: across its force, unless somebody has chosen another view.
+  // Turns the camera across the force of this tick, unless the user has chosen another view.
   showEvent(tick: number): void {
     this.tick = tick;
     if (this.across) this.setCamera("across");
@@ -201,7 +201,7 @@ export class SceneView {
     this.showBar();
   }
 
-  // From the side of what the sensor sees, and from above.
+  // Returns the direction towards a camera beside and above what the sensor sees.
   private beside(forward: Vector): THREE.Vector3 {
     const f = new THREE.Vector3(...forward), up = new THREE.Vector3(0, 1, 0), side = f.clone().cross(up);
     if (side.length() < 0.2) side.set(1, 0, 0); // it looks down
@@ -217,7 +217,7 @@ export class SceneView {
     const preferred = sensor ? new THREE.Vector3(...sensor.forward).negate() : new THREE.Vector3(0.35, 0.3, 1).normalize();
     return acrossForce(along, normal, preferred);
   }
-  // From where proxy, hand and force are seen together, and the proxy is wide enough.
+  // Returns the distance, mm, at which the camera sees proxy, hand and force together, and the proxy is wide enough.
   private nearDistance(): number {
     const arrow = Math.min(this.mmPerN * this.vector(this.runs[0].forceName).length(), this.longestMm);
     const hand = 1000 * this.vector("hip_position").distanceTo(this.vector("proxy_position"));

@@ -4,15 +4,15 @@ import type { Run, RunEvent } from "./data";
 
 const byImportance = ["divergence", "pop-through", "force jump", "largest force", "first contact", "task", "not converged"];
 
-// Of two runs those of both, and whose they are.
+// Returns the events of one run, or of both runs with the number of the run in the text.
 export function eventsOf(runs: Run[]): RunEvent[] {
   if (runs.length === 1) return runs[0].stored.events;
   return runs.flatMap((run, i) => run.stored.events.map((event) =>
     event.kind === "divergence" ? event : { ...event, text: `Run ${i + 1}: ${event.text}` })).sort((a, b) => a.tick - b.tick);
 }
 
-// Where a page opens: at the first event of the most important kind.
-export function mostImportant(events: RunEvent[]): number {
+// Returns the tick at which a page opens: the first event of the most important kind, or 0 without events.
+export function mostImportantTick(events: RunEvent[]): number {
   for (const kind of byImportance) {
     const first = events.find((event) => event.kind === kind);
     if (first) return first.tick;
@@ -38,7 +38,7 @@ export class EventList {
       const row = document.createElement("button"), item = document.createElement("li");
       row.type = "button";
       row.textContent = `tick ${event.tick}: ${event.text}`;
-      row.style.setProperty("--dot", eventColours[event.kind] ?? "gray");
+      row.style.setProperty("--dot", eventColours[event.kind] ?? "grey");
       row.addEventListener("click", () => goTo(event.tick));
       item.append(row);
       this.list.append(item);

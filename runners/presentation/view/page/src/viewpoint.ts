@@ -1,10 +1,11 @@
-// From which direction a camera sees a contact best.
+// Chooses the direction from which a camera sees a contact best.
 import * as THREE from "three";
 
 const heights = [15, 25, 40]; // degrees above the horizon
 const turns = 36;
 
-// Across the force, with y upwards in the picture, in front of the surface, and otherwise as near as possible to `preferred`.
+// Returns a direction across the force, with y upwards in the picture, in front of the surface, and otherwise as near as
+// possible to `preferred`.
 // Unit vectors towards the camera; along: the direction of the force; front: the surface's normal. Either may be 0.
 export function acrossForce(along: THREE.Vector3, front: THREE.Vector3, preferred: THREE.Vector3): THREE.Vector3 {
   let best = preferred.clone(), most = Number.NEGATIVE_INFINITY;
@@ -18,7 +19,7 @@ export function acrossForce(along: THREE.Vector3, front: THREE.Vector3, preferre
   return best;
 }
 
-// How far away a camera sees a ball of that radius in the whole picture. fov: degrees, of the picture's height.
+// Returns the distance at which a ball of this radius fills the picture. fov: degrees, of the picture's height.
 export function distanceOf(radius: number, fov: number, aspect: number): number {
   return radius / (Math.tan(THREE.MathUtils.degToRad(fov / 2)) * Math.min(aspect, 1));
 }
