@@ -51,8 +51,8 @@ TEST(SweepAnswers, WithoutAQuestionHaveLimitsAndMeans) {
   EXPECT_EQ(answer.tables.front().name, "limits");
   EXPECT_HAS(
       answer.caption,
-      "the x at which popped_through is above 0.5 in 50 % of the runs; along the axis this becomes more "
-      "probable.");
+      "the x at which popped_through is above 0.5 in 50 % of the runs. Along the axis the event becomes "
+      "more probable.");
   const std::vector<std::string> names = tables({});
   for (const char* name : {"mean_popped_through", "mean_max_force"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
