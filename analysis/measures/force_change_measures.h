@@ -10,7 +10,7 @@ struct Trace;
 // Maximum and root mean square of the change of force at ticks with a new frame, N. NaN if no change counts.
 double max_force_jump_N(const Trace& trace);
 double rms_force_jump_N(const Trace& trace);
-// The first tick with that maximum. NaN if no change counts or all are 0.
+// The first tick with the change that max_force_jump_N() returns. NaN if no change counts or all are 0.
 double max_force_jump_tick(const Trace& trace);
 // Root mean square change of the force at the other ticks, N. NaN if no change counts.
 double force_noise_N(const Trace& trace);

@@ -1,7 +1,6 @@
 // The cells of a sweep that have the same values on some of its axes.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
@@ -9,7 +8,7 @@
 namespace remote_touch {
 
 struct CellGroup {
-  std::vector<std::size_t> indices;  // the place on each of the axes that the group has in common
+  std::vector<std::size_t> indices;  // the index on each axis that the group has in common
   std::vector<std::size_t> cells;    // increasing
 };
 
@@ -17,7 +16,7 @@ struct CellGroup {
 // is one group of all cells.
 std::vector<CellGroup> cell_groups(const SweepResult& result, const std::vector<std::size_t>& axes);
 
-// Returns the axis as a column of a table: its value at the given place in each row.
+// Returns the axis as a column of a table: its value at the given index in each row.
 Column axis_at(const Column& axis, const std::vector<std::size_t>& places);
 // Returns one such column for each of the axes: the values that the groups have in common.
 std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::size_t>& axes,

@@ -71,7 +71,7 @@ struct Crossing {
   Place place = Place::no_runs;
 };
 
-// Where the falling curve that is nearest to the values crosses the level.
+// Returns the x at which the falling curve that is nearest to the values crosses the level.
 Crossing crossing_of(const Counts& counts, const std::vector<double>& values, double level) {
   if (values.empty()) return {};
   const std::vector<double> falling = isotonic_falling(values, counts.runs);
@@ -86,6 +86,7 @@ struct Limit {
 
 // A rising share is a falling share with the other sign, so that no share is rounded.
 Limit limit_of(const Counts& counts, bool rises, double level) {
+  if (changes_the_other_way(counts, rises)) return {{kOutside, Place::other_direction}, {}, {}};
   const double sign = rises ? -1 : 1;
   std::vector<double> shares, low, high;
   for (const Tally& t : counts.tallies) {
@@ -93,28 +94,22 @@ Limit limit_of(const Counts& counts, bool rises, double level) {
     shares.push_back(sign * (static_cast<double>(t.events) / t.runs));
     low.push_back(sign * (rises ? to : from)), high.push_back(sign * (rises ? from : to));
   }
-  if (changes_the_other_way(counts, rises)) return {{kOutside, Place::other_direction}, {}, {}};
   return {crossing_of(counts, shares, sign * level), crossing_of(counts, low, sign * level),
           crossing_of(counts, high, sign * level)};
 }
 
 }  // namespace
 
-bool event_rises(const SweepResult& result, const LimitQuestion& question) {
-  double sum = 0;
-  for (const CellGroup& group : cell_groups(result, other_axes(result, question.along)))
-    sum += slope(counts_of(result, question, group));
-  return sum >= 0;
-}
-
-Table event_limits(const SweepResult& result, const LimitQuestion& question) {
+EventLimits event_limits(const SweepResult& result, const LimitQuestion& question) {
   const std::vector<std::size_t> others = other_axes(result, question.along);
   const std::vector<CellGroup> groups = cell_groups(result, others);
-  const bool rises = event_rises(result, question);
+  std::vector<Counts> all;
+  double sum = 0;
+  for (const CellGroup& group : groups) sum += slope(all.emplace_back(counts_of(result, question, group)));
+  const bool rises = sum >= 0;
   std::vector<double> limits, low, high;
   std::vector<std::int32_t> places, runs;
-  for (const CellGroup& group : groups) {
-    const Counts counts = counts_of(result, question, group);
+  for (const Counts& counts : all) {
     const Limit limit = limit_of(counts, rises, question.level);
     limits.push_back(limit.best.x), low.push_back(limit.low.x), high.push_back(limit.high.x);
     places.push_back(static_cast<std::int32_t>(limit.best.place));
@@ -134,7 +129,7 @@ Table event_limits(const SweepResult& result, const LimitQuestion& question) {
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
   table.add("runs", "1", "number of finished runs", std::move(runs));
-  return table;
+  return {std::move(table), rises};
 }
 
 }  // namespace remote_touch

@@ -16,7 +16,12 @@ struct LimitQuestion {
   double level = 0.5;     // probability of the event at the limit, in (0, 1)
 };
 
-// Returns a table with a row for each combination of the other axes: their values, `limit`, `limit_low` and
+struct EventLimits {
+  Table table;
+  bool rises = true;  // true: the event becomes more probable along the axis
+};
+
+// The table has a row for each combination of the other axes: their values, `limit`, `limit_low` and
 // `limit_high` in the unit of the axis, `place` and `runs`.
 //
 // At each value of the axis the share of finished runs with the event has a 95 % Wilson interval. The curve
@@ -27,9 +32,6 @@ struct LimitQuestion {
 // change over the whole sweep. A row that clearly changes the other way has no limit, and `place` says so: at
 // one end of the axis its interval is on the wrong side of that at the other end. Values without a finished
 // run are left out; a run whose measure is NaN counts as a run without the event, as in tally().
-Table event_limits(const SweepResult& result, const LimitQuestion& question);
-
-// True if the event becomes more probable along the axis: the direction of event_limits().
-bool event_rises(const SweepResult& result, const LimitQuestion& question);
+EventLimits event_limits(const SweepResult& result, const LimitQuestion& question);
 
 }  // namespace remote_touch

@@ -23,8 +23,7 @@ void add_answer_panel(Figure& figure, const AnswerTable& answer);
 // True if the table is that of one curve, whose rows are also in the table of the answer.
 bool is_of_curve(const Figure& figure, const Table& table);
 
-// Returns the value of an axis in a row of a table, without a unit: at most ten digits, or its
-// name.
+// Returns the value of an axis in a row of a table, without a unit: at most ten digits, or its name.
 std::string axis_text(const Column& axis, std::size_t row);
 
 }  // namespace remote_touch

@@ -20,14 +20,6 @@ std::string number_text(double value) {
   return text;
 }
 
-std::string text_in(const Column& column, std::size_t row) {
-  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
-    return number_text((*numbers)[row]);
-  const std::int32_t number = std::get<std::vector<std::int32_t>>(column.values)[row];
-  return column.value_names.empty() ? std::to_string(number)
-                                    : printable(column.value_names[static_cast<std::size_t>(number)]);
-}
-
 // True for the columns before the answer itself: the axes, whose values must not look alike.
 bool is_axis(const Table& table, const Column& column) {
   const auto answers = [](const Column& each) { return each.name == "limit" || each.name == "mean"; };
@@ -37,8 +29,10 @@ bool is_axis(const Table& table, const Column& column) {
 // Returns the texts of a column: its name, its unit and the values.
 std::vector<std::string> texts_of(const Table& table, const Column& column, std::size_t rows) {
   std::vector<std::string> texts = {column.name, column.units == "1" ? "" : column.units};
+  const auto* const numbers = std::get_if<std::vector<double>>(&column.values);
+  const bool is_answer = numbers && !is_axis(table, column);
   for (std::size_t row = 0; row < rows; ++row)
-    texts.push_back(is_axis(table, column) ? printable(axis_text(column, row)) : text_in(column, row));
+    texts.push_back(is_answer ? number_text((*numbers)[row]) : printable(axis_text(column, row)));
   return texts;
 }
 

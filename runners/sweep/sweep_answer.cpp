@@ -63,12 +63,12 @@ std::vector<std::size_t> axes_by(const SweepResult& result, const std::vector<st
   return axes;
 }
 
-std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit) {
+std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit, bool rises) {
   char text[80];
   std::snprintf(text, sizeof text, " is above %.6g in %.6g %% of the runs. ", limit.threshold,
                 100 * limit.level);
   return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text +
-         "Along the axis the event becomes " + (event_rises(result, limit) ? "more" : "less") + " probable. ";
+         "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
 }
 
 void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& question,
@@ -77,8 +77,8 @@ void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& 
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
   const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
-  figure.caption += limit_sentence(result, limit);
-  const Table table = event_limits(result, limit);
+  const auto [table, rises] = event_limits(result, limit);
+  figure.caption += limit_sentence(result, limit, rises);
   figure.tables.push_back(table);
   add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
 }
@@ -113,7 +113,7 @@ bool names_no_measure(const SweepQuestion& question) {
   return question.limit.empty() && question.means.empty() && question.differences.empty();
 }
 
-// Returns the event whose limit is asked for; an empty text if none is.
+// Returns the event whose limit the question wants; an empty text if it wants none.
 std::string event_of(const SweepResult& result, const SweepQuestion& question) {
   if (!question.limit.empty()) return question.limit;
   const bool has_axis = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {

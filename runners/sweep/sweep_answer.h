@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// Measures and axes by name. A question that names no measure asks for the limit of the event that
+// A question names measures and axes. A question that names no measure asks for the limit of the event that
 // default_event() finds and for the means of all measures. Options without an effect are refused.
 struct SweepQuestion {
   // Where does an event become more probable than `level` along an axis? Empty `along`: the last axis of at

@@ -137,10 +137,6 @@ void refuse_repeated(const std::vector<Json>& values, const std::string& label) 
   }
 }
 
-bool is_index(const std::string& key) {
-  return !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
-}
-
 // Returns the name of a column of Rows, which has a unit of its own: "ry_deg" for "trajectory.poses.2.4".
 // Empty if the path does not lead to one.
 std::string column_of_rows(const std::vector<std::string>& keys) {

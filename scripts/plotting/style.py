@@ -124,7 +124,7 @@ def curve_key(curve, i):
 
 
 def kind(curve):
-    """Curves of different kinds are told apart even if they have one colour."""
+    """Curves of different kinds can be distinguished even if they have one colour."""
     return "line" if curve.style in LINES else "dots" if curve.style in DOTS else curve.style
 
 

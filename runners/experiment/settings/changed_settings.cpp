@@ -70,8 +70,7 @@ std::string first_part(const std::string& text, std::size_t max) {
 std::vector<std::string> normalised_keys(const std::string& path) {
   Keys keys = path_keys(path);
   for (std::string& key : keys)
-    if (!key.empty() && key.find_first_not_of("0123456789") == std::string::npos)
-      key.erase(0, std::min(key.find_first_not_of('0'), key.size() - 1));
+    if (is_index(key)) key.erase(0, std::min(key.find_first_not_of('0'), key.size() - 1));
   return keys;
 }
 

@@ -258,6 +258,10 @@ void apply_override(Json& configuration, const std::string& assignment) {
   set_value(configuration, path, value, "--set " + assignment);
 }
 
+bool is_index(const std::string& key) {
+  return !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+}
+
 std::vector<std::string> path_keys(const std::string& path) {
   std::vector<std::string> keys;
   for (std::size_t begin = 0; begin < path.size();) {

@@ -34,6 +34,9 @@ std::string value_text(const Parameter& parameter);
 // Returns the keys of a path like "renderer.r1_m" or "axes.0.count": names of members, and indices in lists.
 std::vector<std::string> path_keys(const std::string& path);
 
+// True for a key that is an index in a list: "0", "12".
+bool is_index(const std::string& key);
+
 // Returns the value to which the keys lead; null if there is none.
 const Json* find_value(const Json& json, std::span<const std::string> keys);
 

@@ -31,7 +31,7 @@ constexpr Priority kPriorities[] = {
     {"max_tool_penetration", When::always},
     // How well does the hand feel the shape?
     {"rms_contact_error", When::no_fixtures},
-    // What the device has to exert, and the jolt that the hand feels when a frame arrives.
+    // How much does the device have to exert, and how large is the jolt when a frame arrives?
     {"max_force", When::always},
     {"max_force_jump", When::always},
     {"max_torque", When::always},

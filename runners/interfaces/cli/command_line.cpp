@@ -50,8 +50,9 @@ InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
 int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
   CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
   app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       "remote-touch " + version() + ", " + commit_text(provenance({}, std::string(), {})));
+  app.set_version_flag("--version", [] {
+    return "remote-touch " + version() + ", " + commit_text(provenance({}, std::string(), {}));
+  });
   app.fallthrough();
   app.add_flag("-q,--quiet", line.quiet, "do not show progress");
   app.add_flag(

@@ -29,10 +29,6 @@ std::vector<Owner> owners_of(const std::string& name) {
   return owners;
 }
 
-bool is_index(const std::string& key) {
-  return !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
-}
-
 // Pure numbers, and columns without a unit, have no such text.
 std::string unit_text(std::string_view unit) {
   std::string text;

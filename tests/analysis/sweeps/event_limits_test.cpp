@@ -37,7 +37,7 @@ SweepResult sweep_of(const std::vector<double>& x, const std::vector<std::vector
 }
 
 Table limits_of(const SweepResult& result, double level = 0.5, double threshold = 0.5) {
-  return event_limits(result, {"event", threshold, 1, level});
+  return event_limits(result, {"event", threshold, 1, level}).table;
 }
 
 std::string place(const Table& table, std::size_t row) {
@@ -58,9 +58,9 @@ TEST(EventLimits, AreWhereTheShareCrossesTheLevel) {
 
 TEST(EventLimits, AnEventMayBecomeLessProbable) {
   const SweepResult result = sweep_of({1, 2, 4}, {{75, 25, 0}});
-  EXPECT_FALSE(event_rises(result, {"event", 0.5, 1, 0.5}));
+  EXPECT_FALSE(event_limits(result, {"event", 0.5, 1, 0.5}).rises);
   EXPECT_DOUBLE_EQ(numbers(limits_of(result), "limit")[0], 1.5);
-  EXPECT_TRUE(event_rises(sweep_of({1, 2, 4}, {{0, 25, 75}}), {"event", 0.5, 1, 0.5}));
+  EXPECT_TRUE(event_limits(sweep_of({1, 2, 4}, {{0, 25, 75}}), {"event", 0.5, 1, 0.5}).rises);
 }
 
 // The share of events at the ends of the interval is that of Wilson: 25 of 100 and 75 of 100.

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "runners/sweep/answer_text.h"
+#include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_answer_test {
@@ -144,6 +146,24 @@ TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
   ASSERT_EQ(answer.panels.front().curves.size(), 4u);
   EXPECT_EQ(answer.panels.front().curves[3].label, "seed = 10000002");
   EXPECT_HAS(answer_text(answer, result), "10000002");
+}
+
+// A result with two columns of one name cannot be read. The list of refused names is in joint_axis.cpp.
+TEST(SweepAnswers, AnAxisCannotHaveTheNameOfAColumn) {
+  SweepQuestion question;
+  question.limit = "popped_through", question.means = question.differences = {"max_force"};
+  std::set<std::string> columns;
+  for (const Table& table : sweep_answer(sweep(), kConfig, question).tables)
+    for (const Column& column : table.columns) columns.insert(column.name);
+  for (const char* axis : {"r_c", "method", "x"}) columns.erase(axis);
+  EXPECT_EQ(columns.size(), 11u);
+  for (const std::string& name : columns)
+    EXPECT_HAS(refusal([&] {
+                 Sweep::from_json(R"({"experiment": "fig4.12", "axes": [{"name": ")" + name +
+                                      R"(", "variants": [{"name": "a", "set": {"seed": 1}}]}]})",
+                                  "mine.json");
+               }),
+               "a column of analyse has this name");
 }
 
 TEST(AnswerText, HasEachTableWithUnits) {

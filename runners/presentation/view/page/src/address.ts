@@ -12,7 +12,7 @@ export function numberIn(hash: string, name: string, low: number, high: number):
 // One of several runs of a page, counted from 1.
 export interface RunPlace { run: number; runs: number }
 
-// Which run of a sweep the address names; the first one, if it names none.
+// Returns the run of a sweep that the address names; the first run if it names none.
 export function runIn(hash: string, runs: number): RunPlace {
   return { run: numberIn(hash, "run", 1, runs).value ?? 1, runs };
 }

@@ -1,11 +1,11 @@
-// What a live page says over its picture: one line for each state that the user has to know of.
+// The banner over the picture of a live page has one line for each state that the user must know.
 import type { Run } from "./data";
 import type { LinkState } from "./link_state";
 import { type Limit, missedDeadlines, type Trouble } from "./live_run";
 
 export interface Notice { kind: string; text: string }
 
-// What the page knows. silentS: time since the newest tick came. whoActs: a statement if another page has the hand.
+// The state of the page. silentS: time since the newest tick came. whoActs: a statement if another page has the hand.
 export interface LiveState { link: LinkState; trouble: Trouble; silentS: number; whoActs: string; limit: Limit | null; missed: string }
 
 // A notice of the kind `held` stays for heldMs, so that a limit of a few ticks can be read.

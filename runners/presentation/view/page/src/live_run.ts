@@ -11,7 +11,7 @@ export interface Trouble { camera: string; force: string }
 // A statement about the force that the safety gate passes. gate: it passes none; limited: it passes less than is commanded.
 export interface Limit { kind: "gate" | "limited"; text: string }
 
-// Why the device receives another force than the renderer commands; null: it receives that force.
+// Returns why the device receives another force than the renderer commands; null if it receives that force.
 export function limitOf(run: Run, tick: number): Limit | null {
   const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
   const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);
@@ -27,7 +27,7 @@ export function limitOf(run: Run, tick: number): Limit | null {
   return { kind: "limited", text: `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}.` };
 }
 
-// Of the ticks of the newest seconds. missed: ticks that the haptic loop left out, because it was too late for them.
+// Counts the ticks of the newest seconds. missed: ticks that the haptic loop left out, because it was too late for them.
 export function missedDeadlines(run: Run, tick: number, seconds: number): { missed: number; ticks: number; longestS: number } {
   const interval = run.column("tick_interval"), rate = run.stored.haptic_rate_hz;
   const first = Math.max(0, tick + 1 - Math.round(seconds * rate));
@@ -92,7 +92,7 @@ export class LiveRun extends Run {
     if (!(this.touchRadiusM > 0)) return [];
     return this.within(frame, this.vector("proxy_position", tick), this.touchRadiusM, frame.fixtureRadiusM);
   }
-  // Those of the newest frame within near_m of the HIP or the proxy, which grows with the contact radius.
+  // Returns the points of the newest frame within near_m of the HIP or the proxy. near_m grows with the contact radius.
   override nearHand(frame: Frame, tick: number): number[] {
     const { near_m, contact_radius_m } = this.stored, reach = contact_radius_m > 0 ? (near_m * this.contactRadiusM) / contact_radius_m : near_m;
     const around = ["proxy_position", "hip_position"].flatMap((name) => this.within(frame, this.vector(name, tick), reach, null));

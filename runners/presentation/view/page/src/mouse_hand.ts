@@ -8,7 +8,7 @@ import type { SceneView } from "./scene";
 const steps = { usual: { mm: 2, degrees: 3 }, fine: { mm: 0.2, degrees: 0.3 }, coarse: { mm: 10, degrees: 15 } } as const;
 type Step = keyof typeof steps;
 
-// About axes of the camera, and along them: to the right, up, towards it.
+// Axes of rotation and directions of motion in the frame of the camera: right, up, towards the camera.
 const turns: Record<string, [number, number, number]> = {
   w: [-1, 0, 0], s: [1, 0, 0], a: [0, -1, 0], d: [0, 1, 0], q: [0, 0, 1], e: [0, 0, -1],
 };
@@ -48,20 +48,20 @@ export class MouseHand {
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       if (event.ctrlKey) this.scene.zoom(event.deltaY);
-      else this.move([0, 0, Math.sign(event.deltaY || event.deltaX)], stepOf(event)); // with shift, browsers exchange both
+      else this.move([0, 0, Math.sign(event.deltaY || event.deltaX)], stepOf(event)); // with shift, browsers swap deltaX and deltaY
     }, { passive: false });
     document.addEventListener("keydown", (event) => this.key(event, true));
     document.addEventListener("keyup", (event) => this.key(event, false));
   }
 
-  // Whether the mouse and the keys move the hand. Motion that the user cannot see is not counted, but a button that is
-  // released meanwhile is.
+  // True while the mouse and the keys move the hand. Motion that the user cannot see is not counted, but the release of a
+  // button is.
   set isActive(active: boolean) {
     const begins = active && !this.active;
     this.active = active;
     if (begins) this.tell();
   }
-  // What a step is now, and how to get others.
+  // Returns the size of the present step, and the keys for other steps.
   get stepText(): string {
     const text = (step: Step) => `${steps[step].mm} mm, ${steps[step].degrees}°`;
     return this.step === "usual" ? `Step: ${text("usual")} (Shift: ${text("fine")}; Alt: ${text("coarse")})` : `${this.step === "fine" ? "Fine" : "Coarse"} step: ${text(this.step)}`;

@@ -20,7 +20,7 @@ export function mostImportantTick(events: RunEvent[]): number {
   return 0;
 }
 
-// Where marks lie on each other, the most important one is drawn last.
+// Returns the events in the order in which their marks are drawn: the most important one is drawn last, above the others.
 export function leastImportantFirst(events: RunEvent[]): RunEvent[] {
   const rank = (event: RunEvent) => byImportance.indexOf(event.kind);
   return [...events].sort((a, b) => rank(b) - rank(a));
