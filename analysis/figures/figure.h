@@ -22,7 +22,10 @@ enum class CurveStyle {
   band,     // area between y and z
   image,    // one pixel for every cell of a grid, of colour z = 0xRRGGBB
   surface,  // heights z over a grid of (x, y), in perspective; the only curve of its panel
-  letters   // a dot at (x, y), labelled with the name of the value of z
+  letters,  // a vertical line at x, with the name of the value of z above the panel
+  // A vertical bar from y to z, in the colour of the next curve of the panel. If one end is infinite or NaN,
+  // an arrow points away from the other end: a limit above the largest value that was tried has z = infinity.
+  intervals
 };
 
 struct Curve {
@@ -30,7 +33,7 @@ struct Curve {
   CurveStyle style = CurveStyle::line;
   std::string label = {};  // empty: not in the legend
   double radius = 0;       // radius of circles, in data units
-  std::string z = {};      // a third column, for maps, bands, images, surfaces and letters
+  std::string z = {};      // a third column, for maps, bands, images, surfaces, letters and intervals
 };
 
 struct Panel {

@@ -32,8 +32,8 @@ std::string write_trace(const std::filesystem::path& file, const std::vector<Col
 namespace {
 
 // The names in the order of the enumerations.
-constexpr const char* kStyles[] = {"line",    "dots", "steps", "dashed", "circle",  "bars",
-                                   "squares", "map",  "band",  "image",  "surface", "letters"};
+constexpr const char* kStyles[] = {"line", "dots", "steps", "dashed",  "circle",  "bars",     "squares",
+                                   "map",  "band", "image", "surface", "letters", "intervals"};
 constexpr const char* kKinds[] = {"points", "segments", "solid"};
 
 void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) {
@@ -52,7 +52,8 @@ void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) 
                             {"table", part.table},
                             {"label", part.label},
                             {"triangles", part.triangles},
-                            {"poses", part.poses}});
+                            {"poses", part.poses},
+                            {"coloured_by", part.coloured_by}});
     hdf5.attribute(place, "pose_row", part.pose_row);
     hdf5.attribute(place, "colour", static_cast<std::int32_t>(part.colour));
     hdf5.attribute(place, "size", std::vector{part.size_m});

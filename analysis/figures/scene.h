@@ -24,6 +24,9 @@ struct ScenePart {
   std::string triangles = {}, poses = {};
   int pose_row = 0;
   double opacity = 1;
+  // Only for points: a column of `table` that colours them in place of `colour`; a colour bar shows its
+  // values.
+  std::string coloured_by = {};
 };
 
 struct Scene {

@@ -82,7 +82,30 @@ Crossing crossing_of(const Counts& counts, const std::vector<double>& values, do
 
 struct Limit {
   Crossing best, low, high;
+  double at_least = kOutside, at_most = kOutside;
 };
+
+// Sets the values of the axis that enclose the limit: the last one with the curve of the low ends above the
+// level, and the first one with the curve of the high ends below it.
+void enclose(const Counts& counts, const std::vector<double>& low, const std::vector<double>& high,
+             double level, Limit& limit) {
+  if (counts.x.empty()) return;
+  const std::vector<double> from = isotonic_falling(low, counts.runs);
+  const std::vector<double> to = isotonic_falling(high, counts.runs);
+  for (std::size_t i = 0; i < counts.x.size(); ++i)
+    if (from[i] > level) limit.at_least = counts.x[i];
+  for (std::size_t i = counts.x.size(); i-- > 0;)
+    if (to[i] < level) limit.at_most = counts.x[i];
+}
+
+// Returns the number of finished runs of a group that have a note.
+std::int32_t noted_runs(const SweepResult& result, const CellGroup& group) {
+  std::int32_t count = 0;
+  for (const std::size_t cell : group.cells)
+    for (int replicate = 0; replicate < result.replicates; ++replicate)
+      if (result.notes[result.run(cell, replicate)] != 0) ++count;
+  return count;
+}
 
 // A rising share is a falling share with the other sign, so that no share is rounded.
 Limit limit_of(const Counts& counts, bool rises, double level) {
@@ -94,8 +117,10 @@ Limit limit_of(const Counts& counts, bool rises, double level) {
     shares.push_back(sign * (static_cast<double>(t.events) / t.runs));
     low.push_back(sign * (rises ? to : from)), high.push_back(sign * (rises ? from : to));
   }
-  return {crossing_of(counts, shares, sign * level), crossing_of(counts, low, sign * level),
-          crossing_of(counts, high, sign * level)};
+  Limit limit{crossing_of(counts, shares, sign * level), crossing_of(counts, low, sign * level),
+              crossing_of(counts, high, sign * level)};
+  enclose(counts, low, high, sign * level, limit);
+  return limit;
 }
 
 }  // namespace
@@ -107,11 +132,12 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
   double sum = 0;
   for (const CellGroup& group : groups) sum += slope(all.emplace_back(counts_of(result, question, group)));
   const bool rises = sum >= 0;
-  std::vector<double> limits, low, high;
-  std::vector<std::int32_t> places, runs;
+  std::vector<double> limits, low, high, at_least, at_most;
+  std::vector<std::int32_t> places, runs, noted;
   for (const Counts& counts : all) {
     const Limit limit = limit_of(counts, rises, question.level);
     limits.push_back(limit.best.x), low.push_back(limit.low.x), high.push_back(limit.high.x);
+    at_least.push_back(limit.at_least), at_most.push_back(limit.at_most);
     places.push_back(static_cast<std::int32_t>(limit.best.place));
     runs.push_back(static_cast<std::int32_t>(std::accumulate(counts.runs.begin(), counts.runs.end(), 0.0)));
   }
@@ -126,9 +152,19 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
             low);
   table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: outside the values of the axis",
             high);
+  table.add("at_least", axis.units,
+            "last value of the axis before the limit at which the interval is off the given probability",
+            std::move(at_least));
+  table.add("at_most", axis.units,
+            "first value of the axis after the limit at which the interval is off the given probability",
+            std::move(at_most));
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
   table.add("runs", "1", "number of finished runs", std::move(runs));
+  if (!result.notes.empty()) {
+    for (const CellGroup& group : groups) noted.push_back(noted_runs(result, group));
+    table.add("noted_runs", "1", "number of finished runs with a note", std::move(noted));
+  }
   return {std::move(table), rises};
 }
 

@@ -21,14 +21,22 @@ struct EventLimits {
   bool rises = true;  // true: the event becomes more probable along the axis
 };
 
-// The table has a row for each combination of the other axes: their values, `limit`, `limit_low` and
-// `limit_high` in the unit of the axis, `place` and `runs`.
+// The table has a row for each combination of the other axes: their values, `limit`, `limit_low`,
+// `limit_high`, `at_least` and `at_most` in the unit of the axis, `place` and `runs`, and `noted_runs` if the
+// sweep has stored the notes on its runs.
 //
 // At each value of the axis the share of finished runs with the event has a 95 % Wilson interval. The curve
 // that is nearest to the shares and only falls, or only rises, along the axis crosses the level at `limit`,
 // with linear interpolation (isotonic_regression.h). The curves of the two ends of the intervals cross it at
 // limit_low and limit_high. They are NaN if the curve crosses the level outside the values of the axis;
-// `place` then states on which side the limit is. All rows have one direction: that in which the shares
+// `place` then states on which side the limit is.
+//
+// Interpolation can make an interval narrower than the distance between two values of the axis. The limit is
+// at least at `at_least` and at most at `at_most` without it: these are the last value at which the event is
+// clearly less probable than the level and the first at which it is clearly more probable, or the other way
+// round if the event becomes less probable along the axis. NaN if there is no such value.
+//
+// All rows have one direction: that in which the shares
 // change over the whole sweep. A row that clearly changes the other way has no limit, and `place` says so: at
 // one end of the axis its interval is on the wrong side of that at the other end. Values without a finished
 // run are left out; a run whose measure is NaN counts as a run without the event, as in tally().

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/sweeps/cell_groups.h"
+#include "core/parameters/unit.h"
 
 namespace remote_touch {
 
@@ -31,6 +32,27 @@ std::string with_unit(const std::string& text, const std::string& unit) {
   return unit == "1" ? text : text + " " + unit;
 }
 
+// Returns a text for a picture: in names such as acceleration_m_per_s2 and popped_through the unit is left
+// out and the underscores are blanks. Symbols such as r_c stay.
+std::string in_words(const std::string& text) {
+  constexpr std::size_t kLongestSymbol = 3;
+  std::string result, word;
+  const auto add_word = [&] {
+    if (word.size() > kLongestSymbol && word.find('_') != std::string::npos) {
+      if (const Unit* unit = unit_of(word)) word.resize(word.size() - std::string(unit->ending).size());
+      std::replace(word.begin(), word.end(), '_', ' ');
+    }
+    result += word;
+    word.clear();
+  };
+  for (const char c : text) {
+    if (c == ' ') add_word(), result += c;
+    if (c != ' ') word += c;
+  }
+  add_word();
+  return result;
+}
+
 struct AnswerCurve {
   std::string label;
   std::vector<double> values;  // of the other axes; a name by its number
@@ -53,7 +75,7 @@ std::vector<AnswerCurve> curves_of(const AnswerTable& answer, std::size_t x) {
       const Column& column = answer.table.columns[axis];
       if (axis == x) continue;
       others.push_back(number_in(column, row));
-      label += (label.empty() ? "" : ", ") + column.name + " = " +
+      label += (label.empty() ? "" : ", ") + in_words(column.name) + " = " +
                with_unit(axis_text(column, row), column.value_names.empty() ? column.units : "1");
     }
     auto curve = std::find_if(curves.begin(), curves.end(),
@@ -102,7 +124,7 @@ void add_answer_panel(Figure& figure, const AnswerTable& answer) {
   const std::optional<std::size_t> x = axis_of_numbers(answer);
   if (!x) return;
   const Column& axis = answer.table.columns[*x];
-  Panel panel{answer.table.title, axis.name, answer.value};
+  Panel panel{in_words(answer.table.title), in_words(axis.name), answer.value};
   for (const AnswerCurve& curve : curves_of(answer, *x)) {
     if (curve.rows.size() < 2) continue;
     const std::string name = answer.table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);

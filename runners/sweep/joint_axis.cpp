@@ -14,8 +14,9 @@ namespace {
 using Row = std::vector<ChangedSetting>;
 
 // The columns of an answer about a sweep, see event_limits.h and sweep_means.h.
-constexpr const char* kAnswerColumns[] = {"limit", "limit_low", "limit_high", "place", "runs",      "mean",
-                                          "low",   "high",      "pairs",      "p",     "adjusted_p"};
+constexpr const char* kAnswerColumns[] = {"limit",      "limit_low", "limit_high", "at_least",  "at_most",
+                                          "noted_runs", "place",     "runs",       "mean",      "low",
+                                          "high",       "pairs",     "p",          "adjusted_p"};
 
 // A name of a coordinate in HDF5, in Python, in --cell NAME=VALUE and in the tables of an answer.
 void require_identifier(const std::string& name, const std::string& label) {

@@ -100,7 +100,12 @@ void add_differences(Figure& figure, const SweepResult& result, const SweepQuest
   const std::size_t between = axis_between(result, question.between);
   std::erase(axes.by, between);
   const Column& axis = result.axes[between];
-  figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) + ", in pairs of runs. ";
+  const bool common =
+      std::find(axes.common_noise.begin(), axes.common_noise.end(), between) != axes.common_noise.end();
+  figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
+                    ", in pairs of runs with " + (common ? "the same" : "independent") +
+                    " noise; p is that of the sign test for an event, else of Student's t test with a "
+                    "correction for skewness; adjusted_p: after Holm, for the rows of a table. ";
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
     const Table table = sweep_differences(result, measure, between, axes);

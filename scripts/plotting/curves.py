@@ -3,19 +3,24 @@ import math
 
 import matplotlib.collections
 import matplotlib.patches
+import matplotlib.path
 import matplotlib.patheffects
 import matplotlib.transforms
 import numpy as np
 
 from plotting.cells import cell_ends, cell_size, colour_range, outlines
 from plotting.scene import rgb
-from plotting.style import DASHES, MARKERS, NOTHING_COLOUR
+from plotting.style import DASHES, MARKERS, NOTHING_COLOUR, is_formula
 from plotting.typeset import typeset
 
 NOTHING = "no value"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
 MANY = 3000  # plots with more samples are stored as pixels in vector formats
+FEW = 20  # samples of a line that have a marker each
+DOT_PT, RING_PT, CAP_PT, ARROW_PT = 3.8, 6, 4.5, 11  # ARROW_PT: its length
+ARROW = matplotlib.path.Path([(0, 0), (0, 1), (-0.22, 0.7), (0, 1), (0.22, 0.7)], [1, 2, 1, 2, 2])  # 1: begins a line
 HALO = [matplotlib.patheffects.withStroke(linewidth=2.6, foreground="white")]  # about a line over cells
+LETTERS_IN = 0.15  # height of the letters above a panel
 
 
 def has_cells(panel):
@@ -42,21 +47,39 @@ def alone(curve):
     return [int(i) for i in np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:])]
 
 
+def is_sampled(curve):
+    """Whether each sample of a line has a marker, since a straight piece between two of them is no measurement."""
+    return curve.style in ("line", "dashed") and np.count_nonzero(is_finite(curve)) <= FEW and not is_formula(curve.label)
+
+
 def draw_line(axes, curve, panel, look, **options):
-    """Few samples have a marker each, since a straight piece between two of them is no measurement."""
     dots = alone(curve)
-    if interval_series(curve, panel):
-        options |= {"marker": MARKERS[look.marker], "markersize": 3}
-    elif look.marker and curve.style == "line" and curve.x.values.size <= 20:
+    if interval_series(curve, panel) or (is_sampled(curve) and not has_cells(panel)):
         options |= {"marker": MARKERS[look.marker], "markersize": 3}
     elif dots:
         options |= {"marker": "o", "markevery": dots}
     width = 1.1 if curve.x.values.size <= 2000 else 0.8  # a noisy trace stays a line
     if has_cells(panel):
         width, options = 1.3, options | {"path_effects": HALO}
-    line, = axes.plot(curve.x.values, curve.y.values, color=look.colour, linestyle=DASHES[look.dash], linewidth=width,
-                      label=typeset(curve.label), **options)
+    elif look.edged and "marker" not in options:
+        options |= {"path_effects": HALO}
+    line, = axes.plot(curve.x.values, curve.y.values, color=look.colour, linestyle=dashed(look), linewidth=width,
+                      label=typeset(curve.label), zorder=layer(curve, panel, look), **options)
+    line.dash = look.dash  # for its legend
     put_aside(axes, line, curve, panel)
+
+
+def dashed(look):
+    """The line style that a look has in its panel."""
+    if look.dash == 0:
+        return DASHES[0]
+    return look.phase * sum(DASHES[look.dash][1]), DASHES[look.dash][1]
+
+
+def layer(curve, panel, look):
+    """Curves are drawn in their order, but a dashed line above all solid ones, which would hide it."""
+    at = [i for i, other in enumerate(panel.curves) if other is curve or (look.dash and other.style in ("line", "steps"))]
+    return 2 + 0.01 * max(at) + (0.005 if look.dash else 0)
 
 
 def interval_series(curve, panel):
@@ -71,7 +94,8 @@ def interval_series(curve, panel):
 def put_aside(axes, line, curve, panel):
     """Intervals at one place stand beside each other. The limits of the axes are those of the data."""
     if series := interval_series(curve, panel):
-        step_in = 2.4 * (series[0] - (series[1] - 1) / 2) / 72
+        step_pt = 4.5 if any(other.style == "dots" for other in panel.curves) else 2.4
+        step_in = step_pt * (series[0] - (series[1] - 1) / 2) / 72
         aside = matplotlib.transforms.ScaledTranslation(step_in, 0, axes.figure.dpi_scale_trans)
         line.set_transform(axes.transData + aside)
 
@@ -81,27 +105,33 @@ def draw_steps(axes, curve, panel, look):
 
 
 def draw_dots(axes, curve, panel, look):
-    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first:
-    they are rings around them, those of a third are wider rings."""
+    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first: from
+    the second on they are open, and wider than the first."""
     count = np.count_nonzero(in_sight(curve, panel))
-    size = 3.8 if count <= 30 else 3 if count <= 100 else 1.8 if count <= 300 else 1.1 if count <= MANY else 0.7
+    size = DOT_PT if count <= 30 else 3 if count <= 100 else 1.8 if count <= 300 else 1.1 if count <= MANY else 0.7
     series = [other for other in panel.curves if other.style == "dots"].index(curve)
     options = {"markeredgewidth": 0}
     if series > 0 and count <= 100:
-        size, options = size + 2 * series, {"markerfacecolor": "none", "markeredgewidth": 0.9}
+        size, options = RING_PT, {"markerfacecolor": "none", "markeredgewidth": 0.9}
     automatic = np.isnan(panel.x_range + panel.y_range).all()
     line, = axes.plot(curve.x.values, curve.y.values, linestyle="none", marker=MARKERS[look.marker] if count <= 100 else "o",
                       color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,
-                      clip_on=not automatic or count > 100, **options)
+                      clip_on=not automatic or count > 100, zorder=layer(curve, panel, look), **options)
     put_aside(axes, line, curve, panel)
 
 
 def draw_letters(axes, curve, _, __):
-    """Dots with the names of z above them."""
-    axes.plot(curve.x.values, curve.y.values, "o", color="black", markersize=3.5, zorder=4)
-    for x, y, name in zip(*(column.values[is_finite(curve)] for column in (curve.x, curve.y, curve.z))):
-        axes.annotate(typeset(curve.z.names[name]), (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
-                      va="bottom", fontweight="bold", path_effects=HALO)
+    """Names of z above the panel, with thin lines through it: they cover no curve."""
+    known = is_finite(curve)
+    for x, name in zip(curve.x.values[known], curve.z.values[known]):
+        axes.axvline(x, color="#555555", linewidth=0.6, zorder=1)
+        axes.annotate(typeset(curve.z.names[name]), (x, 1), xycoords=("data", "axes fraction"), xytext=(0, 2),
+                      textcoords="offset points", ha="center", va="bottom", fontweight="bold", annotation_clip=False)
+
+
+def room_above_in(panel):
+    """What stands directly above a panel, below its legend and title."""
+    return LETTERS_IN if any(curve.style == "letters" for curve in panel.curves) else 0.0
 
 
 def draw_circles(axes, curve, _, look):
@@ -145,17 +175,44 @@ def draw_map(axes, curve, panel, _):
     cells.set_clim(colour_range(curve.z))
 
 
-def draw_band(axes, curve, _, look):
-    axes.fill_between(curve.x.values, curve.y.values, curve.z.values, color=look.colour, alpha=0.22, linewidth=0,
-                      label=typeset(curve.label))
+def draw_band(axes, curve, panel, look):
+    """Several bands without a legend would mix their colours: each has an edge."""
+    edged = sum(other.style == "band" and not other.label for other in panel.curves) > 1
+    axes.fill_between(curve.x.values, curve.y.values, curve.z.values, color=look.colour, alpha=0.12 if edged else 0.22,
+                      linewidth=0, label=typeset(curve.label))
+    if edged:
+        for ends in (curve.y.values, curve.z.values):
+            axes.plot(curve.x.values, ends, color=look.colour, linewidth=0.5)
 
 
 def draw_intervals(axes, curve, panel, look):
-    """A vertical line from y to z at each x."""
-    ends = np.column_stack([np.repeat(curve.x.values, 3), np.insert(np.column_stack([curve.y.values, curve.z.values]), 2,
-                                                                     math.nan, axis=1).ravel()])
-    line, = axes.plot(*ends.T, color=look.colour, linewidth=0.9)
-    put_aside(axes, line, curve, panel)
+    """A vertical line from y to z at each x, with a cap at an end that is not the value of the next curve. An end that is
+    not known is an arrow away from the other end."""
+    x, low, high = curve.x.values, curve.y.values, curve.z.values
+    own = {"color": look.colour, "linewidth": 0.9, "markeredgewidth": 0.9, "markerfacecolor": "none"}
+    closed = np.isfinite(low) & np.isfinite(high)
+    ends = np.column_stack([low, high, np.full(x.size, math.nan)])[closed].ravel()
+    lines = axes.plot(np.repeat(x[closed], 3), ends, **own)
+    values = next_values(curve, panel)
+    for y in (low, high):
+        capped = closed & (y != values)
+        lines += axes.plot(x[capped], y[capped], "_", markersize=CAP_PT, **own)
+    for y, other, path in ((low, high, ARROW), (high, low, matplotlib.path.Path(-ARROW.vertices, ARROW.codes))):
+        open_ended = np.isfinite(y) & ~np.isfinite(other)
+        if open_ended.any():
+            lines += axes.plot(x[open_ended], y[open_ended], linestyle="none", marker=path,
+                               markersize=2 * ARROW_PT, clip_on=False, **own)
+            axes.margins(y=0.12)  # room for arrows
+    for line in lines:
+        put_aside(axes, line, curve, panel)
+
+
+def next_values(curve, panel):
+    """Those of the curve that intervals belong to."""
+    i = next(i for i, other in enumerate(panel.curves) if other is curve)
+    following = panel.curves[i + 1:i + 2]
+    same = following and following[0].y.values.size == curve.y.values.size
+    return following[0].y.values if same else np.full(curve.y.values.size, math.nan)
 
 
 def draw_image(axes, curve, _, __):
@@ -194,7 +251,7 @@ def reach(curve, panel):
     seen = in_sight(curve, panel)
     y = curve.y.values[seen]
     if curve.style in ("band", "intervals"):
-        return np.concatenate([y, curve.z.values[seen]])
+        return np.concatenate([y, curve.z.values[seen]])  # an arrow begins at the value of another curve
     if curve.style in CELLS:
         return np.concatenate([ends[seen] for ends in cell_ends(curve, panel)[1]])
     return y

@@ -6,10 +6,13 @@ import matplotlib.ticker
 import numpy as np
 
 from plotting.cells import distinct
-from plotting.curves import DRAW, has_cells, reach
-from plotting.style import BOLD_IN, LETTER_IN, LINES, curve_key
+from plotting.curves import DRAW, has_cells, is_sampled, reach
+from plotting.style import LINES, is_formula, looks_in_panel
 from plotting.surface import draw_surface, is_surface
-from plotting.typeset import with_unit, wrapped
+from plotting.typeset import typeset, with_unit
+from plotting.wrapping import TITLE, folded, text_width_in, wrapped
+
+LONGEST_NAME_IN, LONGEST_BAR_LABEL_IN = 1.4, 1.8
 
 
 def axis_label(label, columns):
@@ -19,12 +22,12 @@ def axis_label(label, columns):
     return with_unit(label, units.pop() if len(units) == 1 else "")
 
 
-def wrapped_label(label, letters):
+def wrapped_label(label, width_in):
     """The unit stays with the last word, where that leaves room for both."""
     last = re.search(r"\S+ \([^()]*\)$", label)
-    if last and len(last[0]) <= letters:
+    if last and text_width_in(typeset(last[0])) <= width_in:
         label = label[:last.start()] + last[0].replace(" ", "\u00a0")
-    return wrapped(label, letters).replace("\u00a0", " ")
+    return wrapped(label, width_in).replace("\u00a0", " ")
 
 
 def asks_for_log(columns):
@@ -75,7 +78,7 @@ def plain(value, _=None):
 
 def set_names(axis, names):
     """Below a panel long words lean, so that they do not run into each other."""
-    words = [wrapped(names[value], 24) for value in sorted(names)]
+    words = [wrapped(names[value], LONGEST_NAME_IN) for value in sorted(names)]
     axis.set_ticks(sorted(names), words)
     if axis.axis_name == "x" and sum(map(len, words)) > 30:
         for label in axis.get_ticklabels():
@@ -92,29 +95,49 @@ def set_log_ticks(axis, narrow):
     axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
 
-def few_values(columns):
-    """Those of the cells of a map, where each has room for its number."""
-    values = distinct(np.concatenate([column.values for column in columns]))
-    at = np.log(values) if any(column.is_log for column in columns) else values
-    return values if 1 < values.size <= 8 and np.diff(at).min() > np.ptp(at) / 8 else None
+def few_values(columns, length_in, is_upright):
+    """The values of a few cells or samples, if each has room for its number on an axis of this length; else None."""
+    values = distinct(np.concatenate([column.values for column in columns] or [[]]))
+    if not 1 < values.size <= 8:
+        return None
+    at = np.log(values) if any(column.is_log for column in columns) and values[0] > 0 else values
+    needed_in = 0.18 if is_upright else max(text_width_in(plain(value)) for value in values) + 0.07
+    return values if np.diff(at).min() / np.ptp(at) * length_in > needed_in else None
 
 
-def set_ticks(axis, limits, columns, of_map=False, width_in=3.0):
-    """Plain numbers without a common offset or factor; the names of an enum; no half of what is counted."""
+def sampled_at(panel):
+    """Positions at which a panel has values, without lines that are formulas; none if one of its curves is not sampled."""
+    shown = [curve for curve in panel.curves if not (curve.style in LINES and is_formula(curve.label))]
+    few = all(is_sampled(curve) or curve.style in ("dots", "intervals", "bars", "map") for curve in shown)
+    return [curve.x for curve in shown] if few else []
+
+
+def set_end_ticks(axis, limits):
+    """Both ends of a colour bar have values; a tick beside an end gives way to it."""
+    (low, high), ticks = limits, axis.get_major_locator().tick_values(*limits)
+    span = high - low
+    kept = [low, *(tick for tick in ticks if low + 0.07 * span < tick < high - 0.07 * span), high]
+    digits = 1 - math.floor(math.log10(span))
+    axis.set_ticks(kept, [plain(round(tick, digits) + 0.0) for tick in kept])
+
+
+def set_ticks(axis, limits, columns, few=(), length_in=3.0):
+    """Plain numbers without a common offset or factor; the names of an enum; no half of what is counted. few: columns whose
+    values have ticks, if there is room. length_in: of the axis."""
     names = next((column.names for column in columns if column.names), None)
     if names:
         set_names(axis, names)
         return
-    few = few_values(columns) if of_map else None
-    room = max(2, round(width_in / 0.45)) if axis.axis_name == "x" else 5
+    values = few_values(few, length_in, axis.axis_name == "y")
+    room = max(2, round(length_in / 0.45)) if axis.axis_name == "x" else 5
     if axis.get_scale() == "log":
-        set_log_ticks(axis, width_in < 2.2)
+        set_log_ticks(axis, axis.axis_name == "x" and length_in < 2.2)
     else:
         whole = bool(columns) and all(column.is_count for column in columns)
         axis.set_major_locator(matplotlib.ticker.MaxNLocator(min(room, 7), steps=[1, 2, 2.5, 5, 10] if not whole else
                                                              [1, 2, 5, 10], integer=whole))
-    if few is not None and (axis.axis_name == "y" or few.size <= room):
-        axis.set_major_locator(matplotlib.ticker.FixedLocator(few))
+    if values is not None:
+        axis.set_major_locator(matplotlib.ticker.FixedLocator(values))
     if axis.get_scale() == "log":
         return
     size = max(abs(limit) for limit in limits)
@@ -130,6 +153,14 @@ def capitalised(title):
     """But no symbol or name of a column: `x of the HIP`, `r_c`, `proxy_position`."""
     symbol = not title[1:2].isalpha() or "_" in title.partition(" ")[0]
     return title if symbol else title[:1].upper() + title[1:]
+
+
+def title_words(title, letter):
+    """As they are drawn, with the letter of the panel. A moment, `A) at the start`, becomes `A: at the start`: it has other
+    brackets than the letter."""
+    moment = re.match(r"([A-Z])\) ", title)
+    shown = typeset(f"{moment[1]}: {title[moment.end():]}" if moment else capitalised(title))
+    return f"({letter}) {shown}".strip() if letter else shown
 
 
 def is_image(panel):
@@ -152,38 +183,47 @@ def set_scales(axes, panel):
         axes.set_yscale("log")
 
 
-def add_colour_bar(axes, curve, width_in):
-    """It hangs on the panel, so it follows where equal aspect puts that."""
-    cells = next(cells for cells in axes.collections if cells.get_array() is not None)
-    bar = axes.figure.colorbar(cells, cax=axes.inset_axes([1 + 0.06 / width_in, 0, 0.1 / width_in, 1]))
+def add_colour_bar(axes, coloured, column, width_in):
+    """It hangs on the panel, so it follows where equal aspect puts that. coloured: what has the colours. column: its
+    values."""
+    bar = axes.figure.colorbar(coloured, cax=axes.inset_axes([1 + 0.06 / width_in, 0, 0.1 / width_in, 1]))
     bar.outline.set_visible(False)
-    bar.set_label(wrapped(axis_label("", [curve.z]), 32))
-    set_ticks(bar.ax.yaxis, cells.get_clim(), [curve.z])
+    bar.set_label(wrapped_label(axis_label("", [column]), LONGEST_BAR_LABEL_IN), labelpad=4)
+    set_ticks(bar.ax.yaxis, coloured.get_clim(), [column])
+    if not column.names:
+        set_end_ticks(bar.ax.yaxis, coloured.get_clim())
 
 
-def draw_panel(axes, panel, looks, width_in=3.0, bar=True, title_in=None):
-    """looks: of each curve, by curve_key. width_in: about what the panel has for itself. bar: says what the colours of a
-    map mean. title_in: room for the title, if it may be wider than the panel."""
-    letters = int(width_in / LETTER_IN)
+def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
+    """Without its title and the label below it, which add_words() writes. looks: of each curve, by curve_key. width_in,
+    height_in: about what the panel has for itself. bar: says what the colours of a map mean."""
     if is_surface(panel):
         draw_surface(axes, panel, axis_label)
         return
     set_scales(axes, panel)
-    for i, curve in enumerate(panel.curves):
-        DRAW[curve.style](axes, curve, panel, looks.get(curve_key(curve, i)))
+    for curve, look in zip(panel.curves, looks_in_panel(panel, looks)):
+        DRAW[curve.style](axes, curve, panel, look)
     if any(curve.x.names and curve.style == "dots" for curve in panel.curves):
         axes.margins(x=0.3)  # room for the names
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
-    axes.set_title(wrapped(capitalised(panel.title), int((title_in or width_in) / BOLD_IN)), loc="left")
     if is_image(panel):
         without_axes(axes)
         return
     xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
     of_map = [curve for curve in panel.curves if curve.style == "map"]
     if of_map and bar:
-        add_colour_bar(axes, of_map[0], width_in)
-    set_ticks(axes.xaxis, axes.get_xlim(), xs, bool(of_map), width_in)
-    set_ticks(axes.yaxis, axes.get_ylim(), ys, bool(of_map))
-    axes.set_xlabel(wrapped_label(axis_label(panel.x_label, xs), letters))
-    axes.set_ylabel(wrapped_label(axis_label(panel.y_label, ys), int(min(max(14 * width_in, 16), 22))))
+        coloured = next(cells for cells in axes.collections if cells.get_array() is not None)
+        add_colour_bar(axes, coloured, of_map[0].z, width_in)
+    set_ticks(axes.xaxis, axes.get_xlim(), xs, [curve.x for curve in of_map] or sampled_at(panel), width_in)
+    set_ticks(axes.yaxis, axes.get_ylim(), ys, [curve.y for curve in of_map], height_in)
+    axes.set_xlabel(wrapped_label(axis_label(panel.x_label, xs), width_in))
+    axes.set_ylabel(wrapped_label(axis_label(panel.y_label, ys), height_in))
+
+
+def add_words(axes, panel, title, width_in, title_in):
+    """The title, and the label below the panel in lines that fit. title: of title_words(). width_in: of the panel."""
+    axes.set_title(folded(title, title_in, TITLE), loc="left")
+    if axes.get_xlabel() and not is_surface(panel):
+        xs = [curve.x for curve in panel.curves]
+        axes.set_xlabel(wrapped_label(axis_label(panel.x_label, xs), width_in))

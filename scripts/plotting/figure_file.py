@@ -56,6 +56,7 @@ class ScenePart:
     size: float
     opacity: float
     label: str
+    coloured_by: Column | None = None  # values of points that a colour bar shows
 
     def columns(self, *names):
         return np.stack([self.table[name] for name in names], axis=-1)
@@ -173,8 +174,10 @@ def read_part(file, group):
         triangles = rows(read_table(file, text(a, "triangles")), "a", "b", "c").astype(int)
         poses = read_table(file, text(a, "poses"))
         pose = rows(poses, "x", "y", "z", "qw", "qx", "qy", "qz")[int(number(a, "pose_row", 0))]
+    values = text(a, "coloured_by")  # files of earlier versions have no such attribute
     return ScenePart(text(a, "kind"), read_table(file, text(a, "table")), triangles, pose,
-                     int(number(a, "colour", 0)), number(a, "size", 0), number(a, "opacity", 1), text(a, "label"))
+                     int(number(a, "colour", 0)), number(a, "size", 0), number(a, "opacity", 1), text(a, "label"),
+                     read_column(file, text(a, "table"), values) if values else None)
 
 
 def read_scene(file, group):

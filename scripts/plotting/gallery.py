@@ -2,7 +2,7 @@
 import re
 
 from plotting.claims import address, esc, is_set_up, verdict
-from plotting.typeset import typeset_html
+from plotting.typeset import in_mm, typeset_html
 
 LONGEST = 170  # letters of a sentence
 WORDS = {"pass": "hold", "differs": "differ", "FAIL": "failed", "open": "open", "not run": "not run"}  # in this order
@@ -45,8 +45,8 @@ def item(figure, anchored, views):
     image = f'<img src="{address(figure.name)}.png" alt="" loading=lazy>' if figure.panels else "not drawn"
     view = f'<p><a href="{address(views[0])}">in 3-D</a></p>' if views else ""
     return (f'<li><a href="{there}" tabindex="-1" aria-hidden="true">{image}</a>'
-            f'<b><a href="{there}">{typeset_html(figure.heading)}</a></b>'
-            f'<p>{typeset_html(sentence_about(figure))}</p>'
+            f'<b><a href="{there}">{typeset_html(in_mm(figure.heading))}</a></b>'
+            f'<p>{typeset_html(in_mm(sentence_about(figure)))}</p>'
             f"{verdict_words([claim for _, claim in anchored])}{view}</li>")
 
 

@@ -8,19 +8,21 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from plotting.cells import colour_range
-from plotting.curves import has_cells
-from plotting.drawing import draw_panel, is_image
+from plotting.curves import has_cells, room_above_in
+from plotting.drawing import add_colour_bar, add_words, draw_panel, is_image, title_words
 from plotting.legends import LARGEST_SHARE, add_legends, share
 from plotting.picture_file import save
 from plotting.scene import draw_scene
-from plotting.style import COLUMN_IN, LETTER_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
+from plotting.style import COLUMN_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
 from plotting.surface import add_title, is_surface
-from plotting.typeset import wrapped
 from plotting.units import in_shown_units
+from plotting.wrapping import HEADING, TITLE, text_width_in, wrapped
 
 PAD_IN, HEADING_LINE_IN = 0.06, 0.155
+MARGIN_IN = 0.45  # the widest right margin for titles
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
-TALLEST_IN, SMALLEST = 9.2, 0.6  # a picture fits on a page, unless its panels became smaller than this share
+TALLEST_IN, SMALLEST = 9.2, 0.5  # a picture fits on a page, unless its plots became smaller than this share
+BESIDE = 0.75  # how high a plot is, if a panel beside it cannot be higher
 DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
 
@@ -52,9 +54,19 @@ def widths_in(panels, columns):
     return (PAGE_IN,) if wide else (COLUMN_IN, PAGE_IN)
 
 
-def panel_height(axes, panel, width, size):
-    """Inches for a panel that is so wide. size: rows and columns of the figure."""
+def plot_height(width, size):
+    """Inches for a plot that is so wide. size: rows and columns of the figure."""
     rows, columns = size
+    return min(max(0.7 * width, 1.0), 2.0) if columns > 1 else max(1.05, min(2.0, 3.2 / rows))
+
+
+def is_flexible(panel):
+    """Whether a panel may become lower without becoming narrower."""
+    return is_plot(panel) and not panel.equal_aspect
+
+
+def panel_height(axes, panel, width, size):
+    """Inches for a panel that is so wide."""
     if panel.scene:
         return width * panel.scene.proportion
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
@@ -62,7 +74,7 @@ def panel_height(axes, panel, width, size):
         return width * abs(y1 - y0) / abs(x1 - x0)
     if is_surface(panel):
         return 0.34 * width
-    usual = min(max(0.7 * width, 1.0), 2.0) if columns > 1 else max(1.05, min(2.0, 3.2 / rows))
+    usual = plot_height(width, size)
     if has_cells(panel):
         usual = max(usual, min(0.8 * width, 2.6))
     if panel.equal_aspect:
@@ -76,9 +88,9 @@ def margins(canvas, axes):
     if axes.name == "3d":
         return [PAD_IN, PAD_IN, PAD_IN, PAD_IN + 0.2]
     outer = axes.get_tightbbox(canvas.canvas.get_renderer(), for_layout_only=True)
-    whole, inner = (axes.get_position(original).transformed(canvas.transFigure) for original in (True, False))
-    return [max(0.0, size) / canvas.dpi + PAD_IN  # equal aspect may have made it narrower for now
-            for size in (whole.x0 - outer.x0, outer.x1 - whole.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
+    inner = axes.get_position().transformed(canvas.transFigure)
+    return [max(0.0, size) / canvas.dpi + PAD_IN  # equal aspect may have made it smaller for now
+            for size in (inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
 
 
 def guess(canvas, drawn, size):
@@ -90,23 +102,36 @@ def guess(canvas, drawn, size):
                            1 / columns - 1.1 * LABELS_IN / width, 1 / rows - 0.7 / height])
 
 
-def arrange(canvas, drawn, size, top_in):
-    """All panels are equally wide, rows as high as their panels ask, and the canvas as high as the rows. Returns the
-    factor by which the heights were reduced to fit on a page; 1: not reduced. (Constrained layout measures everything
-    twice, which takes half of the time of a figure.)"""
-    rows, columns = size
-    guess(canvas, drawn, size)
+def columns_in(canvas, drawn, columns):
+    """What the labels need left and right of each column, and the width of a panel: all are equally wide."""
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
     left, right = ([max((need[side] for cell, need in needs if cell[1] == column), default=PAD_IN)
                     for column in range(columns)] for side in (0, 1))
+    return left, right, (canvas.get_figwidth() - sum(left) - sum(right)) / columns
+
+
+def heights_in(drawn, width, size, around):
+    """Heights of the rows, and the factor by which those of the plots were reduced to fit on a page; 1: not reduced.
+    around: what labels, titles and legends need."""
+    rows = [[(axes, panel) for cell, axes, panel in drawn if cell[0] == row] for row in range(size[0])]
+    wanted = [max((panel_height(axes, panel, width, size) for axes, panel in row), default=0) for row in rows]
+    fixed = [max((panel_height(axes, panel, width, size) for axes, panel in row if not is_flexible(panel)), default=0)
+             for row in rows]
+    wanted = [max(low, BESIDE * high) if low else high for low, high in zip(fixed, wanted)]
+    flexible = sum(high - low for high, low in zip(wanted, fixed))
+    smaller = min(1.0, max((TALLEST_IN - around - sum(fixed)) / flexible, SMALLEST)) if flexible > 0 else 1.0
+    return [max(low, smaller * high) for low, high in zip(fixed, wanted)], smaller
+
+
+def arrange(canvas, drawn, size, columns, top_in):
+    """Rows are as high as their panels ask, and the canvas as high as the rows. columns: of columns_in(). Returns the
+    factor of heights_in(). (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
+    left, right, inner = columns
+    needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
     below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=PAD_IN)
-                     for row in range(rows)] for side in (2, 3))
-    inner = (canvas.get_figwidth() - sum(left) - sum(right)) / columns
-    heights = [max((panel_height(axes, panel, inner, size) for cell, axes, panel in drawn if cell[0] == row), default=0)
-               for row in range(rows)]
+                     for row in range(size[0])] for side in (2, 3))
     around = top_in + sum(above) + sum(below) + PAD_IN
-    smaller = min(1.0, max((TALLEST_IN - around) / sum(heights), SMALLEST))
-    heights = [smaller * height for height in heights]
+    heights, smaller = heights_in(drawn, inner, size, around)
     width, height = canvas.get_figwidth(), around + sum(heights)
     canvas.set_size_inches(width, height)
     for (row, column), axes, _ in drawn:
@@ -121,7 +146,7 @@ def align(drawn):
     for _, axes, panel in drawn:
         axes.apply_aspect()
         if is_surface(panel):
-            add_title(axes, panel)
+            add_title(axes)
     for (_, column), narrowed, panel in drawn:
         if not (panel.equal_aspect and has_range(panel)):
             continue
@@ -136,19 +161,28 @@ def is_plot(panel):
     return not (panel.scene or is_surface(panel) or is_image(panel))
 
 
+def repeats_below(at, cell):
+    """Whether the panel below has the same label and limits. at: axes and panel of each plot."""
+    axes, panel = at[cell]
+    below = at.get((cell[0] + 1, cell[1]))
+    same = below and below[0].get_xlabel() == axes.get_xlabel() and not panel.equal_aspect
+    return bool(same) and np.allclose(below[0].get_xlim(), axes.get_xlim())
+
+
 def say_once(drawn):
-    """Removes an axis label that repeats that of the panel to the left, or of the panel below if its limits are equal
-    too."""
+    """Removes an axis label that repeats that of the panel to the left. Labels and numbers that the panels below repeat
+    are removed if that is so in the whole row, which else would keep an empty band."""
     at = {cell: (axes, panel) for cell, axes, panel in drawn if is_plot(panel)}
     heights = {cell: axes.get_ylabel() for cell, (axes, _) in at.items()}
-    for (row, column), (axes, panel) in at.items():
-        below = at.get((row + 1, column))
+    kept = {cell[0] for cell in at if not repeats_below(at, cell)}
+    for (row, column), (axes, _) in at.items():
         if heights.get((row, column - 1)) == axes.get_ylabel():
             axes.set_ylabel("")
-        same = below and below[0].get_xlabel() == axes.get_xlabel() and not panel.equal_aspect
-        if same and np.allclose(below[0].get_xlim(), axes.get_xlim()):
-            axes.set_xlabel("")
+        if row not in kept:
             axes.tick_params(labelbottom=False)
+    for (row, _), (axes, _) in at.items():
+        if row not in kept:
+            axes.set_xlabel("")
 
 
 def bars_of(panels, cells):
@@ -160,27 +194,66 @@ def bars_of(panels, cells):
     return [by_cell[cell] is None or by_cell.get((cell[0], cell[1] + 1)) != by_cell[cell] for cell in cells]
 
 
-def composed(figure, width_in, titled):
-    """The canvas with everything in its place, and what arrange() returns."""
-    cells = places(figure.panels)
-    rows, columns = size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
-    canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * rows), dpi=PNG_DPI)
-    FigureCanvasAgg(canvas)
-    of_curve, about_in, drawn = looks(figure.panels), width_in / columns - LABELS_IN, []
+def letter_of(cells, i):
+    """(a), (b), ... in the order of reading, then (aa), (ab), ...; a single panel has none."""
+    at = sorted(cells).index(cells[i])
+    return ("" if at < 26 else chr(96 + at // 26)) + chr(97 + at % 26) if len(cells) > 1 else ""
+
+
+def draw_panels(figure, canvas, cells, size):
+    """The cell, axes and panel of each, without titles."""
+    of_curve, drawn, (rows, columns) = looks(figure.panels), [], size
+    about_in = canvas.get_figwidth() / columns - LABELS_IN
+    label_in = min(plot_height(about_in, size), 0.95 * TALLEST_IN / rows - LABELS_IN) + 0.1
     for i, (panel, cell, bar) in enumerate(zip(figure.panels, cells, bars_of(figure.panels, cells))):
         axes = canvas.add_axes([0, 0, 1, 1], label=str(i), projection="3d" if is_surface(panel) else None)
         if panel.scene:
-            draw_scene(axes, panel, width_in / columns)
+            draw_scene(axes, panel, canvas.get_figwidth() / columns, add_colour_bar)
         else:
-            draw_panel(axes, panel, of_curve, about_in, bar, about_in + (0.35 if cell[1] < columns - 1 else 0))
+            draw_panel(axes, panel, of_curve, about_in, bar, label_in)
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
         drawn.append((cell, axes, panel))
+    return drawn
+
+
+def with_room_for_titles(columns, drawn, titles):
+    """Columns with a margin on the right if that spares titles of the last one a second line. titles: of each panel."""
+    left, right, inner = columns
+    count = len(left)
+    widest = max((text_width_in(title, TITLE) - inner for (cell, _, _), title in zip(drawn, titles) if cell[1] == count - 1),
+                 default=0)
+    if count == 1 or not right[-1] < PAD_IN + widest * count / (count - 1) < MARGIN_IN:
+        return columns
+    more = widest * count / (count - 1)
+    return left, [*right[:-1], right[-1] + more], inner - more / count
+
+
+def write_words(drawn, titles, columns):
+    """Titles, and labels below, in lines that fit. A title may be wider than its panel, up to the next."""
+    left, right, inner = columns
+    for ((_, column), axes, panel), title in zip(drawn, titles):
+        gap_in = right[column] + (left[column + 1] if column + 1 < len(left) else PAD_IN) - 2 * PAD_IN
+        add_words(axes, panel, title, inner, inner + gap_in)
+
+
+def composed(figure, width_in, with_heading):
+    """The canvas with everything in its place, and what arrange() returns."""
+    cells = places(figure.panels)
+    size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
+    canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * size[0]), dpi=PNG_DPI)
+    FigureCanvasAgg(canvas)
+    drawn = draw_panels(figure, canvas, cells, size)
     say_once(drawn)
-    heading = wrapped(figure.heading, int((width_in - 2 * PAD_IN) / LETTER_IN / 1.12)) if titled else ""
+    guess(canvas, drawn, size)
+    titles = [title_words(panel.title, letter_of(cells, i)) for i, panel in enumerate(figure.panels)]
+    columns = with_room_for_titles(columns_in(canvas, drawn, size[1]), drawn, titles)
+    write_words(drawn, titles, columns)
+    heading = wrapped(figure.heading, width_in - 2 * PAD_IN, HEADING) if with_heading else ""
     top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
-    top_in += add_legends(canvas, [axes for _, axes, _ in drawn], about_in, top_in, PAD_IN)
-    smaller = arrange(canvas, drawn, size, top_in)
+    top_in += add_legends(canvas, [(cell, axes, room_above_in(panel)) for cell, axes, panel in drawn], columns[2], top_in,
+                          PAD_IN)
+    smaller = arrange(canvas, drawn, size, columns, top_in)
     canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
     align(drawn)
     return canvas, smaller

@@ -6,7 +6,7 @@ from plotting.claims import address, claim_table, esc, figure_of, overview
 from plotting.gallery import gallery
 from plotting.progress import duration
 from plotting.style import COLUMN_IN
-from plotting.typeset import typeset_html
+from plotting.typeset import in_mm, typeset_html
 
 CSS = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 62rem;
@@ -63,8 +63,8 @@ def figure_section(figure, anchored, views, formats):
     a = figure.attributes
     config = f'<pre>{esc(pretty(a["config"]))}</pre>' if a.get("config") else ""
     return f"""<section id="{esc(figure.name)}">
-<h2>{typeset_html(figure.heading)}</h2>
-<p>{typeset_html(a.get("caption", ""))}</p>
+<h2>{typeset_html(in_mm(figure.heading))}</h2>
+<p>{typeset_html(in_mm(a.get("caption", "")))}</p>
 {picture(figure, formats)}
 {view_links(views)}
 {claim_table(anchored)}

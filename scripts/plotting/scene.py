@@ -1,14 +1,24 @@
 """Draws a panel that is a picture of things in space, with plotting.raster."""
+import math
+
+import matplotlib
+import matplotlib.cm
 import matplotlib.colors
+import matplotlib.lines
 import matplotlib.patches
+import matplotlib.patheffects
 import numpy as np
 
+from plotting.cells import colour_range
 from plotting.raster import Camera, Canvas
-from plotting.style import BOLD_IN, COLOURS, OF_LABEL, PNG_DPI, meaning
-from plotting.typeset import typeset, wrapped
+from plotting.style import COLOURS, OF_LABEL, PNG_DPI, meaning
+from plotting.typeset import typeset
+from plotting.units import shown_column
 
 FINER = 2  # pixels are drawn so much finer, then averaged
-LARGEST_PX = 800
+LARGEST_PX = 1100  # a picture of one column has 1050: 300 dpi
+BAR_SHARE = 0.25  # of the width of a picture, that its scale bar may take
+EDGE = [matplotlib.patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
 def rgb(colour):
@@ -29,6 +39,18 @@ def colour_of(part):
     return np.array(matplotlib.colors.to_rgb(COLOURS[name])) if name else rgb(part.colour)
 
 
+def colour_scale(column):
+    """What a colour bar shows: the column in the unit that is shown."""
+    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*colour_range(column)), "viridis")
+
+
+def colours_of_points(part, count):
+    if part.coloured_by:
+        column = shown_column(part.coloured_by)
+        return colour_scale(column).to_rgba(column.values)[:, :3]
+    return rgb(part.table["colour"]) if "colour" in part.table else np.tile(colour_of(part), (count, 1))
+
+
 def draw_part(canvas, part):
     x = part.columns("x", "y", "z")
     if part.kind == "segments":
@@ -36,7 +58,7 @@ def draw_part(canvas, part):
     elif part.kind == "solid":
         canvas.mesh(turned(x, part.pose), part.triangles, colour_of(part), part.opacity)
     else:
-        own = rgb(part.table["colour"]) if "colour" in part.table else np.tile(colour_of(part), (len(x), 1))
+        own = colours_of_points(part, len(x))
         normals = part.columns("nx", "ny", "nz") if "nx" in part.table else None
         canvas.points(x, own, part.size, normals)
 
@@ -50,15 +72,44 @@ def picture(scene, width):
     return canvas.image(FINER)
 
 
-def draw_scene(axes, panel, width_in):
-    """With the names of its parts as entries of a legend."""
-    axes.imshow(picture(panel.scene, min(LARGEST_PX, int(PNG_DPI * width_in))), interpolation="antialiased")
+def add_scale_bar(axes, scene):
+    """As long as it says at the distance of the target; what is nearer is larger."""
+    longest = BAR_SHARE * scene.width
+    decade = 10.0 ** math.floor(math.log10(longest))
+    length = next(factor * decade for factor in (5, 2, 1) if factor * decade <= longest * (1 + 1e-9))
+    x, y = 1 - 0.03 - length / scene.width, 0.035
+    bar, = axes.plot([x, 0.97], [y, y], color="black", linewidth=1.6, solid_capstyle="butt", transform=axes.transAxes,
+                     path_effects=EDGE)
+    bar.set_in_layout(False)
+    axes.annotate(f"{1000 * length:g} mm", (x + length / scene.width / 2, y), xycoords="axes fraction", xytext=(0, 2.5),
+                  textcoords="offset points", ha="center", va="bottom", path_effects=EDGE)
+
+
+def handle(part):
+    """Of the legend: points are a dot, segments a line, and a solid is an area. Points of several colours have their median."""
+    colour, label = colour_of(part), typeset(part.label)
+    if part.kind == "points":
+        own = colours_of_points(part, 1)
+        median = np.median(own, axis=0) if len(own) else colour
+        return matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color=median, label=label)
+    if part.kind == "segments":
+        return matplotlib.lines.Line2D([], [], color=colour, label=label)
+    return matplotlib.patches.Rectangle((0, 0), 0, 0, facecolor=colour, alpha=part.opacity, label=label)
+
+
+def draw_scene(axes, panel, width_in, add_colour_bar):
+    """With the names of its parts as entries of a legend. add_colour_bar: of plotting.drawing."""
+    pixels = picture(panel.scene, min(LARGEST_PX, int(PNG_DPI * width_in)))
+    axes.imshow(pixels, interpolation="antialiased", extent=(0, 1, 0, panel.scene.proportion))
     axes.set_anchor("SW")
     axes.set_xticks([]), axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.grid(False)
-    axes.set_title(wrapped(panel.title, int(width_in / BOLD_IN)), loc="left")
+    add_scale_bar(axes, panel.scene)
     for part in panel.scene.parts:
         if part.label:
-            axes.add_patch(matplotlib.patches.Rectangle((0, 0), 0, 0, facecolor=colour_of(part), alpha=part.opacity,
-                                                        label=typeset(part.label)))
+            entry = handle(part)
+            axes.add_line(entry) if part.kind != "solid" else axes.add_patch(entry)
+        if part.coloured_by:
+            column = shown_column(part.coloured_by)
+            add_colour_bar(axes, colour_scale(column), column, width_in)

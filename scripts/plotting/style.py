@@ -9,7 +9,6 @@ import re
 
 COLUMN_IN, PAGE_IN = 3.5, 7.16  # widths of one column and of two with the gap between them
 TEXT_PT, HEADING_PT = 8, 9
-LETTER_IN, BOLD_IN = 0.064, 0.072  # mean width of a letter of the text, and of a title
 PNG_DPI = 300
 RC = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "mathtext.fontset": "dejavusans",
@@ -19,7 +18,7 @@ RC = {
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#555555", "axes.linewidth": 0.6,
     "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
     "axes.grid": True, "axes.axisbelow": True, "grid.color": "#e3e3e3", "grid.linewidth": 0.5,
-    "legend.frameon": False, "legend.handlelength": 2.2, "legend.handletextpad": 0.5, "legend.columnspacing": 1.2,
+    "legend.frameon": False, "legend.handlelength": 2.75, "legend.handletextpad": 0.5, "legend.columnspacing": 1.2,
     "legend.labelspacing": 0.25, "legend.borderpad": 0, "lines.markersize": 3.5,
     "pdf.fonttype": 42, "svg.fonttype": "none",  # embedded fonts; text that stays text
     "svg.hashsalt": "remote-touch",  # equal results are equal files
@@ -29,9 +28,10 @@ RC = {
 # Those of HIP to estimate are those of the viewer on a light ground: runners/presentation/view/page/src/colours.ts.
 COLOURS = {"hip": "#c08800", "proxy": "#146bab", "truth": "#3691ba", "force": "#b34c00", "normal": "#00a67c",
            "points": "#81939f", "estimate": "#822055", "limit": "#000000", "fixture": "#452700", "measured": "#1b2a83",
-           "region": "#8a3ffc"}
+           "region": "#8a3ffc",
+          "rose": "#e43054", "olive": "#546030", "lavender": "#8478f0"}  # these three have no meaning of their own
 COMPONENTS = {"x": "#a81e3c", "y": "#4f9a2a", "z": "#4a55d8"}
-SERIES = ("measured", "normal", "fixture", "region", "points", "proxy")  # for curves without a known meaning
+SERIES = ("measured", "rose", "olive", "lavender", "points", "fixture")  # for curves without a known meaning
 NOTHING_COLOUR = "#d4d4d4"  # cells without a value
 
 # The meaning of a curve, by its label: the first that matches. Without a label: by its quantity.
@@ -48,9 +48,12 @@ OF_LABEL = (
     (r"did not pop through", "points"), (r"yellow\b", "hip"),
     (r".*region", "fixture"),
 )
+BOUND_DASH = 3  # of DASHES: a bound differs from a solid line of another dark colour
+FORMULA = re.compile(r".*\b(derived|predicted|refitted|with scatter)\b")
 OF_QUANTITY = ((r".*\bforce\b", "force"), (r".*\btorque\b", "fixture"), (r".*\b(proxy|tool|contact point)\b", "proxy"),
                (r".*\bHIP\b", "hip"), (r".+", "measured"))
 
+# A handle of a legend, 2.75 em long, ends with a whole dash of the second pattern.
 DASHES = ("solid", (0, (5, 2.5)), (0, (1.2, 1.4)), (0, (6, 2, 1.2, 2)), (0, (6, 2, 1.2, 2, 1.2, 2)), (0, (9, 3)))
 MARKERS = ("o", "s", "^", "D", "v", "P")
 WITHOUT_COLOUR = ("map", "image", "surface", "letters", "band", "intervals")  # no colour of their own
@@ -60,10 +63,10 @@ LINES, DOTS = ("line", "dashed", "steps"), ("dots",)
 METHODS = {
     "proxy": ("proxy", 0, 0), "proxy-density": ("proxy", 1, 1), "proxy-mean-of-4": ("proxy", 2, 2),
     "proxy-temporal-filter": ("proxy", 3, 3), "oracle-proxy": ("truth", 2, 4), "predecessor": ("measured", 0, 4),
-    "god-object": ("force", 0, 3), "finger-proxy": ("fixture", 0, 5), "penalty": ("points", 0, 4),
+    "god-object": ("rose", 0, 3), "finger-proxy": ("fixture", 0, 5), "penalty": ("points", 0, 4),
     "metaballs-tuned": ("region", 0, 1), "metaballs-wyvill": ("region", 1, 2), "surfels-wendland": ("fixture", 1, 3),
-    "tracked-sheet": ("estimate", 0, 0), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
-    "continuous": ("normal", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
+    "tracked-sheet": ("estimate", 0, 3), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
+    "continuous": ("lavender", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
 }
 OTHER_NAMES = {"as printed": "voxels", "proxy of chapter 4": "proxy", "tracked sheet": "tracked-sheet",
                "tracked sheets": "tracked-sheet", "tracked": "tracked-sheet", "penalty method": "penalty"}
@@ -74,6 +77,8 @@ class Look:
     colour: str
     dash: int = 0  # of DASHES
     marker: int = 0  # of MARKERS
+    phase: float = 0  # where in its dash a line begins, from 0 to 1
+    edged: bool = False  # with a white edge, above a line of the same colour
 
 
 def method_look(name):
@@ -95,27 +100,45 @@ def method_looks(names):
     return looks
 
 
+def parts_of(label):
+    return [part for part in label.split(", ") if part not in ("derived", "measured", "")]
+
+
 def base(label):
     """What a curve is about: `look-ahead` for `look-ahead, derived` and for `measured, look-ahead`."""
-    parts = [part for part in label.split(", ") if part not in ("derived", "measured", "")]
-    return parts[0] if parts else label
+    return (parts_of(label) or [label])[0]
+
+
+def variant(label):
+    """What distinguishes curves of one base: `1 mm` for `look-ahead, 1 mm`; empty: nothing."""
+    return ", ".join(parts_of(label)[1:])
 
 
 def meaning(words, table):
     return next((name for pattern, name in table if re.match(pattern, words)), None)
 
 
+def is_formula(label):
+    """Whether a curve is a formula: its samples are no measurements. A curve without a label has another key."""
+    if not isinstance(label, str) or FORMULA.match(label):
+        return isinstance(label, str)
+    return not method_look(base(label)) and meaning(base(label), OF_LABEL) in ("limit", "truth")
+
+
 def known_look(curve):
     """The look of a curve whose meaning is known, else None."""
-    if not curve.label:
+    label, name = curve.label, None
+    if not label:
         name = meaning(curve.y.long_name, OF_QUANTITY)
-    elif method_look(base(curve.label)):
-        return method_look(base(curve.label))
+    elif method_look(base(label)):
+        return method_look(base(label))
+    elif component := re.fullmatch(r"(?:.*, )?([xyz])|.*\broll\b.*|red valve", label):
+        return Look(COMPONENTS[component[1] or "x"])
+    elif label.startswith(("measured, ", "derived, ")):
+        name = "measured" if label.startswith("m") else "estimate"
     else:
-        if component := re.fullmatch(r"(?:.*, )?([xyz])|roll \((x)\)|red valve", curve.label):
-            return Look(COMPONENTS[component[1] or component[2] or "x"])
-        name = meaning(base(curve.label), OF_LABEL)
-    return Look(COLOURS[name]) if name else None
+        name = meaning(base(label), OF_LABEL)
+    return Look(COLOURS[name], BOUND_DASH if label.startswith("bound") else 0) if name else None
 
 
 def curve_key(curve, i):
@@ -129,56 +152,92 @@ def kind(curve):
 
 
 def colour_of(curves, known, series):
-    """A colour for each curve of a panel without one. series: colours by base, for the whole figure."""
-    looks = []
+    """A look for each curve of a panel, its dash and marker not final. known: looks by curve_key. series: looks by base,
+    for the whole figure."""
+    found = []
     for i, curve in reversed(list(enumerate(curves))):  # an interval belongs to the curve that follows it
         look = known_look(curve)
-        if curve.style in ("band", "intervals") and looks and (not look or not curve.label):
-            look = Look(looks[0].colour)
+        if curve.style in ("band", "intervals") and found and (not look or not curve.label):
+            look = Look(found[0].colour)
         if not look:
             key = base(curve.label) if curve.label else curve_key(curve, i)
-            look = Look(series.get(key, COLOURS[SERIES[0]]))
-        looks.insert(0, known.get(curve_key(curve, i), look))
-    return looks
+            look = series.get(key, Look(COLOURS[SERIES[0]]))
+        found.insert(0, known.get(curve_key(curve, i), look))
+    return found
 
 
-def series_colours(panels):
-    """Colours for curves without a known meaning: first those that no other curve of the figure has."""
+def series_looks(panels):
+    """Looks for curves without a known meaning: first the colours that no other curve of the figure has."""
     curves = [(i, curve) for panel in panels for i, curve in enumerate(panel.curves)]
     taken = {look.colour for _, curve in curves if (look := known_look(curve))}
     keys = dict.fromkeys(base(curve.label) if curve.label else curve_key(curve, i) for i, curve in curves
                          if not known_look(curve) and curve.style not in WITHOUT_COLOUR)
     free = [COLOURS[name] for name in SERIES if COLOURS[name] not in taken]
     order = free + [COLOURS[name] for name in SERIES if COLOURS[name] in taken]
-    return {key: order[i % len(order)] for i, key in enumerate(keys)}
+    return {key: Look(order[i % len(order)], marker=i % len(MARKERS)) for i, key in enumerate(keys)}
+
+
+def first_free(order, used):
+    """The first that is not used, or else the first."""
+    order = list(order)
+    return next((one for one in order if one not in used), order[0])
+
+
+def in_turn(first, count):
+    return [first, *range(first + 1, count), *range(first)]
 
 
 def distinct_look(look, curve, beside):
-    """The look with the first dash or marker that no look of the same colour has. beside: looks of the same kind."""
-    used = [other for other in beside if other.colour == look.colour]
+    """The look with the first dash that no line of its colour has and the first marker that no dots of its colour have.
+    beside: looks in the same panels, by curve_key. Curves of one variant, `look-ahead, 1 mm` and `voxels, 1 mm`, have one
+    dash, and lines of one base one marker."""
+    lines = {label: other for (label, which), other in beside.items() if which == "line"}
     if curve.style in LINES:
         first = max(look.dash, int(curve.style == "dashed"))
-        order = [first, *(dash for dash in range(len(DASHES)) if dash > first), *range(first)]
-        dash = next((dash for dash in order if dash not in {other.dash for other in used}), first)
-        return dataclasses.replace(look, dash=dash)
-    order = [look.marker, *(marker for marker in range(len(MARKERS)) if marker != look.marker)]
-    marker = next((marker for marker in order if marker not in {other.marker for other in used}), look.marker)
-    return dataclasses.replace(look, marker=marker)
+        alike = [other.dash for label, other in lines.items() if other.dash >= first and
+                 isinstance(label, str) and variant(label) and variant(label) == variant(curve.label)]
+        used = {other.dash for other in lines.values() if other.colour == look.colour}
+        return dataclasses.replace(look, dash=first_free([*alike, *in_turn(first, len(DASHES))], used),
+                                   marker=line_marker(look, curve, lines))
+    used = {other.marker for (_, which), other in beside.items() if other.colour == look.colour and which == kind(curve)}
+    used |= {other.marker for label, other in lines.items() if other.colour == look.colour and not is_formula(label)}
+    return dataclasses.replace(look, marker=first_free(in_turn(look.marker, len(MARKERS)), used))
+
+
+def line_marker(look, curve, lines):
+    """That of the method, or of a line of the same base, or one that no other line has."""
+    same = [other.marker for label, other in lines.items() if isinstance(label, str) and base(label) == base(curve.label)]
+    if same or method_look(base(curve.label)):
+        return same[0] if same else look.marker
+    return first_free(in_turn(look.marker, len(MARKERS)), {other.marker for other in lines.values()})
 
 
 def looks(panels):
     """The look of every curve of a figure, by curve_key."""
-    series, found = series_colours(panels), {}
+    series, found = series_looks(panels), {}
     for panel in panels:
         for i, (curve, look) in enumerate(zip(panel.curves, colour_of(panel.curves, found, series))):
             key = curve_key(curve, i)
             if key not in found:
-                beside = [found[other] for other in neighbours(panels, key) if other in found and other[1] == key[1]]
+                beside = {other: found[other] for other in neighbours(panels, key) if other in found}
                 found[key] = distinct_look(look, curve, beside)
     return found
 
 
 def neighbours(panels, key):
-    """Keys of the curves that share a panel with a curve."""
+    """Keys of the curves that share a panel with a curve, in the order of the panels."""
     keys = [[curve_key(curve, i) for i, curve in enumerate(panel.curves)] for panel in panels]
-    return {other for group in keys if key in group for other in group if other != key}
+    return dict.fromkeys(other for group in keys if key in group for other in group if other != key)
+
+
+def looks_in_panel(panel, found):
+    """The looks of the curves of one panel. Lines that coincide can be distinguished: those of one dash begin at different
+    phases, and a dashed line has an edge above a solid line of its colour. found: as looks() returns it."""
+    own = [found.get(curve_key(curve, i)) for i, curve in enumerate(panel.curves)]
+    lines = [(i, own[i]) for i, curve in enumerate(panel.curves) if own[i] and curve.style in LINES]
+    solid = {look.colour for _, look in lines if not look.dash}
+    for dash in range(1, len(DASHES)):
+        group = [i for i, look in lines if look.dash == dash]
+        for k, i in enumerate(group):
+            own[i] = dataclasses.replace(own[i], phase=k / len(group), edged=own[i].colour in solid)
+    return own

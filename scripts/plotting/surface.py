@@ -28,6 +28,13 @@ def thinned(count):
     return np.unique(np.linspace(0, count - 1, min(count, LONGEST)).round().astype(int))
 
 
+def few_ticks(low, high):
+    """Ticks of a short axis at round values, and their words: there is room for those of the first and the last only."""
+    ticks = matplotlib.ticker.MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high)
+    ticks = ticks[(ticks >= low) & (ticks <= high)]
+    return ticks, [f"{tick:g}".replace("-", "\u2212") if i in (0, len(ticks) - 1) else "" for i, tick in enumerate(ticks)]
+
+
 def draw_surface(axes, panel, axis_label):
     """axes: of three dimensions, equally scaled. axis_label: names an axis."""
     curve = next(curve for curve in panel.curves if curve.style == "surface")
@@ -45,20 +52,20 @@ def draw_surface(axes, panel, axis_label):
     axes.tick_params(pad=-3)
     axes.tick_params("z", pad=-1)
     axes.view_init(DEGREES_UP, DEGREES_ROUND)
-    axes.set_title(typeset(panel.title), loc="left")  # room for it
     labels = (panel.x_label, panel.y_label, axis_label("", [curve.z]))
     longest = max(max(high - low for low, high in limits), 1e-9)
     for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (2, -5, -4)):
         bins = round(TICKS * (high - low) / longest)
         if bins > 1:
             axis.set_major_locator(matplotlib.ticker.MaxNLocator(bins))
-        else:  # a short axis has room for its ends only
-            axis.set_ticks([low, high], [f"{end:.2g}".replace("-", "\u2212") for end in (low, high)])
+        else:
+            axis.set_ticks(*few_ticks(low, high))
         axis.set_label_text(typeset(label))
         axis.labelpad = pad
 
 
-def add_title(axes, panel):
-    """Above the left end of the panel, of which a view in perspective takes only the middle. The panel has its place."""
+def add_title(axes):
+    """Moves the title above the left end of the panel, of which a view in perspective takes only the middle. The panel has
+    its place."""
     whole, middle = axes.get_position(original=True), axes.get_position()
-    axes.set_title(typeset(panel.title), loc="left", x=(whole.x0 - middle.x0) / middle.width)
+    axes.set_title(axes.get_title(loc="left"), loc="left", x=(whole.x0 - middle.x0) / middle.width)

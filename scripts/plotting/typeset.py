@@ -2,35 +2,46 @@
 stays a dollar sign."""
 import html
 import re
-import textwrap
 
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
 SYMBOL = re.compile(rf"\b({'|'.join(GREEK)}|[A-Za-z])_([A-Za-z0-9]{{1,3}})\b")
 POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
+VARIABLE = re.compile(r"(?<![\w\\{}_^$#&-])(?:([xyzhvu])|(M)(?= of\b))(?![\w$-])")  # no letter of a unit is among these
+SYMBOL_WITH_POWER, VARIABLE_WITH_POWER = (re.compile(rf"{one.pattern}(?:{POWER.pattern})?") for one in (SYMBOL, VARIABLE))
+TIMES = re.compile(r"(?<=[\w)])(?<!\babout)(?<!\balong)(?<!\b[aioO]n)(?<!\bof)(?<!\b[aiA]t) x (?=[\w(])")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
 UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
-LENGTH = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?) m(?![\w/^·])")
+LENGTH = re.compile(r"(?<![\w.])((?:\d+(?:\.\d+)?(?: to | or | x ))*\d+(?:\.\d+)?) (m|cm|micrometres|um)(?![\w/^·])")
+DEGREES = re.compile(r"(?<=\d) deg\b")
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
+MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # how many there are in a unit
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
 
+def superscript(match):
+    """The power after a symbol or variable, which are two groups of the match."""
+    return f"^{{{match[3] or match[4]}}}" if match[3] or match[4] else ""
+
+
 def symbol(match):
-    letter, index = match.groups()
+    letter, index = match[1], match[2]
     if index == "hat":
-        return rf"$\hat{{{letter}}}$"
+        return rf"$\hat{{{letter}}}{superscript(match)}$"
     letter = f"\\{letter}" if letter in GREEK else letter
-    return rf"${letter}_\mathrm{{{index}}}$"
+    return rf"${letter}_\mathrm{{{index}}}{superscript(match)}$"
 
 
 def typeset(words):
     """As matplotlib draws it, with mathematics between dollar signs."""
-    words = POWER.sub(r"$^{\1\2}$", CONTROL.sub("?", words).replace("$", r"\$"))
+    words = TIMES.sub(" × ", CONTROL.sub("?", words).replace("$", r"\$"))
+    words = SYMBOL_WITH_POWER.sub(symbol, words)
+    words = VARIABLE_WITH_POWER.sub(lambda match: f"${match[1] or match[2]}{superscript(match)}$", words)
+    words = POWER.sub(r"$^{\1\2}$", words)
     words = re.sub(r" - (?=\S)", " \u2212 ", words)
     words = re.sub(r"(?<=[ (])-(?=\d)", "\u2212", words)
-    words = re.sub(r"(?<=\w) x (?=\w)", " × ", words)
     words = re.sub(r"\blog10\b", "log$_{10}$", words)
-    words = SYMBOL.sub(symbol, words)
     words = re.sub(rf"\b({'|'.join(GREEK)})\b(?![}}_])", lambda match: GREEK[match[1]], words)
-    return re.sub(r"(\d) deg\b", r"\1°", words)
+    return DEGREES.sub("°", words)
 
 
 def html_symbol(match):
@@ -41,19 +52,20 @@ def html_symbol(match):
 
 def typeset_html(words):
     """As a page shows it. No words make another tag than those of symbols."""
-    words = SYMBOL.sub(html_symbol, html.escape(str(words), quote=True))
+    words = TIMES.sub(" × ", html.escape(str(words), quote=True))
+    words = SYMBOL.sub(html_symbol, VARIABLE.sub(r"<i>\1\2</i>", words))
     words = re.sub(rf"\b({'|'.join(GREEK)})\b", lambda match: GREEK[match[1]], words)
-    return POWER.sub(r"<sup>\1\2</sup>", words)
-
-
-def wrapped(words, letters):
-    """In lines of so many letters."""
-    return "\n".join(typeset(line) for line in textwrap.wrap(words, max(letters, 8), break_on_hyphens=False))
+    return DEGREES.sub("°", POWER.sub(r"<sup>\1\2</sup>", words))
 
 
 def in_mm(words):
-    """0.025 m as 25 mm."""
-    return LENGTH.sub(lambda match: f"{1000 * float(match[1]):g} mm", words)
+    """0.025 m as 25 mm, and 3 cm as 30 mm. Lengths of 1 m and more stay."""
+    def shown(match):
+        numbers = [float(number) for number in NUMBER.findall(match[1])]
+        if match[2] == "m" and max(numbers) >= 1:
+            return match[0]
+        return NUMBER.sub(lambda number: f"{MM[match[2]] * float(number[0]):g}", match[1]) + " mm"
+    return LENGTH.sub(shown, words)
 
 
 def unit_words(unit):

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/proportion.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
@@ -123,7 +124,7 @@ Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table&
 }
 
 Table calibration_table(const MeasuredNoise& noise, const Table& map) {
-  constexpr int kRanges = 3, kBins = 10;
+  constexpr int kRanges = static_cast<int>(std::size(kNoiseRanges)), kBins = 10;
   const auto &x = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
   std::vector<double> predicted(kRanges * kBins), observed(kRanges * kBins), cells(kRanges * kBins);
@@ -137,18 +138,22 @@ Table calibration_table(const MeasuredNoise& noise, const Table& map) {
     predicted[slot] += p, observed[slot] += survived[i], ++cells[slot];
   }
   Table table{"calibration", "survival as the bound with scatter predicts it, and as observed"};
-  const char* const names[kRanges] = {"to_1_rc", "to_2_rc", "to_3_rc"};
   for (int range = 0; range < kRanges; ++range) {
-    std::vector<double> mean_predicted, mean_observed, count;
+    std::vector<double> mean_predicted, mean_observed, low, high, count;
     for (int bin = 0; bin < kBins; ++bin) {
       const auto slot = static_cast<std::size_t>(range * kBins + bin);
       mean_predicted.push_back(predicted[slot] / cells[slot]);  // NaN for a bin without cells
       mean_observed.push_back(observed[slot] / cells[slot]);
+      const bool is_empty = cells[slot] == 0;
+      const auto ends = wilson_interval(static_cast<int>(observed[slot]), static_cast<int>(cells[slot]));
+      low.push_back(is_empty ? kNoValue : ends.first), high.push_back(is_empty ? kNoValue : ends.second);
       count.push_back(cells[slot]);
     }
-    const std::string name = names[range];
+    const std::string name = kNoiseRanges[range].first;
     table.add("predicted_" + name, "1", "mean prediction of the cells", mean_predicted);
     table.add("observed_" + name, "1", "share of them that survived", mean_observed);
+    table.add("observed_low_" + name, "1", "lower end of its 95 % Wilson interval", low);
+    table.add("observed_high_" + name, "1", "upper end of its 95 % Wilson interval", high);
     table.add("cells_" + name, "1", "cells", count);
   }
   return table;

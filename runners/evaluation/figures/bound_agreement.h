@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/evaluation/figures/lift_measurements.h"
@@ -40,7 +41,12 @@ struct Agreement {
 Agreement agreement_of(const AccelerationBound& bound, const Table& map, double max_noise = 4);
 Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table& map);
 
-// Predicted and observed survival, by ranges of both noise and prediction.
+// Predicted and observed survival, by ranges of both noise and prediction. Columns have the suffix of the
+// range of noise.
 Table calibration_table(const MeasuredNoise& noise, const Table& map);
+
+// The ranges of noise: suffix of the columns, words for readers.
+inline constexpr std::pair<const char*, const char*> kNoiseRanges[] = {
+    {"to_1_rc", "noise to r_c"}, {"to_2_rc", "r_c to 2 r_c"}, {"to_3_rc", "2 r_c to 3 r_c"}};
 
 }  // namespace remote_touch

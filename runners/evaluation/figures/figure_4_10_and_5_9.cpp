@@ -1,11 +1,16 @@
 // Fig 4.10: the proxy on a flat grid, and the HIP below it. Fig 5.9: the proxy keeps the distance of a
 // forbidden region from a beating organ. Both are pictures of one tick of a run.
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "analysis/measures/no_value.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/geometry/point_cloud.h"
+#include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
@@ -14,9 +19,12 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kHipRadius_m = 0.002, kPin_m = 0.02, kBar_m = 0.0006;
-constexpr std::uint32_t kProxyColour = 0x0072B2, kHipColour = 0xE69F00, kNormalColour = 0x009E73,
-                        kForceColour = 0xD55E00;
+constexpr double kHipRadius_m = 0.002, kNormalArrow_m = 0.02;
+// An arrow: sides around it, radius of its shaft, radius and length of its head.
+constexpr int kArrowSides = 12;
+constexpr double kShaft_m = 0.0005, kHead_m = 0.0013, kHeadLength_m = 0.0045;
+constexpr std::uint32_t kPointColour = 0x81939F, kProxyColour = 0x146BAB, kHipColour = 0xC08800,
+                        kNormalColour = 0x00A67C, kForceColour = 0xB34C00, kNetColour = 0x452700;
 
 TriangleMesh ball_of(double radius_m) {
   TriangleMesh mesh = find_generated_tool("ball")->make();
@@ -24,9 +32,30 @@ TriangleMesh ball_of(double radius_m) {
   return mesh;
 }
 
-// Returns a bar that starts at the origin and extends along z.
-TriangleMesh bar_of(double length_m) {
-  return box_mesh({kBar_m, kBar_m, length_m}, {0, 0, 0.5 * length_m});
+// Returns an arrow that starts at the origin and points along z. All arrows have the same triangles.
+TriangleMesh arrow_of(double length_m) {
+  const double neck_m = std::max(0.0, length_m - kHeadLength_m);
+  TriangleMesh mesh;
+  mesh.vertices.emplace_back(0, 0, 0);
+  for (const auto& [radius_m, z] :
+       {std::pair(kShaft_m, 0.0), std::pair(kShaft_m, neck_m), std::pair(kHead_m, neck_m)})
+    for (int side = 0; side < kArrowSides; ++side) {
+      const auto [sine, cosine] = sin_cos(2 * std::numbers::pi * side / kArrowSides);
+      mesh.vertices.emplace_back(radius_m * cosine, radius_m * sine, z);
+    }
+  mesh.vertices.emplace_back(0, 0, length_m);
+  const int tip = static_cast<int>(mesh.vertices.size()) - 1;
+  const auto corner = [](int ring, int side) { return 1 + ring * kArrowSides + side % kArrowSides; };
+  for (int side = 0; side < kArrowSides; ++side) {
+    mesh.triangles.push_back({0, corner(0, side + 1), corner(0, side)});
+    for (int ring = 0; ring < 2; ++ring) {
+      const int here = corner(ring, side), above = corner(ring + 1, side + 1);
+      mesh.triangles.push_back({here, corner(ring, side + 1), above});
+      mesh.triangles.push_back({here, above, corner(ring + 1, side)});
+    }
+    mesh.triangles.push_back({corner(2, side), corner(2, side + 1), tip});
+  }
+  return mesh;
 }
 
 Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
@@ -39,6 +68,8 @@ Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
                                : Eigen::Quaterniond(1 + n.z(), -n.y(), n.x(), 0).normalized();
     return std::vector<double>{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
   };
+  const Vec3& normal = trace.normal[tick];
+  const Vec3 on_proxy_W = proxy_W + kContactRadius_m * normal;
   return table_of(name, "of proxy, HIP, normal and force",
                   {{"x", "m", "x of its begin or centre"},
                    {"y", "m", "y of its begin or centre"},
@@ -47,56 +78,104 @@ Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
                    {"qx", "1", "orientation"},
                    {"qy", "1", "orientation"},
                    {"qz", "1", "orientation"}},
-                  {row(proxy_W, Vec3::UnitZ()), row(hip_W, Vec3::UnitZ()), row(proxy_W, trace.normal[tick]),
+                  {row(proxy_W, Vec3::UnitZ()), row(hip_W, Vec3::UnitZ()), row(on_proxy_W, normal),
                    row(hip_W, trace.force_N[tick])});
 }
 
 // Adds the chosen points, and a tick of a trace: the proxy as a ball of radius r_c, the HIP as a smaller
-// ball, the normal as a pin in the proxy, and the force on the hand as a bar that starts at the HIP. Tables
-// are NAME_cloud, NAME_proxy, NAME_hip, NAME_ball_triangles, NAME_normal, NAME_force, NAME_bar_triangles and
-// NAME_poses.
+// ball, the normal as an arrow that starts on the proxy, and the force on the hand as an arrow that starts at
+// the HIP. Tables are NAME_cloud, NAME_proxy, NAME_hip, NAME_ball_triangles, NAME_normal, NAME_force,
+// NAME_bar_triangles (of both arrows) and NAME_poses.
 void add_proxy_tables(Figure& figure, const std::string& name, const PointCloud& cloud,
                       const std::vector<std::size_t>& chosen, const Trace& trace, std::size_t tick,
                       double force_m_per_N) {
-  const TriangleMesh proxy = ball_of(kContactRadius_m), pin = bar_of(kPin_m);
+  const TriangleMesh proxy = ball_of(kContactRadius_m), normal = arrow_of(kNormalArrow_m);
   const auto add = [&](Table table) { figure.tables.push_back(std::move(table)); };
   add(cloud_table(name + "_cloud", "points around the proxy", cloud, chosen));
   add(vertex_table(name + "_proxy", proxy));
   add(vertex_table(name + "_hip", ball_of(kHipRadius_m)));
   add(triangle_table(name + "_ball_triangles", proxy));
-  add(vertex_table(name + "_normal", pin));
-  add(vertex_table(name + "_force", bar_of(force_m_per_N * trace.force_N[tick].norm())));
-  add(triangle_table(name + "_bar_triangles", pin));
+  add(vertex_table(name + "_normal", normal));
+  add(vertex_table(name + "_force", arrow_of(force_m_per_N * trace.force_N[tick].norm())));
+  add(triangle_table(name + "_bar_triangles", normal));
   add(pose_rows(name + "_poses", trace, tick));
 }
 
-// point_m: diameter of a point.
+// Returns the cloud, the proxy, the HIP, the normal and the force. HIP and force are slightly transparent,
+// because such parts are seen through the points that hide them. The proxy does not hide the force. point_m:
+// diameter of a point.
 std::vector<ScenePart> proxy_in_cloud(const std::string& name, double point_m) {
-  ScenePart cloud{ScenePart::Kind::points, name + "_cloud", 0x9A9A9A, point_m};
-  const auto solid = [&](const char* what, const char* triangles, int row, std::uint32_t colour) {
+  constexpr double kSeenThrough = 0.9, kHalf = 0.5;
+  ScenePart cloud{ScenePart::Kind::points, name + "_cloud", kPointColour, point_m, "points"};
+  const auto solid = [&](const char* what, const char* triangles, int row, std::uint32_t colour,
+                         double opacity) {
     ScenePart part{ScenePart::Kind::solid, name + "_" + what, colour};
     part.triangles = name + triangles, part.poses = name + "_poses", part.pose_row = row,
-    part.label = what == std::string("hip") ? "HIP" : what;
+    part.label = what == std::string("hip") ? "HIP" : what, part.opacity = opacity;
     return part;
   };
-  return {cloud, solid("proxy", "_ball_triangles", 0, kProxyColour),
-          solid("hip", "_ball_triangles", 1, kHipColour), solid("normal", "_bar_triangles", 2, kNormalColour),
-          solid("force", "_bar_triangles", 3, kForceColour)};
+  return {cloud, solid("proxy", "_ball_triangles", 0, kProxyColour, kHalf),
+          solid("hip", "_ball_triangles", 1, kHipColour, kSeenThrough),
+          solid("normal", "_bar_triangles", 2, kNormalColour, 1),
+          solid("force", "_bar_triangles", 3, kForceColour, kSeenThrough)};
 }
 
-// Returns the indices of the points of a cloud in a box around a position, up to reach_m along each axis.
-std::vector<std::size_t> points_near(const PointCloud& cloud, const Vec3& place_W, const Vec3& reach_m) {
+// Returns the indices of the measured points of a cloud that are at most reach_m from a position.
+std::vector<std::size_t> points_near(const PointCloud& cloud, const Vec3& place_W, double reach_m) {
   return chosen_points(cloud, [&](std::size_t i) {
-    return cloud.is_measured(i) && ((cloud.point(i) - place_W).cwiseAbs().array() <= reach_m.array()).all();
+    return cloud.is_measured(i) && (cloud.point(i) - place_W).norm() <= reach_m;
   });
+}
+
+// Returns the position over (x, z) on the surface of the forbidden region: the highest position on the
+// spheres of radius_m around the chosen points. Its height is NaN if no sphere is there.
+Vec3 on_region_5_9(const PointCloud& cloud, const std::vector<std::size_t>& chosen, double radius_m, double x,
+                   double z) {
+  double height_m = kNoValue;
+  for (const std::size_t i : chosen) {
+    const Vec3 p = cloud.point(i);
+    const double squared = radius_m * radius_m - (p.x() - x) * (p.x() - x) - (p.z() - z) * (p.z() - z);
+    const bool is_lower = squared < 0 || p.y() + std::sqrt(squared) <= height_m;
+    if (!is_lower) height_m = p.y() + std::sqrt(squared);
+  }
+  return {x, height_m, z};
+}
+
+// Returns the surface of the forbidden region around a position, as a net of lines along x and along z.
+Table net_table(const std::string& name, const PointCloud& cloud, const std::vector<std::size_t>& chosen,
+                double radius_m, const Vec3& middle_W) {
+  constexpr int kLines = 5, kPieces = 10;  // on each side of the middle
+  constexpr double kLineApart_m = 0.005, kPiece_m = kLineApart_m * kLines / kPieces;
+  TableRows rows;
+  const auto at = [&](double x, double z) {
+    return on_region_5_9(cloud, chosen, radius_m, middle_W.x() + x, middle_W.z() + z);
+  };
+  const auto add = [&](const Vec3& begin, const Vec3& end) {
+    if (begin.allFinite() && end.allFinite())
+      rows.push_back({begin.x(), begin.y(), begin.z(), end.x(), end.y(), end.z()});
+  };
+  for (int line = -kLines; line <= kLines; ++line)
+    for (int piece = -kPieces; piece < kPieces; ++piece) {
+      const double aside = line * kLineApart_m, from = piece * kPiece_m, to = from + kPiece_m;
+      add(at(from, aside), at(to, aside));
+      add(at(aside, from), at(aside, to));
+    }
+  return table_of(name, "surface of the forbidden region, as line segments",
+                  {{"x", "m", "x of the begin"},
+                   {"y", "m", "y of the begin"},
+                   {"z", "m", "z of the begin"},
+                   {"x_end", "m", "x of the end"},
+                   {"y_end", "m", "y of the end"},
+                   {"z_end", "m", "z of the end"}},
+                  rows);
 }
 
 constexpr double kInstant_4_10_s = 2.5;  // middle of the phase below the points
 constexpr double kShell_4_10_m = 1e-5;   // r_2 - r_c of Table 4.2
 constexpr double kSpring_4_10_N_per_m = 600;
 
-constexpr double kInstant_5_9_s = 12;                  // r_f has been 0.02 m for 2 s
-constexpr double kShell_5_9_m[] = {0.00499, 0.00501};  // r_1 and r_2 of Table 4.2
+constexpr double kInstant_5_9_s = 12, kRegion_5_9_m = 0.02;  // r_f has been 20 mm for 2 s
+constexpr double kShell_5_9_m[] = {0.00499, 0.00501};        // r_1 and r_2 of Table 4.2
 
 }  // namespace
 
@@ -108,13 +187,13 @@ Figure figure_4_10(FigureContext& context) {
   const Vec3 &proxy_W = trace.proxy_position_m[tick], &hip_W = trace.hip_position_m[tick];
   Figure figure{
       "4.10", "The proxy on a flat point cloud",
-      "The run of figure 4.11 after 2.5 s: the HIP is 5 mm below the grid, the proxy, as large as r_c, "
-      "on it. The pin is the estimated normal, 20 mm long; the force on the hand is 5 mm long for 1 N. "
-      "Points within 3 cm of the proxy."};
-  add_proxy_tables(figure, "touch", cloud, points_near(cloud, proxy_W, {0.03, 0.03, 0.03}), trace, tick,
-                   0.005);
-  const Scene scene{proxy_W + Vec3(0.05, 0.035, 0.075), proxy_W, Vec3::UnitY(), 0.075, 0.7,
-                    proxy_in_cloud("touch", 0.0005)};
+      "The run of figure 4.11 after 2.5 s: the HIP is 5 mm below the grid. The proxy, a ball of radius r_c, "
+      "is on the grid and drawn transparent. The upper arrow is the estimated normal, 20 mm long. The lower "
+      "arrow is the force on the hand, 5 mm long for 1 N. Points within 25 mm of the proxy are shown."};
+  add_proxy_tables(figure, "touch", cloud, points_near(cloud, proxy_W, 0.025), trace, tick, 0.005);
+  const Scene scene{
+      proxy_W + Vec3(0.05, 0.03, 0.075), proxy_W + Vec3(0, 0.0045, 0), Vec3::UnitY(), 0.064, 0.7,
+      proxy_in_cloud("touch", 0.0006)};
   figure.panels = {scene_panel("After 2.5 s", 0, 0, scene)};
   // A ball that touches four points is deepest in the middle between them.
   const double spacing_m = (cloud.point(1) - cloud.point(0)).norm();
@@ -135,17 +214,24 @@ Figure figure_5_9(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig5.8", {"duration_s=12.001"});
   const Trace trace = context.run(experiment);
   const std::size_t tick = trace.length() - 1;
-  const PointCloud cloud = experiment.build_scenario(context.kernels())->cloud(trace.frame_index[tick]);
+  PointCloud cloud = experiment.build_scenario(context.kernels())->cloud(trace.frame_index[tick]);
+  cloud.colour.assign(cloud.size(), kPointColour);  // HIP and force are hard to see on the organ's red
   const Vec3& proxy_W = trace.proxy_position_m[tick];
+  const std::vector<std::size_t> near = points_near(cloud, proxy_W, 0.06);
   Figure figure{
       "5.9", "The proxy at the distance of a forbidden region",
       "The run of figure 5.8 after 12 s, simulated camera: the HIP is just inside the beating organ, and "
-      "the proxy, a ball of radius r_c, touches the forbidden region, r_f = 0.02 m around every point. The "
-      "pin is the estimated normal of the region, 20 mm long; the force on the hand is 1.5 mm long for 1 N. "
-      "Points within 10 cm of the proxy."};
-  add_proxy_tables(figure, "held", cloud, points_near(cloud, proxy_W, {0.1, 0.1, 0.1}), trace, tick, 0.0015);
-  const Scene scene{proxy_W + Vec3(0.10, 0.06, 0.19), proxy_W - Vec3(0, 0.012, 0), Vec3::UnitY(), 0.12, 0.75,
-                    proxy_in_cloud("held", 0.001)};
+      "the proxy, a ball of radius r_c, touches the forbidden region, r_f = 20 mm around every point. The "
+      "net is the surface of the region, its lines 5 mm apart. The upper arrow is the estimated normal of "
+      "the region, 20 mm long. The lower arrow is the force on the hand, 1.5 mm long for 1 N; it starts at "
+      "the HIP, which is seen through the points. Points within 60 mm of the proxy are shown."};
+  add_proxy_tables(figure, "held", cloud, near, trace, tick, 0.0015);
+  figure.tables.push_back(net_table("held_region", cloud, near, kRegion_5_9_m, proxy_W));
+  Scene scene{proxy_W + Vec3(0.10, 0.07, 0.19), proxy_W - Vec3(0, 0.02, 0), Vec3::UnitY(), 0.13, 0.75,
+              proxy_in_cloud("held", 0.001)};
+  ScenePart region{ScenePart::Kind::segments, "held_region", kNetColour};
+  region.label = "region";
+  scene.parts.insert(scene.parts.begin() + 1, region);
   figure.panels = {scene_panel("After 12 s", 0, 0, scene)};
   const Claims claims(figure);
   Claims(figure, "", &Claim::set_up)

@@ -85,7 +85,7 @@ Panel probability_panel(const std::string& title, const std::string& map, const 
                     {contour, "noise", "acceleration", CurveStyle::line, "half survive"},
                     {contour, "noise", "low", CurveStyle::dashed, "ends of the 95 % intervals cross 1/2"},
                     {contour, "noise", "high", CurveStyle::dashed, "ends of the 95 % intervals cross 1/2"},
-                    {contour, "noise", "printed_bound", CurveStyle::line, "bound (4.25) as printed"}});
+                    {"bound", "noise", "printed", CurveStyle::line, "bound (4.25) as printed"}});
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ Figure figure_4_13(FigureContext& context) {
                    without, survivors("survived_without_estimate", without),
                    regions, bound_table()};
   figure.panels = {survivor_panel("With the velocity estimate", "survived"),
-                   survivor_panel("Without", "survived_without_estimate")};
+                   survivor_panel("Without the velocity estimate", "survived_without_estimate")};
   place_in_rows(figure, 2);
   const Claims map_claims(figure, "", &Claim::of_map);
   claim_agrees(map_claims,
@@ -132,9 +132,11 @@ Figure figure_4_13_replicated(FigureContext& context) {
       "4.13-replicated", "Probability of pop-through",
       "Every third noise and second acceleration of Fig 4.13, 20 lifts each, 1000 proxy steps per frame: "
       "share of lifts that did not pop through, and where it crosses one half, with 95 % Wilson intervals."};
-  figure.tables = {map, without, half, contour("contour_without_estimate", without, columns), second};
-  figure.panels = {probability_panel("With the velocity estimate", "map", "contour"),
-                   probability_panel("Without", "map_without_estimate", "contour_without_estimate")};
+  figure.tables = {map,    without,      half, contour("contour_without_estimate", without, columns),
+                   second, bound_table()};
+  figure.panels = {
+      probability_panel("With the velocity estimate", "map", "contour"),
+      probability_panel("Without the velocity estimate", "map_without_estimate", "contour_without_estimate")};
   place_in_rows(figure, 2);
   constexpr double kLiftsANode = 20;
   const Claims map_claims(figure, "", &Claim::of_map);

@@ -82,8 +82,20 @@ Slide slide_of(const Trace& trace) {
 
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
 
-// Returns the mean over the reported seeds at each noise strength.
-std::vector<Slide> slides(FigureContext& context, const std::string& renderer) {
+// Mean, minimum and maximum over the reported seeds, at each noise strength.
+struct Slides {
+  std::vector<Slide> mean, min, max;
+};
+
+// Applies change(quantity of `to`, quantity of `from`) to each quantity of a slide.
+template <class Change>
+void each_quantity(Slide& to, const Slide& from, Change&& change) {
+  for (double Slide::*quantity :
+       {&Slide::mean, &Slide::sd, &Slide::jump_N, &Slide::lateral, &Slide::lateral_95})
+    change(to.*quantity, from.*quantity);
+}
+
+Slides slides(FigureContext& context, const std::string& renderer) {
   std::vector<Experiment> runs;
   for (const double sigma : kSlideNoise)
     for (const int number : kReportedSeeds)
@@ -92,26 +104,38 @@ std::vector<Slide> slides(FigureContext& context, const std::string& renderer) {
                       "trajectory.waypoints=[[0,0.01,0,0],[0,-0.005,0,0.05],[0.02,-0.005,0.01,0.02]]"}));
   const std::vector<Slide> each = context.measure(runs, slide_of);
   constexpr std::size_t kSeeds = std::size(kReportedSeeds);
-  std::vector<Slide> means(std::size(kSlideNoise));
+  Slides over;
+  over.mean.resize(std::size(kSlideNoise));
   for (std::size_t i = 0; i < each.size(); ++i) {
-    Slide& to = means[i / kSeeds];
-    to.mean += each[i].mean / kSeeds, to.sd += each[i].sd / kSeeds, to.jump_N += each[i].jump_N / kSeeds;
-    to.lateral += each[i].lateral / kSeeds, to.lateral_95 += each[i].lateral_95 / kSeeds;
+    if (i % kSeeds == 0) over.min.push_back(each[i]), over.max.push_back(each[i]);
+    each_quantity(over.mean[i / kSeeds], each[i], [](double& to, double from) { to += from / kSeeds; });
+    each_quantity(over.min.back(), each[i], [](double& to, double from) { to = min_or_nan(to, from); });
+    each_quantity(over.max.back(), each[i], [](double& to, double from) { to = max_or_nan(to, from); });
   }
-  return means;
+  return over;
 }
 
-Table slide_table(const std::string& name, const std::vector<Slide>& slides) {
+// Adds the minimum and the maximum of a quantity over the seeds.
+void add_range(Table& table, const std::string& column, const std::string& unit, const Slides& slides,
+               double Slide::*quantity) {
+  add_columns<Slide>(table, slides.min, {{column + "_min", unit, "minimum of the seeds", quantity}});
+  add_columns<Slide>(table, slides.max, {{column + "_max", unit, "maximum of the seeds", quantity}});
+}
+
+Table slide_table(const std::string& name, const Slides& slides) {
   Table table{name, "a proxy that slides on a flat noisy cloud"};
   table.add("noise", "r_c", "standard deviation of the noise",
             {std::begin(kSlideNoise), std::end(kSlideNoise)});
-  add_columns<Slide>(table, slides,
+  add_columns<Slide>(table, slides.mean,
                      {{"height", "r_c", "mean height above where it rests without noise", &Slide::mean},
                       {"height_sd", "r_c", "standard deviation of that height", &Slide::sd},
                       {"force_jump", "N", "rms change of the force at frame updates", &Slide::jump_N},
                       {"lateral_force", "1",
                        "mean ratio of the force along the surface to that along its normal", &Slide::lateral},
                       {"lateral_force_95", "1", "95th percentile of this ratio", &Slide::lateral_95}});
+  add_range(table, "height", "r_c", slides, &Slide::mean);
+  add_range(table, "force_jump", "N", slides, &Slide::jump_N);
+  add_range(table, "lateral_force", "1", slides, &Slide::lateral);
   return table;
 }
 
@@ -235,9 +259,13 @@ void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, cons
   add_lateral_claims(claims, ours, paper);
 }
 
-Panel slide_panel(const char* title, const char* y_label, const char* column) {
+// Draws the mean over the seeds, and a band from their minimum to their maximum.
+Panel slide_panel(const char* title, const char* y_label, const std::string& column) {
+  const std::string min = column + "_min", max = column + "_max";
   return plot(title, "noise (r_c)", y_label,
-              {{"slide_paper", "noise", column, CurveStyle::dashed, "proxy of chapter 4"},
+              {{"slide_paper", "noise", min, CurveStyle::band, "", 0, max},
+               {"slide_paper", "noise", column, CurveStyle::dashed, "proxy of chapter 4"},
+               {"slide_tracked", "noise", min, CurveStyle::band, "", 0, max},
                {"slide_tracked", "noise", column, CurveStyle::line, "tracked sheet"}});
 }
 
@@ -254,13 +282,14 @@ Figure figure_4_13_tracked(FigureContext& context) {
   }
   const Table paper_map =
       map_table("map_paper", context.sweep(context.map("fig4.13", {seed_setting(kReportedSeeds[0])})));
-  const std::vector<Slide> ours = slides(context, kTracked), paper = slides(context, kPaper);
+  const Slides ours = slides(context, kTracked), paper = slides(context, kPaper);
   Figure figure{
       "4.13-tracked", "Pop-through map of the tracked sheet",
-      "The lifts of Fig 4.13 under the proxy of chapter 4 and under the tracked sheet, the same noise. A "
-      "filled square is a lift that did not pop through. Parameters were fixed with seeds 1 to 40; shown is "
-      "seed 101, the claims state the smallest value of the seeds 101, 102 and 103. Below: what noise does to "
-      "a proxy that slides on a flat cloud."};
+      "The lifts of Fig 4.13 under the proxy of chapter 4 and under the tracked sheet, with the same noise. "
+      "A filled square is a lift that did not pop through. Parameters were fixed with seeds 1 to 40. The "
+      "maps show seed 101; the claims on lifts state the smallest value of the seeds 101, 102 and 103. The "
+      "lower panels show what noise does to a proxy that slides on a flat cloud: the mean of the three "
+      "seeds, and a band from the smallest to the largest of them."};
   figure.tables = {map,
                    survivors("survived", map),
                    region_table("regions", map),
@@ -275,7 +304,7 @@ Figure figure_4_13_tracked(FigureContext& context) {
                    slide_panel("Force jump at frame updates", "rms (N)", "force_jump"),
                    slide_panel("Force along the surface", "mean ratio to the normal force", "lateral_force")};
   place_in_rows(figure, 2);
-  add_claims(figure, context, lifts, ours, paper);
+  add_claims(figure, context, lifts, ours.mean, paper.mean);
   return figure;
 }
 

@@ -114,22 +114,26 @@ Figure figure_4_14(FigureContext& context) {
   const Oracle oracle(*scenario, -0.22, 0.22);
   const std::vector<Contact> contact = contacts(trace, oracle, kFrom, kTo);
 
-  Figure figure{"4.14", "Sharp corners",
-                "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
-                "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
-                "with the points and a circle of radius r_c. Convex corners are rendered sharp; in a valley "
-                "the proxy rests on both flanks."};
+  Figure figure{
+      "4.14", "Sharp corners",
+      "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
+      "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
+      "with the points and the proxy, a ball of radius r_c. Convex corners are rendered sharp; in a "
+      "valley the proxy rests on both flanks."};
   figure.tables = {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))};
   for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
   const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
   const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
-  figure.panels = {plot("The point cloud, x, y and z equally scaled", "x (m)", "z (m)",
-                        {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}),
-                   plot("The whole wave", "x (m)", "y (m)",
-                        {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}),
-                   plot("A part of it", "x (m)", "y (m)",
-                        {points, line, {"ball", "x", "y", CurveStyle::circle, "r_c", kContactRadius_m}},
-                        {.x_range = {{0.095, 0.175}}, .y_range = {{-0.02, 0.02}}, .equal_aspect = true})};
+  figure.panels = {
+      plot("The point cloud, x, y and z equally scaled", "x (m)", "z (m)",
+           {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}),
+      plot("The whole wave", "x (m)", "y (m)",
+           {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}),
+      plot("A part of it", "x (m)", "y (m)",
+           {points,
+            line,
+            {"ball", "x", "y", CurveStyle::circle, "proxy, a ball of radius r_c", kContactRadius_m}},
+           {.x_range = {{0.095, 0.175}}, .y_range = {{-0.014, 0.015}}, .equal_aspect = true})};
   const Claims claims(figure);
   const std::vector<double>& error = numbers(figure.tables[0], "error");
   claims.at_most("the contact point follows the exact closing of the wave with a ball of r_c: rms distance",

@@ -1,5 +1,4 @@
 // Fig 4.15 b: the points that the depth camera of 4.16 measures. The photo of 4.15 a has no counterpart.
-#include <algorithm>
 #include <cmath>
 
 #include "runners/evaluation/figures/figures.h"
@@ -11,18 +10,8 @@ namespace remote_touch {
 
 namespace {
 
-// The part of the table that is shown, and the colours of its lowest and highest point.
+// The part of the table that is shown.
 constexpr double kAcross_4_15_m = 0.16, kFrom_4_15_m = -0.42, kTo_4_15_m = 0.28;
-constexpr double kHighest_4_15_m = 0.1;
-const Vec3 kLow_4_15(0x3B, 0x4C, 0x7A), kHigh_4_15(0xF2, 0xC1, 0x4E);
-
-std::uint32_t colour_of_height(double height_m) {
-  const double part = std::clamp(height_m / kHighest_4_15_m, 0.0, 1.0);
-  const Vec3 colour = kLow_4_15 + part * (kHigh_4_15 - kLow_4_15);
-  std::uint32_t rgb = 0;
-  for (int k = 0; k < 3; ++k) rgb = 256 * rgb + static_cast<std::uint32_t>(std::lround(colour[k]));
-  return rgb;
-}
 
 std::vector<std::size_t> points_of_4_15(const PointCloud& cloud) {
   return chosen_points(cloud, [&](std::size_t i) {
@@ -56,17 +45,20 @@ Figure figure_4_15(FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.16");
   context.uses(experiment);
   const auto scenario = experiment.build_scenario(context.kernels());
-  PointCloud cloud = scenario->cloud(0);
-  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.colour.push_back(colour_of_height(cloud.y[i]));
+  const PointCloud cloud = scenario->cloud(0);
   Figure figure{"4.15", "Ramp and box as points, simulated depth camera",
                 "The first frame of 4.16: a simulated depth camera above the scene, on the right, measures a "
                 "ramp (behind) and a box (in front) on a table. Points near edges of depth are missing. The "
-                "colour shows the height over the table, from dark (0) to light (0.1 m). In the "
-                "dissertation a Kinect camera sees the real objects (b), next to a photo (a)."};
+                "colour shows the height over the table. In the dissertation a Kinect camera sees the real "
+                "objects (b), next to a photo (a)."};
   figure.tables = {cloud_table("scene_cloud", "points of the first frame", cloud, points_of_4_15(cloud))};
-  const ScenePart points{ScenePart::Kind::points, "scene_cloud", 0x808080, 0.002};
-  figure.panels = {scene_panel("The point cloud", 0, 0,
-                               {{0.55, 0.45, 0.62}, {0, -0.02, -0.03}, Vec3::UnitY(), 0.74, 0.62, {points}})};
+  for (Column& column : figure.tables[0].columns)
+    if (column.name == "y") column.long_name = "height over the table";
+  ScenePart points{ScenePart::Kind::points, "scene_cloud", 0x808080, 0.002};
+  points.coloured_by = "y";
+  figure.panels = {
+      scene_panel("The point cloud", 0, 0,
+                  {{0.55, 0.45, 0.62}, {-0.01, -0.04, -0.03}, Vec3::UnitY(), 0.8, 0.58, {points}})};
   Claims(figure).at_most(
       "the points lie on the true surface within the sensor's error: rms distance, in standard "
       "deviations of that error along the ray",

@@ -93,7 +93,7 @@ Figure figure_4_16(FigureContext& context) {
   Figure figure{
       "4.16", "Ramp and box, simulated depth camera",
       "A simulated depth camera (quantised, noisy, with holes at depth edges) looks at a ramp and a box "
-      "on a table; the HIP moves along z, 1 cm below the true surface, and lifts off over the two steps. "
+      "on a table; the HIP moves along z, 10 mm below the true surface, and lifts off over the two steps. "
       "Top: paths of HIP and proxy. Bottom: force."};
   figure.tables = {path_table("path", trace, 2, 1),
                    slice_table("slice", cloud, 2, 1, [](const Vec3& p) { return std::abs(p.x()) < 0.0015; })};
@@ -159,11 +159,11 @@ void add_moving(Figure& figure, FigureContext& context) {
 Figure figure_4_16_recorded(FigureContext& context) {
   Figure figure{"4.16-recorded", "Recorded depth images and clouds",
                 "The experiment of Fig 4.16 on recordings; x to the right, z away from the camera. "
-                "Scans: the HIP follows an image row, 1 cm behind the surface of the first frame, and "
+                "Scans: the HIP follows an image row, 10 mm behind the surface of the first frame, and "
                 "lifts off over holes and depth edges. The truth is the measurement itself: a plane "
                 "through the pixels around the proxy. The proxy also slides across the row, along y, so "
-                "in this projection it can lie beside the row's points. Moving camera: the HIP keeps 1 "
-                "cm behind the newest frame's surface at one pixel, and lifts off while that pixel sees "
+                "in this projection it can lie beside the row's points. Moving camera: the HIP stays 10 "
+                "mm behind the newest frame's surface at one pixel, and lifts off while that pixel sees "
                 "a hole or an edge."};
   add_scan(figure, context, "fig4.16-recorded", "still", "box and organ model, camera at rest");
   place_in_column(figure, 0, 0);

@@ -14,17 +14,19 @@ constexpr double kFixtureRadius_m = 0.1, kBoundary_m = 0.105;
 constexpr double kStiffness_N_per_m = 600;
 constexpr double kShell_5_5_m = 1e-5;  // r_2 - r_c: a proxy in contact may rest anywhere in this shell
 
-// The point is the origin, so distances to it are lengths.
+// The point is the origin, so distances to it are lengths. Both radii are columns, to be drawn as lines.
 Table distances(const Trace& t) {
   TableRows rows;
   for (std::size_t i = 0; i < t.length(); ++i)
-    rows.push_back(
-        {t.time_s[i], t.proxy_position_m[i].norm(), t.hip_position_m[i].norm(), t.force_N[i].norm()});
+    rows.push_back({t.time_s[i], t.proxy_position_m[i].norm(), t.hip_position_m[i].norm(),
+                    t.force_N[i].norm(), kFixtureRadius_m, kBoundary_m});
   return table_of("distances", "distances to the point, and the force",
                   {{"time", "s", "simulated time"},
                    {"proxy", "m", "distance of the proxy's centre to the point"},
                    {"hip", "m", "distance of the HIP to the point"},
-                   {"force", "N", "magnitude of the force"}},
+                   {"force", "N", "magnitude of the force"},
+                   {"radius", "m", "r_f"},
+                   {"boundary", "m", "r_f + r_c"}},
                   rows);
 }
 
@@ -56,13 +58,15 @@ double max_force_error(const Trace& trace) {
 Figure figure_5_5(FigureContext& context) {
   const Trace trace = context.run(Experiment::load("fig5.5"));
   Figure figure{"5.5", "Single point virtual fixture",
-                "One point at the origin with r_f = 0.1 m. The HIP passes through its region, leaves it and "
+                "One point at the origin with r_f = 100 mm. The HIP passes through its region, leaves it and "
                 "crosses its rim. The proxy's centre stays r_f + r_c away; the force is k_s times the depth "
                 "of the HIP in the region."};
   figure.tables = {distances(trace)};
   figure.panels = {
       plot("Distance to the point", "time (s)", "distance (m)",
-           {{"distances", "time", "hip", CurveStyle::dashed, "HIP"},
+           {{"distances", "time", "boundary", CurveStyle::dashed, "r_f + r_c"},
+            {"distances", "time", "radius", CurveStyle::dashed, "boundary of the region, r_f"},
+            {"distances", "time", "hip", CurveStyle::dashed, "HIP"},
             {"distances", "time", "proxy", CurveStyle::line, "proxy"}}),
       plot("Force", "time (s)", "force (N)", {{"distances", "time", "force", CurveStyle::line, ""}})};
   const Claims claims(figure);

@@ -166,30 +166,42 @@ Table deviation_table(const Summary& a, const Summary& b) {
        {"largest speed of the surface over the proxy", "m/s", &Summary::max_speed_m_per_s}});
 }
 
+constexpr const char *kWithNoise = "with the sensor's noise", *kNoiseFree = "noise-free camera";
+
 // Returns a panel over time of curves of both runs, noise first.
-Panel of_both_runs(const char* title, const char* y_label, const char* column) {
+Panel of_both_runs(const char* title, const char* y_label, const char* column, const PanelFrame& frame) {
   return plot(title, "time (s)", y_label,
-              {{"with_noise", "time", column, CurveStyle::line, "with the sensor's noise"},
-               {"noise_free", "time", column, CurveStyle::line, "noise-free camera"}},
-              {.x_range = {{0, 15}}});
+              {{"with_noise", "time", column, CurveStyle::line, kWithNoise},
+               {"noise_free", "time", column, CurveStyle::line, kNoiseFree}},
+              frame);
 }
 
+// The distance to the true surface goes up and down with every frame, so that one run would hide the other.
+Panel distance_panel(const std::string& table, const std::string& label, const PanelFrame& frame) {
+  return plot("Distance to the true surface, " + label, "time (s)", "distance (m)",
+              {{table, "time", "distance", CurveStyle::line, label},
+               {table, "time", "boundary", CurveStyle::dashed, "r_f + r_c"}},
+              frame);
+}
+
+// Returns three rows of two panels.
 std::vector<Panel> panels() {
-  Panel distance = of_both_runs("Distance to the true surface", "distance (m)", "distance");
-  Panel deviation = of_both_runs("Distance - r_f - r_c: moving true surface", "deviation (m)", "deviation");
-  distance.curves.push_back({"noise_free", "time", "boundary", CurveStyle::dashed, "r_f + r_c"});
-  distance.y_range = {0, 0.03};
-  deviation.curves.push_back({"noise_free", "time", "deviation_in_frame", CurveStyle::line,
+  const std::pair<double, double> whole{0, 15}, one_second{1, 2}, distances_m{0, 0.03};
+  Panel deviation = of_both_runs("Distance - r_f - r_c, moving true surface, from 1 to 2 s", "deviation (m)",
+                                 "deviation", {{{2, 1}}, one_second, {{-0.002, 0.003}}});
+  deviation.curves.push_back({"noise_free", "time", "deviation_in_frame", CurveStyle::dashed,
                               "noise-free, surface of the newest frame"});
-  deviation.y_range = {-0.003, 0.004};
   return {of_both_runs("Distance between HIP and proxy, as in the dissertation", "|HIP - proxy| (m)",
-                       "hip_distance"),
-          plot("Height", "time (s)", "y (m)",
+                       "hip_distance", {{{0, 0}}, whole}),
+          of_both_runs("Force", "force (N)", "force", {{{0, 1}}, whole}),
+          distance_panel("noise_free", kNoiseFree, {{{1, 0}}, whole, distances_m}),
+          distance_panel("with_noise", kWithNoise, {{{1, 1}}, whole, distances_m}),
+          plot("Height, noise-free camera", "time (s)", "y (m)",
                {{"noise_free", "time", "hip_y", CurveStyle::dashed, "HIP"},
-                {"noise_free", "time", "surface_y", CurveStyle::line, "true surface under the proxy"},
+                {"noise_free", "time", "surface_y", CurveStyle::dashed, "true surface under the proxy"},
                 {"noise_free", "time", "proxy_y", CurveStyle::line, "proxy"}},
-               {.x_range = {{0, 15}}, .y_range = {{0.045, 0.095}}}),
-          distance, deviation, of_both_runs("Force", "force (N)", "force")};
+               {{{2, 0}}, whole, {{0.045, 0.095}}}),
+          deviation};
 }
 
 void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, double frame_s) {
@@ -237,11 +249,12 @@ Figure figure_5_8(FigureContext& context) {
   Figure figure{
       "5.8", "A fixture that grows on a beating organ, simulated depth camera",
       "Simulated: a depth camera (30 Hz) looks down on three ellipsoids that beat 75 times a minute, in "
-      "place of the recorded pig's heart, and the HIP rests just inside. r_f is 0 for 5 s, grows to 0.02 "
-      "m in 5 s and then stays constant. Distances are from the proxy's centre to the true surface: as it "
+      "place of the recorded pig's heart, and the HIP rests just inside. r_f is 0 for 5 s, grows to 20 "
+      "mm in 5 s and then stays constant. Distances are from the proxy's centre to the true surface: as it "
       "is in that tick, or as it was when the frame in use was captured. The renderer knows only the "
       "second; since then the organ has moved for up to one frame interval. r_f is that of the frame in "
-      "use. Curves show every fifth tick; measures use all ticks, from 1 s on."};
+      "use. The last panel shows one second, because the distance goes up and down once in a frame (33 ms). "
+      "Curves show every fifth tick; measures use all ticks, from 1 s on."};
   figure.tables = {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
                    path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
                    deviation_table(clean, noisy)};

@@ -216,7 +216,7 @@ Figure figure_5_8_recorded(FigureContext& context) {
       "stays 3 mm behind the surface that one pixel sees, and lifts off while that pixel sees a hole or an "
       "edge. z points away from the camera. Left: camera at rest, five frames played to and fro, so only "
       "the sensor's noise moves. Then: camera moved by hand, which the paper did not try; and the same "
-      "with r_f = 0.02 m from the start. Each frame is shown by its last tick. There are two truths, both "
+      "with r_f = 20 mm from the start. Each frame is shown by its last tick. There are two truths, both "
       "from the newest measurement. The nearest of all its points does not show on which side the proxy "
       "is. A plane through the pixels around the one that sees the proxy shows the side, but is unknown "
       "at edges. The proxy pops through where the measured surface jumps past its centre within a frame: "

@@ -221,8 +221,8 @@ Figure figure_6_2(FigureContext& context) {
       "6.2", "A recorded hand with normals",
       "Above: a hand held in front of a depth camera, as measured and after the filter; the person behind is "
       "left out. Every point has a normal, every 100th is drawn. Below: what the filter does to a step "
-      "between two walls, and to the sensor's noise, with sigma_f = 0.025 m as the dissertation prints it, "
-      "and with 0.010 m. At 0.8 m the first smears a step of its own height; the second does not, and "
+      "between two walls, and to the sensor's noise, with sigma_f = 25 mm as the dissertation prints it, "
+      "and with 10 mm. At 0.8 m the first smears a step of its own height; the second does not, and "
       "removes as much noise."};
   figure.tables = {cloud_table("hand", "the hand, filtered", cloud, hand_points(cloud, kForearm_m)),
                    cloud_table("raw", "the hand, as measured", raw, hand_points(cloud, kForearm_m)),

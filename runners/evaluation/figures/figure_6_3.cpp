@@ -283,7 +283,7 @@ void add_panels(Figure& figure, const BoxRun& run, int column) {
        {t, "time", "tool_rotation", CurveStyle::dashed, "tool"}});
   add("", "count", {0, 16},
       {{t, "time", "points", CurveStyle::steps, "points that touch"},
-       {t, "time", "clusters", CurveStyle::steps, "10 mm clusters"},
+       {t, "time", "clusters", CurveStyle::steps, "10 mm cells that touch"},
        {t, "time", "active", CurveStyle::steps, "active constraints"}});
 }
 
@@ -310,10 +310,12 @@ Figure figure_6_3(FigureContext& context) {
   Figure figure{
       "6.3", "A tool in a narrow box of points",
       "A box with a floor and without a top, 110 x 90 mm inside, its points 3 mm apart with normals into the "
-      "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as constraints with "
-      "their distance, ahead of the tool. Right: the tool's voxels as printed. The picture is of the left "
-      "run at 30 deg: the tool filled, the device transparent. The number of points that touch depends on "
-      "their spacing (tables runs and spacings, last row); the tool is never held by more than 6 constraints."};
+      "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as "
+      "constraints with their distance, ahead of the tool. Right: the tool's voxels as printed. The picture "
+      "is of the left run at 30 deg: the tool filled, the device transparent. The last row shows the largest "
+      "counts of a run over the spacing of its points; the dashed line is at the 6 contact points of 6.3.1. "
+      "The number of points that touch depends on their spacing; the tool is never held by more than 6 "
+      "constraints. A cell is a part of the tool's surface, 10 mm across, in which a point touches."};
   const std::size_t step = kSpacings_mm.size(), of_husky = step * kRules.size();
   for (std::size_t r = 0; r < kRules.size(); ++r) {
     const BoxRun& run = runs[r * step];

@@ -54,7 +54,13 @@ std::vector<Turning> turnings(const SweepResult& result) {
   return list;
 }
 
-Table turning_table(const Turning& run) {
+std::vector<double> differences(std::vector<double> values, const std::vector<double>& others) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others.at(i);
+  return values;
+}
+
+// reference: the run that the others are compared with.
+Table turning_table(const Turning& run, const Turning& reference) {
   Table table{run.name(), "contact rule " + run.rule + ", points " +
                               std::to_string(std::lround(1e3 * run.spacing_m)) + " mm apart"};
   table.add("commanded", "deg", "angle to which the device is turned", run.commanded_deg);
@@ -63,6 +69,10 @@ Table turning_table(const Turning& run) {
   table.add("torque", "N m", "maximum torque", run.torque_Nm);
   table.add("penetration", "m", "maximum depth of a point in the tool at the end of a tick",
             run.penetration_m);
+  table.add("turned_difference", "deg", "angle of the tool less that of look-ahead, 1 mm",
+            differences(run.turned_deg, reference.turned_deg));
+  table.add("torque_difference", "N m", "torque less that of look-ahead, 1 mm",
+            differences(run.torque_Nm, reference.torque_Nm));
   return table;
 }
 
@@ -70,8 +80,7 @@ Panel panel(const std::vector<Turning>& runs, const std::string& title, const st
             const std::string& y_label) {
   Panel made{title, "commanded rotation (deg)", y_label};
   for (const Turning& run : runs)
-    made.curves.push_back({run.name(), "commanded", column,
-                           run.rule == "voxels" ? CurveStyle::dashed : CurveStyle::line,
+    made.curves.push_back({run.name(), "commanded", column, CurveStyle::line,
                            run.rule + ", " + std::to_string(std::lround(1e3 * run.spacing_m)) + " mm"});
   return made;
 }
@@ -125,12 +134,19 @@ Figure figure_6_3_angles(FigureContext& context) {
       "6.3-angles", "A tool turned in a box, over angle, spacing and rule",
       "The experiment of Fig 6.3 with the device turned by 5 to 50 deg, for points 1 to 3 mm apart and both "
       "contact rules; simulated. The tool follows until its sides touch the walls, and then stays at one "
-      "angle, however far the device turns: the torque grows with the remaining angle. The voxels rule "
-      "uses points only, so its stop depends on their spacing; look-ahead treats each point as a disk."};
-  for (const Turning& run : runs) figure.tables.push_back(turning_table(run));
-  figure.panels = {panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
-                   panel(runs, "Torque", "torque", "torque (N m)"),
-                   panel(runs, "Contacts", "contacts", "touching points")};
+      "angle, however far the device turns: the torque grows with the remaining angle. The curves differ so "
+      "little that the panels on the right show their differences from look-ahead with points 1 mm apart. "
+      "The voxels rule uses points only, so its stop depends on their spacing; look-ahead treats each point "
+      "as a disk. A line style is a spacing, a colour is a rule."};
+  for (const Turning& run : runs) figure.tables.push_back(turning_table(run, runs.front()));
+  figure.panels = {
+      panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
+      panel(runs, "Rotation less that of look-ahead, 1 mm", "turned_difference", "difference (deg)"),
+      panel(runs, "Torque", "torque", "torque (N m)"),
+      panel(runs, "Torque less that of look-ahead, 1 mm", "torque_difference", "difference (N m)"),
+      panel(runs, "Contacts", "contacts", "touching points"),
+      panel(runs, "Deepest point in the tool", "penetration", "depth (m)")};
+  place_in_rows(figure, 2);
   add_claims(figure, runs);
   return figure;
 }

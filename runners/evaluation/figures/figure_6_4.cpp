@@ -216,9 +216,9 @@ Figure figure_6_4(FigureContext& context) {
       "The tool as a filled solid, the device's pose transparent. A bunny on a printed cube and a hand on an "
       "organ model, five frames of a camera at rest played to and fro at 10 Hz; a power drill on a cereal "
       "box, one frame. Every frame is filtered and gets normals. The device comes from the camera's side, "
-      "goes about 1 cm into the object, moves several centimetres along it while it turns, and leaves. The "
-      "points are shown from beside the camera, so what it did not see is empty. The pictures are of the rule "
-      "look-ahead; the force of the printed rule is beside it."};
+      "goes about 10 mm into the object, moves some tens of millimetres along it while it turns, and leaves. "
+      "The points are shown from beside the camera, so what it did not see is empty. The pictures are of the "
+      "rule look-ahead; the force of the printed rule is beside it."};
   int row = 0;
   for (const TouchRun& run : runs) {
     figure.tables.push_back(touch_table(run));

@@ -98,31 +98,8 @@ std::vector<std::size_t> moments_7_4(const Trace& t) {
   return {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s), tick_of(t, kHeldRight_s), t.length() - 1};
 }
 
-Table moment_table(const Trace& t) {
-  TableRows rows;
-  std::vector<std::int32_t> letter;
-  for (const std::size_t tick : moments_7_4(t)) {
-    letter.push_back(static_cast<std::int32_t>(letter.size()));
-    rows.push_back({t.time_s[tick], t.force_N[tick].norm(), t.torque_Nm[tick].norm()});
-  }
-  Table table = table_of("moments", "A: start, B: pushed to the left, C: pushed to the right, D: end",
-                         {{"time", "s", "simulated time"},
-                          {"force", "N", "norm of the force"},
-                          {"torque", "N m", "norm of the torque"}},
-                         rows);
-  table.columns.insert(table.columns.begin(),
-                       {"letter", "1", "moment of the task", letter, 1, {"A", "B", "C", "D"}});
-  return table;
-}
-
 Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
   return plot(title, "time (s)", label, {{task.name, "time", column, CurveStyle::line, ""}}, {{{row, 0}}});
-}
-
-Panel lettered(Panel panel) {
-  const std::string column = panel.curves.front().y;
-  panel.curves.push_back({"moments", "time", column, CurveStyle::letters, "", 0, "letter"});
-  return panel;
 }
 
 Table summary_table(const std::vector<ValveTask>& tasks) {
@@ -157,14 +134,15 @@ Figure figure_7_4(FigureContext& context) {
   Figure figure{
       "7.4", "Forbidden regions around two valves",
       "A simulated camera sees two handwheels in a tank of turbid water; the points of both hues get "
-      "regions of 4 cm. A simulated operator (a mass drawn to its path by a spring) moves a valve "
+      "regions of 40 mm. A simulated operator (a mass drawn to its path by a spring) moves a valve "
       "key of 112 spheres: A) starts, B) pushes towards the left valve, C) towards the right one, D) "
       "leaves. The letters in the traces and the pictures are the same four moments. The pictures show tool "
       "(filled) and device (transparent); the last one is a push deep beside the left valve's middle, where "
       "the tool slips round. Everything is simulated."};
   for (const ValveTask& task : tasks) figure.tables.push_back(task_table(task));
   figure.tables.push_back(summary_table(tasks));
-  figure.tables.push_back(moment_table(tasks[0].trace));
+  figure.tables.push_back(moment_table("A: start, B: pushed to the left, C: pushed to the right, D: end",
+                                       tasks[0].trace, moments_7_4(tasks[0].trace)));
   figure.panels = {lettered(time_panel(tasks[0], "First task", "force", "force (N)", 0)),
                    lettered(time_panel(tasks[0], "", "torque", "torque (N m)", 1)),
                    time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};

@@ -75,12 +75,14 @@ void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six
                  six.trace.sequence_missed.back(), 0, "steps");
 }
 
+// The run in column 0 has the letters of the pictures.
 void add_panels(Figure& figure, const ValveTask& task, int column) {
   int row = 0;
   const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
                        const std::vector<Curve>& curves) {
-    figure.panels.push_back(
-        plot(title, "time (s)", y_label, curves, {.at = {{row++, column}}, .y_range = y_range}));
+    Panel panel = plot(title, "time (s)", y_label, curves, {.at = {{row, column}}, .y_range = y_range});
+    figure.panels.push_back(column == 0 && row < 2 ? lettered(panel) : panel);
+    ++row;
   };
   add(task.label, "force (N)", {0, 8}, {{task.name, "time", "force", CurveStyle::line, ""}});
   add("", "torque (N m)", {0, 0.2}, {{task.name, "time", "torque", CurveStyle::line, ""}});
@@ -114,7 +116,9 @@ Figure figure_7_5(FigureContext& context) {
       "within 0.3 s. The spring to the goal in front of the right valve, the mean of the yellow points, "
       "jumps to its clamp and pulls the hand there. Left: a device without a motor about its roll axis, "
       "as in the paper: the torque about it is commanded but not exerted, so the angle about it remains. "
-      "Right: the same with all six motors. Everything is simulated."};
+      "Right: the same with all six motors. Both pictures are of the run with five motors: A) the tool is "
+      "pushed towards the left valve, B) it is at the goal, except for its angle about the roll axis. The "
+      "letters in the traces are the same two moments. Everything is simulated."};
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     figure.tables.push_back(task_table(tasks[i]));
     figure.tables.push_back(sequence_table(tasks[i]));
@@ -124,9 +128,12 @@ Figure figure_7_5(FigureContext& context) {
   figure.tables.push_back(target_table(tasks[0]));
   add_roll_claims(figure, tasks[0], tasks[1]);
   const Trace& t = tasks[0].trace;
-  add_task_picture_tables(figure, context, tasks[0], {tick_of(t, kPushed_s), t.length() - 1});
-  figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 0, 3, 0));
-  figure.panels.push_back(task_picture(tasks[0], "D) at the goal, but for the roll", 1, 3, 1));
+  const std::vector<std::size_t> moments = {tick_of(t, kPushed_s), t.length() - 1};
+  figure.tables.push_back(
+      moment_table("A: pushed to the left, B: at the goal, except for the roll", t, moments));
+  add_task_picture_tables(figure, context, tasks[0], moments);
+  figure.panels.push_back(task_picture(tasks[0], "A) five motors, pushed to the left", 0, 3, 0));
+  figure.panels.push_back(task_picture(tasks[0], "B) five motors, at the goal except for the roll", 1, 3, 1));
   return figure;
 }
 

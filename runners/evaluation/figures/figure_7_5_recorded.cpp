@@ -122,7 +122,7 @@ Figure figure_7_5_recorded(FigureContext& context) {
   Figure figure{
       "7.5-recorded", "Forbidden and guiding colours in recorded images",
       "Five frames of a camera at rest, played to and fro at 10 Hz. Points with the organ's colour have "
-      "regions of 2 cm; yellow points define the goal. A simulated operator pushes a valve key towards the "
+      "regions of 20 mm; yellow points define the goal. A simulated operator pushes a valve key towards the "
       "organ, presses the button at 3 s and relaxes. Hand, device and tool are simulated; the images are "
       "real."};
   figure.tables.push_back(task_table(task));

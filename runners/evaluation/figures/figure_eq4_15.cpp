@@ -59,7 +59,9 @@ Figure figure_eq4_15(FigureContext& context) {
                 "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "
                 "is constant. The velocity term of (4.15) as printed (plus), left out (none), and with "
                 "the sign that removes the jump (minus)."};
-  figure.panels = {plot("Force", "time (s)", "force (N)", {}, {.x_range = {{1.0, 1.3}}})};
+  // Three frames.
+  figure.panels = {
+      plot("A plane that rises at 0.1 m/s", "time (s)", "force (N)", {}, {.x_range = {{1.0, 1.1}}})};
   std::vector<double> jump;
   const std::pair<const char*, const char*> readings[] = {
       {"plus", "plus (as printed)"}, {"none", "no term"}, {"minus", "minus (used)"}};

@@ -74,8 +74,8 @@ Table map_table(const Measured& m) {
                   rows);
 }
 
-// Returns the curve of delays and speeds at which the predicted violation is r_f: the slave then reaches the
-// surface that the fixture protects.
+// Returns the curve of latencies and speeds at which the predicted violation is r_f: the slave then reaches
+// the surface that the fixture protects.
 Table tissue_table() {
   TableRows rows;
   for (int ms = 67; ms <= 200; ++ms)
@@ -117,7 +117,7 @@ void add_jitter_bounds(Table& table) {
            rows);
 }
 
-// One row for each delay, one column for each heart rate.
+// One row for each latency, one column for each heart rate.
 Table heart_table(const Measured& m) {
   const auto& rates = axis_values(m.plan, 1);
   Table table{"heart", "violation of a fixture on a beating heart"};
@@ -137,26 +137,26 @@ Table heart_table(const Measured& m) {
 }
 
 Panel depth_panel(const std::string& title, const std::string& x_label, std::vector<Curve> curves) {
-  return plot(title, x_label, "depth in the region (mm)", std::move(curves));
+  return plot(title, x_label, "largest depth in the region (mm)", std::move(curves));
 }
 
 void add_latency_panels(Figure& figure) {
   std::vector<Panel>& list = figure.panels;
   list = {
-      plot("Violation by delay and speed", "latency (ms)", "speed of the surface (m/s)",
+      plot("Violation by latency and speed", "latency (ms)", "speed of the surface (m/s)",
            {{"delay_and_speed", "latency", "speed", CurveStyle::map, "", 0, "violation"},
             {"tissue", "latency", "speed", CurveStyle::line, "predicted to reach the surface"}},
            {.y_range = {{-0.005, 0.205}}}),
-      depth_panel("Irregular delay, 0.1 m/s, 50 ms", "jitter (ms)",
+      depth_panel("Irregular latency of 50 ms, 0.1 m/s", "jitter (ms)",
                   {{"jitter", "jitter", "all_early", CurveStyle::band, "bounds", 0, "all_late"},
                    {"jitter", "jitter", "max", CurveStyle::dots, "maximum of 20 runs"},
                    {"jitter", "jitter", "mean", CurveStyle::line, "mean"},
                    {"jitter", "jitter", "with_prediction", CurveStyle::dashed, "slave sent ahead, settled"}}),
-      depth_panel("Lost frames, 0.1 m/s, 50 ms", "share of frames lost",
+      depth_panel("Lost frames, latency of 50 ms, 0.1 m/s", "share of frames lost",
                   {{"drops", "drops", "max", CurveStyle::dots, "maximum of 20 runs"},
                    {"drops", "drops", "mean", CurveStyle::line, "mean"},
                    {"drops", "drops", "with_prediction", CurveStyle::dashed, "slave sent ahead, settled"}}),
-      depth_panel("Beating heart, sensor noise", "latency (ms)", {})};
+      depth_panel("Beating heart, sensor noise, from 1.5 s on", "latency (ms)", {})};
   for (const char* rate : {"40", "75", "120"}) {
     const std::string column = std::string("rate_") + rate;
     const std::string label = std::string(rate) + " beats per minute";
@@ -207,12 +207,15 @@ Figure figure_latency(FigureContext& context) {
 
   Figure figure{
       "latency", "Fixtures from late frames",
-      "A surface with r_f = 0.02 m rises evenly against a pressing HIP, and frames arrive late; "
-      "simulated. Depth: how deep the contact point of the slave, which is sent to the proxy, is inside the "
-      "region of the surface, both at the same moment. The depth is the distance that the surface moves "
-      "in the delay and one frame interval; the correction (4.3) does not change that. At 20 mm the "
-      "slave reaches the surface itself. Dashed, after the estimate has settled: the slave is sent ahead "
-      "of the proxy by the velocity estimate times the age of the frame, which is not in the dissertation."};
+      "A surface with r_f = 20 mm rises evenly against a pressing HIP, and frames arrive late; "
+      "simulated. Latency: the time from the capture of a frame to its arrival. Depth: how deep the contact "
+      "point of the slave, which is sent to the proxy, is inside the region of the surface, both at the "
+      "same moment. Shown is the largest depth of a run. It is the distance that the surface moves in the "
+      "latency and one frame interval; the correction (4.3) does not change that. At 20 mm the slave reaches "
+      "the surface itself. In the flat corner of the map the surface has passed the proxy, and the slave is "
+      "at the HIP, 10 mm behind the surface: there the depth is r_f + r_c + 10 mm = 35 mm. Settled: from 1.5 "
+      "s on, when the velocity estimate has settled. Slave sent ahead: the slave is sent ahead of the proxy "
+      "by the velocity estimate times the age of the frame, which is not in the dissertation."};
   figure.tables = {map, tissue_table(), jitter, drops, heart};
   add_latency_panels(figure);
   // kSinks_mm: a proxy of radius r_f + r_c sinks between points 1.5 mm apart, in the middle of four, and

@@ -20,6 +20,7 @@ const std::string kForcesFigure = "tool-forces";
 constexpr double kBlockHalf_m = 0.02, kBlockHalfHeight_m = 0.005;  // half extents of slab-10
 constexpr double kBallRadius_m = 0.01;                             // radius of ball
 constexpr double kAbove_m = 0.002, kDeep_m = 0.006;                // start above the touch, end below it
+constexpr double kLeastError = 1e-5, kLeastAngle_deg = 1e-4;       // smaller deviations are drawn at these
 
 struct ToolMethod {
   const char *column, *label, *renderer;
@@ -203,34 +204,50 @@ Table deviation_table(const std::string& name, const std::string& title, const s
   return table;
 }
 
-Panel deviation_panel(const Table& table, const std::string& of, const std::string& x_label,
-                      const std::string& y_label, std::pair<double, double> grid_position) {
-  Panel panel{table.title, x_label, y_label};
-  for (const ToolMethod& method : kToolMethods)
-    panel.curves.push_back({table.name, table.columns[0].name, std::string(method.column) + "_" + of,
-                            CurveStyle::line, method.label});
-  panel.grid_position = grid_position;
-  return panel;
+// Adds a panel of a quantity (a suffix of the columns) with a logarithmic axis, and its table. Values that
+// are smaller than a limit are rounding: they are drawn at the limit.
+void add_deviation_panel(Figure& figure, const Table& table, const std::string& title,
+                         const std::string& quantity, const std::string& x_label,
+                         std::pair<double, double> at) {
+  const bool is_angle = quantity.ends_with("direction");
+  const double least = is_angle ? kLeastAngle_deg : kLeastError;
+  const std::string y_label = is_angle ? "angle to the exact force (deg)" : "relative error of " + quantity;
+  Table drawn{table.name + "_" + quantity + "_drawn", title + ", as drawn", {table.columns[0]}};
+  std::vector<Curve> curves;
+  for (const ToolMethod& method : kToolMethods) {
+    std::vector<double> values = numbers(table, std::string(method.column) + "_" + quantity);
+    for (double& value : values) value = std::max(value, least);
+    drawn.add(method.column, is_angle ? "deg" : "1", "value, or the least value that is drawn", values);
+    curves.push_back({drawn.name, drawn.columns[0].name, method.column, CurveStyle::line, method.label});
+  }
+  figure.tables.push_back(drawn);
+  figure.panels.push_back(plot(title, x_label, y_label, std::move(curves), {.at = at}));
 }
 
 Table slot_table(const PressResults& results) {
+  const std::vector<double>& exact = results.front().front().exact_torque_Nm;
   Table table{"slot", "A bar turned between two walls: torque", {}};
   table.add("angle", "deg", "angle of the device", results.front().front().angle_deg);
-  table.add("exact", "N m", "closed form", results.front().front().exact_torque_Nm);
-  for (std::size_t m = 0; m < results.size(); ++m)
-    table.add(kToolMethods[m].column, "N m", std::string("torque, ") + kToolMethods[m].label,
-              results[m].front().torque_Nm);
+  table.add("exact", "N m", "closed form", exact);
+  for (std::size_t m = 0; m < results.size(); ++m) {
+    const std::string column = kToolMethods[m].column;
+    const std::vector<double>& torque = results[m].front().torque_Nm;
+    std::vector<double> error;
+    for (std::size_t i = 0; i < torque.size(); ++i) error.push_back(torque[i] - exact[i]);
+    table.add(column, "N m", std::string("torque, ") + kToolMethods[m].label, torque);
+    table.add(column + "_error", "N m", "torque - exact torque", error);
+  }
   return table;
 }
 
-Panel slot_panel(const Table& table, std::pair<double, double> grid_position) {
-  Panel panel{table.title, "angle of the device (deg)", "torque (N m)"};
+// The walls stop the bar at 22.6 deg.
+Panel slot_panel(const Table& table, std::pair<double, double> at) {
+  std::vector<Curve> curves;
   for (const ToolMethod& method : kToolMethods)
-    panel.curves.push_back({table.name, "angle", method.column, CurveStyle::line, method.label});
-  panel.curves.push_back({table.name, "angle", "exact", CurveStyle::dashed, "exact"});
-  panel.x_range = {15, 32};
-  panel.grid_position = grid_position;
-  return panel;
+    curves.push_back(
+        {table.name, "angle", std::string(method.column) + "_error", CurveStyle::line, method.label});
+  return plot("Bar turned between two walls: torque", "angle of the device (deg)",
+              "torque - exact torque (N m)", std::move(curves), {.at = at, .x_range = {{20, 32}}});
 }
 
 // A claim about the largest value in a column.
@@ -330,44 +347,52 @@ void add_groove_and_slot_claims(const Claims& claims, const Table& grooves, cons
   in_slot("the printed rule", "voxels", 0.01);
 }
 
+std::vector<Table> tables_of(FigureContext& context) {
+  std::vector<ModelPress> planes, blocks, grooves;
+  for (const double tilt_deg : {0.0, 5.0, 10.0, 20.0, 30.0, 40.0}) planes.push_back(on_plane(tilt_deg));
+  for (const double turn_deg : {2.0, 4.0, 7.0, 10.0, 15.0, 20.0}) blocks.push_back(turned_block(turn_deg));
+  for (const double slope_deg : {15.0, 30.0, 45.0}) grooves.push_back(in_groove(slope_deg));
+  const std::string turn = "turn of the block, by the hand";
+  return {deviation_table("planes", "A block on a tilted plane", "tilt", "tilt of plane and block", planes,
+                          results_of(context, planes)),
+          deviation_table("blocks", "A tilted block on a level plane", "turn", turn, blocks,
+                          results_of(context, blocks)),
+          deviation_table("grooves", "A ball in a valley", "slope", "slope of both sides", grooves,
+                          results_of(context, grooves)),
+          slot_table(results_of(context, {in_slot()})),
+          deviation_table("of_coupling", "A tilted block, M of the coupling", "turn", turn, blocks,
+                          results_of(context, blocks, {&kOfCoupling, 1}))};
+}
+
 }  // namespace
 
 Figure figure_tool_forces(FigureContext& context) {
   Figure figure{
       kForcesFigure, "Force and torque of a tool against model scenes",
-      "Presses of 6 mm in 0.4 s in which force and torque are known in closed form: a block of 40 x 10 mm on a "
-      "plane that is tilted as the block is, and on a level plane where the hand tilts the block; a ball of 10 mm "
-      "in a valley; a bar between two walls. Mean deviation from the closed form of magnitude and direction over "
-      "the ticks with a force of 0.5 N or more; points 1.5 mm apart (slot: 2 mm), no noise; simulated. Protocol: "
-      "Weller et al. 2010."};
-  std::vector<ModelPress> planes, blocks, grooves;
-  for (const double tilt_deg : {0.0, 5.0, 10.0, 20.0, 30.0, 40.0}) planes.push_back(on_plane(tilt_deg));
-  for (const double turn_deg : {2.0, 4.0, 7.0, 10.0, 15.0, 20.0}) blocks.push_back(turned_block(turn_deg));
-  for (const double slope_deg : {15.0, 30.0, 45.0}) grooves.push_back(in_groove(slope_deg));
-  figure.tables = {deviation_table("planes", "A block on a tilted plane", "tilt", "tilt of plane and block",
-                                   planes, results_of(context, planes)),
-                   deviation_table("blocks", "A tilted block on a level plane", "turn",
-                                   "turn of the block, by the hand", blocks, results_of(context, blocks)),
-                   deviation_table("grooves", "A ball in a valley", "slope", "slope of both sides", grooves,
-                                   results_of(context, grooves)),
-                   slot_table(results_of(context, {in_slot()})),
-                   deviation_table("of_coupling", "A tilted block, M of the coupling", "turn",
-                                   "turn of the block, by the hand", blocks,
-                                   results_of(context, blocks, {&kOfCoupling, 1}))};
-  const std::string off = " off by (fraction)", turned = "force turned by (deg)";
-  figure.panels = {
-      deviation_panel(figure.tables[0], "force", "tilt (deg)", "|force|" + off, {0, 0}),
-      deviation_panel(figure.tables[0], "force_direction", "tilt (deg)", turned, {0, 1}),
-      deviation_panel(figure.tables[1], "force", "tilt by the hand (deg)", "|force|" + off, {1, 0}),
-      deviation_panel(figure.tables[1], "torque", "tilt by the hand (deg)", "|torque|" + off, {1, 1}),
-      deviation_panel(figure.tables[2], "force_direction", "slope (deg)", turned, {2, 0}),
-      slot_panel(figure.tables[3], {2, 1})};
-  figure.panels[3].curves.push_back(
-      {"of_coupling", "turn", "look_ahead_torque", CurveStyle::dashed, "look-ahead, M of the coupling"});
+      "Presses of 6 mm in 0.4 s in which force and torque are known in closed form: a block of 40 x 10 mm "
+      "on a plane that is tilted as the block is, and on a level plane where the hand tilts the block; a "
+      "ball of 10 mm in a valley; a bar between two walls. Mean deviation from the closed form of magnitude "
+      "and direction over the ticks with a force of 0.5 N or more; points 1.5 mm apart (slot: 2 mm), no "
+      "noise; simulated. The axes of errors and angles are logarithmic. Smaller errors than 0.00001 are "
+      "drawn at 0.00001, smaller angles than 0.0001 deg at 0.0001 deg. Protocol: Weller et al. 2010."};
+  const std::vector<Table> tables = tables_of(context);
+  figure.tables = tables;
+  const std::string plane = "Block on a tilted plane: ", block = "Tilted block on a level plane: ";
+  add_deviation_panel(figure, tables[0], plane + "force", "force", "tilt (deg)", {0, 0});
+  add_deviation_panel(figure, tables[0], plane + "direction", "force_direction", "tilt (deg)", {0, 1});
+  for (const std::string quantity : {"force", "torque"}) {
+    add_deviation_panel(figure, tables[1], block + quantity, quantity, "tilt by the hand (deg)",
+                        {1, quantity == "force" ? 0 : 1});
+    figure.panels.back().curves.push_back(
+        {"of_coupling", "turn", "look_ahead_" + quantity, CurveStyle::dashed, kOfCoupling.label});
+  }
+  add_deviation_panel(figure, tables[2], "Ball in a valley: direction", "force_direction", "slope (deg)",
+                      {2, 0});
+  figure.panels.push_back(slot_panel(tables[3], {2, 1}));
   const Claims claims(figure);
-  add_plane_claims(claims, figure.tables[0]);
-  add_block_claims(claims, figure.tables[1], figure.tables[4]);
-  add_groove_and_slot_claims(claims, figure.tables[2], figure.tables[3]);
+  add_plane_claims(claims, tables[0]);
+  add_block_claims(claims, tables[1], tables[4]);
+  add_groove_and_slot_claims(claims, tables[2], tables[3]);
   return figure;
 }
 

@@ -30,66 +30,88 @@ double max_jump_m(Carrier rule, double thickness_m) {
   }
 }
 
-// Returns the limits over a setting, and bound(), the limit that is derived for it. Each rule has its own
-// columns.
-template <class Bound>
-Table limit_table(const std::string& name, const std::string& title, const CarrySweep& sweep, Column setting,
-                  const std::string& units, Bound&& bound) {
-  Table table{name, title, {std::move(setting)}};
-  const std::vector<double> settings = std::get<std::vector<double>>(table.columns[0].values);
-  for (const CarrierName& carrier : kCarriers) {
-    TableRows rows;
-    for (std::size_t i = 0; i < sweep.settings(); ++i) {
-      const CarrySweep::Limit limit = sweep.limit(i, carrier.rule);
-      rows.push_back({limit.carried, limit.lost, bound(carrier.rule, settings[i])});
-    }
-    const std::string column = carrier.column;
-    add_rows(table,
-             {{column + "_carried", units, "all runs are carried up to this"},
-              {column + "_first_lost", units, "the next value: a run is lost"},
-              {column + "_bound", units, "derived limit"}},
-             rows);
-  }
-  return table;
-}
+// A sweep over a setting, and the limit that is derived for it. Each rule has its own columns.
+struct LiftSweep {
+  std::string sweep, table, title;
+  Column setting;  // without values: those of the sweep's first axis
+  std::string units;
+  LimitLabels labels;
+  PanelFrame frame;
+  DerivedLimit bound;
+};
 
-Table lift_limits(FigureContext& context) {
-  const CarrySweep sweep(context.sweep(Sweep::load("tool-lifts")));
-  return limit_table(
-      "lifts", "Speed up to which a plate is carried", sweep,
-      {"thickness", "m", "thickness of the plate", std::vector<double>{0.005, 0.01, 0.02}, 1, {}}, "m/s",
-      [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); });
+LiftSweep rising_surface() {
+  return {"tool-lifts",
+          "lifts",
+          "Speed up to which a plate is carried",
+          {"thickness", "m", "thickness of the plate", std::vector<double>{0.005, 0.01, 0.02}},
+          "m/s",
+          {"thickness h (m)", "speed (m/s)"},
+          {.at = {{0, 0}}, .y_range = {{0, 0.7}}},
+          [](Carrier rule, double h) { return kLiftFrames_hz * max_jump_m(rule, h); }};
 }
 
 // The plate lies flat on a tilted surface, which approaches along its normal by v cos(tilt) / f_c.
-Table tilt_limits(FigureContext& context) {
-  const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
-  return limit_table(
-      "tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
-      {"tilt", "deg", "tilt of the surface", sweep.values(0), 1, {}}, "m/s", [](Carrier rule, double deg) {
-        return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) / sin_cos(deg * kRadiansPerDegree).second;
-      });
+LiftSweep tilted_surface() {
+  return {"tool-tilts",
+          "tilts",
+          "Speed of a tilted surface, plate of 5 mm",
+          {"tilt", "deg", "tilt of the surface", std::vector<double>{}},
+          "m/s",
+          {"tilt (deg)", "speed (m/s)"},
+          {.at = {{0, 1}}, .y_range = {{0, 1.4}}},
+          [](Carrier rule, double deg) {
+            return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) / sin_cos(deg * kRadiansPerDegree).second;
+          }};
 }
 
 // The surface turns by A sin(2 pi f t): by about 2 pi f A / f_c in the first frame. The end of the plate that
 // is nearer to the axis moves least, and the plate is lost if the surface passes through that end too.
-Table turn_limits(FigureContext& context) {
-  const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
-  return limit_table("turns", "Angle of a surface that turns at 1 Hz, plate of 5 mm", sweep,
-                     {"lever", "m", "from the axis to the middle of the plate", sweep.values(0), 1, {}},
-                     "deg", [](Carrier rule, double lever_m) {
-                       const double near_m = lever_m - 0.5 * kPlateLength_m;
-                       const double turn_rad = sin_cos(360 * kRadiansPerDegree / kLiftFrames_hz).first;
-                       return max_jump_m(rule, kThinPlate_m) / near_m / turn_rad / kRadiansPerDegree;
-                     });
+LiftSweep turning_surface() {
+  return {"tool-turns",
+          "turns",
+          "Surface that turns at 1 Hz, plate of 5 mm",
+          {"lever", "m", "from the axis to the middle of the plate", std::vector<double>{}},
+          "deg",
+          {"distance from the axis (m)", "amplitude (deg)"},
+          {.at = {{1, 0}}, .y_range = {{0, 100}}},
+          [](Carrier rule, double lever_m) {
+            const double near_m = lever_m - 0.5 * kPlateLength_m;
+            const double turn_rad = sin_cos(360 * kRadiansPerDegree / kLiftFrames_hz).first;
+            return max_jump_m(rule, kThinPlate_m) / near_m / turn_rad / kRadiansPerDegree;
+          }};
 }
 
-Table noise_limits(FigureContext& context) {
-  const CarrySweep sweep(context.sweep(Sweep::load("tool-noise")));
-  return limit_table(
-      "noise", "Acceleration with a velocity estimate, plate of 10 mm", sweep,
-      {"noise", "m", "standard deviation of the noise on x, y and z", sweep.values(0), 1, {}}, "m/s^2",
-      [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); });
+LiftSweep noisy_surface() {
+  return {"tool-noise",
+          "noise",
+          "With a velocity estimate, plate of 10 mm",
+          {"noise", "m", "standard deviation of the noise on x, y and z", std::vector<double>{}},
+          "m/s^2",
+          {"noise (m)", "acceleration (m/s^2)"},
+          {.at = {{1, 1}}, .y_range = {{0, 20}}},
+          [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); }};
+}
+
+Table limit_table(const LiftSweep& lift, const CarrySweep& sweep) {
+  Table table{lift.table, lift.title, {lift.setting}};
+  auto& settings = std::get<std::vector<double>>(table.columns[0].values);
+  if (settings.empty()) settings = sweep.values(0);
+  const std::vector<double> at = settings;  // the table's columns move when one is added
+  for (const CarrierName& carrier : kCarriers) {
+    TableRows rows;
+    for (std::size_t i = 0; i < sweep.settings(); ++i) {
+      const CarrySweep::Limit limit = sweep.limit(i, carrier.rule);
+      rows.push_back({limit.carried, limit.lost, lift.bound(carrier.rule, at[i])});
+    }
+    const std::string column = carrier.column;
+    add_rows(table,
+             {{column + "_carried", lift.units, "all runs are carried up to this"},
+              {column + "_first_lost", lift.units, "the next value: a run is lost"},
+              {column + "_bound", lift.units, "derived limit"}},
+             rows);
+  }
+  return table;
 }
 
 // Claims that no run is lost below the bound of `rule`, and that none is carried above the bound of `upper`.
@@ -149,15 +171,19 @@ Figure figure_tool_lifts(FigureContext& context) {
   Figure figure{
       "tool-lifts", "Where a plate loses the surface that it is pressed onto",
       "A surface of points rises, rises tilted, turns or accelerates under a plate of 40 x 40 mm, by the "
-      "three contact rules; frames at 30 Hz; simulated. Dots: up to here every run is carried. Dashed: "
-      "derived, one frame moves the surface through the plate (printed rule: through what is not shell; "
-      "continuous rule: by more than frame_reach_m, 20 mm)."};
-  figure.tables = {lift_limits(context), tilt_limits(context), turn_limits(context), noise_limits(context)};
-  figure.panels = {limit_panel(figure.tables[0], "thickness h (m)", "speed (m/s)", {0, 0}),
-                   limit_panel(figure.tables[1], "tilt (deg)", "speed (m/s)", {0, 1}),
-                   limit_panel(figure.tables[2], "distance from the axis (m)", "amplitude (deg)", {1, 0}),
-                   limit_panel(figure.tables[3], "noise (m)", "acceleration (m/s^2)", {1, 1})};
-  add_claims(Claims(figure), figure.tables[0], figure.tables[1], figure.tables[2], figure.tables[3]);
+      "three contact rules; frames at 30 Hz; simulated. Dots: up to here every run is carried. Bars: up to "
+      "the next value that was tried, at which a run is lost; arrows: no run is lost up to the end of the "
+      "sweep, 45 deg or 14 m/s^2. The three rules are drawn side by side for each setting. Dashed: derived "
+      "without noise, one frame moves the surface through the plate (printed rule: through what is not "
+      "shell; continuous rule: by more than frame_reach_m, 20 mm). On the surface that turns, the derived "
+      "angles of the continuous rule are above the panel, at 137 deg and more."};
+  std::vector<Table> tables;
+  for (const LiftSweep& lift : {rising_surface(), tilted_surface(), turning_surface(), noisy_surface()}) {
+    tables.push_back(limit_table(lift, CarrySweep(context.sweep(Sweep::load(lift.sweep)))));
+    figure.tables.push_back(tables.back());
+    add_limit_panel(figure, tables.back(), lift.bound, lift.labels, lift.frame);
+  }
+  add_claims(Claims(figure), tables[0], tables[1], tables[2], tables[3]);
   return figure;
 }
 

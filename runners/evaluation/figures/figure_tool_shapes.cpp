@@ -3,6 +3,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "analysis/statistics/proportion.h"
 #include "core/geometry/rotation.h"
@@ -36,6 +38,8 @@ struct Family {
   std::size_t first = 0;
   Scale scale = kSpeed;
   std::function<Jump(Carrier, double setting)> jump;
+  std::optional<std::pair<double, double>> y_range = {};
+  DerivedLimit bound_m = {};  // bound_m of `jump`, if it can be had faster
 };
 
 // Counts runs in bins of strength / bound, and the runs that are certainly below or certainly above the
@@ -154,8 +158,14 @@ std::vector<FamilySweep> shape_sweeps() {
              kSpeed,
              [](Carrier rule, double m) { return on_ball(rule, kPlate_m, m); }}}},
           {"tool-wall-sides",
-           {{"wall_side", "Wall, narrow side", thickness(), h, 0, sideways(),
-             [](Carrier rule, double) { return on_plane(rule, 2 * kHalfPlate_m); }}}}};
+           {{"wall_side",
+             "Wall, narrow side",
+             thickness(),
+             h,
+             0,
+             sideways(),
+             [](Carrier rule, double) { return on_plane(rule, 2 * kHalfPlate_m); },
+             {{1.0, 1.4}}}}}};
 }
 
 std::vector<FamilySweep> turn_sweeps() {
@@ -192,6 +202,9 @@ FamilySweep noise_sweep() {
     family.setting = {"noise", "m", "standard deviation of the noise on x, y and z", noise, 1, {}};
     family.first = sweep.families.size() * noise.size();
     family.jump = [kind = shape.kind](Carrier rule, double sigma_m) { return on_noise(rule, kind, sigma_m); };
+    family.bound_m = [kind = shape.kind](Carrier rule, double sigma_m) {
+      return noise_bound_m(rule, kind, sigma_m);
+    };
     sweep.families.push_back(family);
   }
   return sweep;
@@ -256,16 +269,27 @@ void add_claims(Figure& figure, const std::vector<Table>& still, const std::vect
   }
 }
 
-Panel pool_panel(const Table& pooled, std::pair<double, double> grid_position) {
-  Panel panel{pooled.title, "speed / derived bound", "fraction carried"};
+// Shows the bins about the bound. Farther away all plates are carried, or all are lost.
+Panel pool_panel(const Table& pooled, std::pair<double, double> at) {
+  std::vector<Curve> curves;
   for (const CarrierName& carrier : kCarriers) {
     const std::string column = carrier.column;
-    panel.curves.push_back(
-        {pooled.name, "ratio", column + "_low", CurveStyle::band, "", 0, column + "_high"});
-    panel.curves.push_back({pooled.name, "ratio", column + "_carried", CurveStyle::line, carrier.label});
+    curves.push_back({pooled.name, "ratio", column + "_low", CurveStyle::intervals, "", 0, column + "_high"});
+    curves.push_back({pooled.name, "ratio", column + "_carried", CurveStyle::dots, carrier.label});
   }
-  panel.grid_position = grid_position;
-  return panel;
+  return plot(pooled.title, "speed / derived bound", "fraction carried", std::move(curves),
+              {.at = at, .x_range = {{0.6, 1.4}}});
+}
+
+// The derived bounds with noise take long to compute, and are nearly straight: 25 samples are enough.
+void add_family_panel(Figure& figure, const Family& family, const Table& limits,
+                      std::pair<double, double> at) {
+  const DerivedLimit bound = [&family](Carrier rule, double setting) {
+    return family.scale.per_jump *
+           (family.bound_m ? family.bound_m(rule, setting) : family.jump(rule, setting).bound_m);
+  };
+  add_limit_panel(figure, limits, bound, {family.x_label, family.scale.y_label},
+                  {.at = at, .y_range = family.y_range}, family.bound_m ? 25 : 61);
 }
 
 }  // namespace
@@ -276,9 +300,11 @@ Figure figure_tool_shapes(FigureContext& context) {
       "A surface jumps in one frame against a plate of 40 x 40 mm that a hand presses onto it, by the three "
       "contact rules; frames at 30 Hz; simulated. Where it is not the axis, the plate is 10 mm thick, edges "
       "and corners slope by 30 deg, and the ball has a radius of 40 mm. Dots: up to here every run is "
-      "carried. Dashed: derived, no point is left in the plate (printed rule: in what is not shell; "
-      "continuous rule: and it moves by more than frame_reach_m, 20 mm); with noise: half are lost. Fraction "
-      "carried: of all runs without noise, with 95 % Wilson intervals."};
+      "carried. Bars: up to the next value that was tried, at which a run is lost. The three rules are "
+      "drawn side by side for each setting. Dashed: derived, no point is left in the plate (printed rule: "
+      "in what is not shell; continuous rule: and it moves by more than frame_reach_m, 20 mm); with noise: "
+      "half are lost. Fraction carried: of all runs without noise, with 95 % Wilson intervals; below 0.6 of "
+      "the bound all are carried, above 1.4 none."};
   Pool pool;
   constexpr std::size_t kColumns = 4;
   const auto place = [&] {
@@ -291,7 +317,7 @@ Figure figure_tool_shapes(FigureContext& context) {
       const CarrySweep sweep(context.sweep(Sweep::load(of.sweep)));
       for (const Family& family : of.families) {
         tables.push_back(family_table(family, sweep, of.in_pool ? &pool : nullptr));
-        figure.panels.push_back(limit_panel(tables.back(), family.x_label, family.scale.y_label, place()));
+        add_family_panel(figure, family, tables.back(), place());
       }
     }
     figure.tables.insert(figure.tables.end(), tables.begin(), tables.end());

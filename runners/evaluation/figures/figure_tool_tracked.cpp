@@ -1,6 +1,7 @@
 // Fig 4.13 for a plate in place of the proxy: noisy surfaces that accelerate, rendered by tracked sheets and
 // by the three contact rules of the tool. Simulated; not in the dissertation.
 #include <cmath>
+#include <sstream>
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
@@ -54,6 +55,18 @@ Survived count_of(const Table& map) {
 Table lift_map_of(FigureContext& context, const TrackedMethod& method, int seed) {
   const Sweep sweep = context.map("tool-tracked", {method.renderer, seed_setting(seed)});
   return map_table(std::string("map_") + method.column, context.sweep(sweep), "tool_popped_through");
+}
+
+// "tracked sheets 418 of 420 (0.983 to 0.999), as printed 42 of 42 (0.916 to 1)", with Wilson intervals.
+std::string success_text(const std::vector<std::pair<std::string, Survived>>& methods) {
+  std::ostringstream text;
+  text.precision(3);
+  for (const auto& [method, survived] : methods) {
+    const auto [low, high] = wilson_interval(survived.held, survived.runs);
+    text << (text.tellp() > 0 ? ", " : "") << method << ' ' << survived.held << " of " << survived.runs
+         << " (" << low << " to " << high << ')';
+  }
+  return text.str();
 }
 
 Table success_table(const std::vector<std::pair<std::string, Survived>>& methods) {
@@ -247,55 +260,63 @@ void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
                  max_raised(shapes, "flat"), 0.1, "r_c");
 }
 
-Panel jump_panel(const Table& table, const std::string& what, const std::string& y_label) {
-  Panel panel{table.title, "noise (r_c)", y_label};
-  panel.curves.push_back({table.name, "noise", "tracked" + what, CurveStyle::line, kTrackedTool.label});
+Panel jump_panel(const Table& table, const std::string& what, const std::string& unit) {
+  std::vector<Curve> curves = {
+      {table.name, "noise", "tracked_" + what, CurveStyle::line, kTrackedTool.label}};
   for (const TrackedMethod& method : kToolRivals)
-    panel.curves.push_back({table.name, "noise", method.column + what, CurveStyle::dashed, method.label});
-  panel.curves.push_back(
-      {table.name, "noise", kLookAheadAsIs.column + what, CurveStyle::dots, kLookAheadAsIs.label});
-  return panel;
+    curves.push_back(
+        {table.name, "noise", std::string(method.column) + "_" + what, CurveStyle::line, method.label});
+  curves.push_back(
+      {table.name, "noise", "look_ahead_plain_" + what, CurveStyle::dashed, kLookAheadAsIs.label});
+  return plot(table.title + ": " + what, "noise (r_c)", "rms " + what + " jump (" + unit + ")",
+              std::move(curves));
+}
+
+// Adds the maps of all methods to the figure. Returns the counts over all seeds, tracked sheets first.
+std::vector<std::pair<std::string, Survived>> add_lifts(Figure& figure, FigureContext& context) {
+  const auto lifted = [&](const TrackedMethod& method, int seed, bool stored) {
+    const Table map = lift_map_of(context, method, seed);
+    if (stored) {
+      figure.tables.push_back(map);
+      figure.tables.push_back(survivors(std::string("survived_") + method.column, map));
+    }
+    return count_of(map);
+  };
+  std::vector<std::pair<std::string, Survived>> success;
+  success.emplace_back(kTrackedTool.label, Survived{});
+  for (const int seed : kTrackedSeeds) {
+    const Survived of_seed = lifted(kTrackedTool, seed, seed == kTrackedSeeds[0]);
+    success[0].second.runs += of_seed.runs, success[0].second.held += of_seed.held;
+  }
+  for (const TrackedMethod& method : kToolRivals)
+    success.emplace_back(method.label, lifted(method, kOtherSeed, true));
+  return success;
 }
 
 }  // namespace
 
 Figure figure_tool_tracked(FigureContext& context) {
-  Figure figure{
-      "tool-tracked", "A plate on noisy surfaces that accelerate, by tracked sheets",
+  Figure figure{"tool-tracked", "A plate on noisy surfaces that accelerate, by tracked sheets", ""};
+  const std::vector<std::pair<std::string, Survived>> success = add_lifts(figure, context);
+  figure.caption =
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "
-      "Fig 4.13; frames at 30 Hz; simulated. A filled square is a lift that did not pop through. Below: "
-      "what the frames do to force and torque. The three contact rules have a velocity estimate, and "
-      "look-ahead also none. Parameters were fixed with seeds 1 to 20; the maps are of seed 101, "
-      "the claims about tracked sheets of seeds 101 to 110."};
-  std::vector<std::pair<std::string, Survived>> success;
-  Survived ours, printed;
-  for (const int seed : kTrackedSeeds) {
-    const Table map = lift_map_of(context, kTrackedTool, seed);
-    const Survived of_seed = count_of(map);
-    ours.runs += of_seed.runs, ours.held += of_seed.held;
-    if (seed == kTrackedSeeds[0])
-      figure.tables.push_back(map), figure.tables.push_back(survivors("survived_tracked", map));
-  }
-  success.emplace_back(kTrackedTool.label, ours);
-  for (const TrackedMethod& method : kToolRivals) {
-    const Table map = lift_map_of(context, method, kOtherSeed);
-    figure.tables.push_back(map);
-    figure.tables.push_back(survivors(std::string("survived_") + method.column, map));
-    success.emplace_back(method.label, count_of(map));
-    if (&method == kToolRivals) printed = success.back().second;
-  }
+      "Fig 4.13; frames at 30 Hz; simulated. Lifts that did not pop through, over noise up to 3 r_c and "
+      "acceleration up to 1400 r_c/s^2, with 95 % Wilson intervals: " +
+      success_text(success) +
+      ". Drawn is what the frames do to force and torque on a surface at rest and on one that rises evenly: "
+      "a jump is the change at a frame beyond the change in the tick before, rms over the frames of two "
+      "seeds, 101 and 102. The three contact rules have a velocity estimate, and look-ahead also none. "
+      "Parameters were fixed with seeds 1 to 20. The lifts of tracked sheets are of seeds 101 to 110, the "
+      "others of seed 101.";
   std::vector<Table> jumps;
   for (const JumpMotion& motion : kJumpMotions) jumps.push_back(jump_table(context, motion));
-  figure.panels = {survivor_panel("Tracked sheets", "survived_tracked", false)};
-  for (const TrackedMethod& method : kToolRivals)
-    figure.panels.push_back(survivor_panel(method.label, std::string("survived_") + method.column, false));
   for (const Table& table : {jumps[0], jumps[1]}) {
-    figure.panels.push_back(jump_panel(table, "_force", "force jump at frames, rms (N)"));
-    figure.panels.push_back(jump_panel(table, "_torque", "torque jump at frames, rms (N m)"));
+    figure.panels.push_back(jump_panel(table, "force", "N"));
+    figure.panels.push_back(jump_panel(table, "torque", "N m"));
   }
-  place_in_rows(figure, 4);
+  place_in_rows(figure, 2);
   const Table shapes = shape_table(context);
-  add_claims(figure, ours, printed, jumps, shapes);
+  add_claims(figure, success[0].second, success[1].second, jumps, shapes);
   figure.tables.insert(figure.tables.end(), jumps.begin(), jumps.end());
   figure.tables.push_back(success_table(success)), figure.tables.push_back(shapes);
   return figure;

@@ -16,6 +16,9 @@ namespace {
 constexpr double kLevels_per_m[] = {0, 0.3, 0.6, 1, 1.5, 2, 3};
 constexpr double kDefault_per_m = 0.6;
 constexpr std::size_t kShownLevels[] = {0, 2, 4};  // indices in kLevels_per_m
+// Titles of the masks of these levels, which explain the colours.
+constexpr const char* kMaskTitles[] = {"Picked: red and yellow", "Black: no depth, white: wrong",
+                                       "Magenta: missed"};
 constexpr int kFrames = 5;
 constexpr int kEnoughPicked = 100;  // minimum for a meaningful precision
 constexpr PictureCrop kCrop{205, 195, 435, 290};
@@ -120,7 +123,7 @@ void add_pictures(Figure& figure, const std::vector<Level>& levels) {
                                           level.first, level.picture, kCrop));
     figure.panels.push_back(
         picture_panel("Seen at " + beta + " per metre", 0, column, "colours_" + number, kCrop));
-    figure.panels.push_back(picture_panel("Picked", 1, column, "mask_" + number, kCrop));
+    figure.panels.push_back(picture_panel(kMaskTitles[column], 1, column, "mask_" + number, kCrop));
     ++column;
   }
 }
@@ -187,17 +190,16 @@ Figure figure_turbidity(FigureContext& context) {
   Figure figure{
       "turbidity", "Two valves found by hue in turbid water",
       std::string(
-          "A simulated camera looks at a red and a yellow valve, 0.9 m away in water whose every channel is "
-          "attenuated, red most of all, and veiled. Above: what it sees, cut out around the valves, and what "
-          "the rules of hue pick of it: red and yellow where they are right, magenta where a valve is missed, "
-          "white where something else is picked, black where there is no depth and therefore no point. Below: "
-          "recall and precision among the pixels with depth, and the fraction of pixels with depth; the precision "
-          "of 0 at the end of yellow's curve is of less than a pixel in a frame. Most of a valve is too narrow for "
-          "the depth camera, which sees nothing within ") +
+          "A simulated camera looks at a red and a yellow valve, 900 mm away in water whose every channel "
+          "is attenuated, red most of all, and veiled. First row: what it sees, cut out around the valves. "
+          "Second row: what the rules of hue pick of it. Red and yellow are right, magenta is a part of a "
+          "valve that is missed, white is something else that is picked, black has no depth and therefore no "
+          "point. Third row: recall and precision among the pixels with depth, and the fraction of pixels "
+          "with depth; the precision of 0 at the end of yellow's curve is of less than a pixel in a frame. "
+          "Most of a valve is too narrow for the depth camera, which sees nothing within ") +
           std::to_string(ValveTank::Settings{}.camera.hole_px) +
-          " px of an edge. The water is a model with chosen "
-          "rates, so the turbidity at which a hue is lost holds for that model only. The figure shows which hue "
-          "is lost first, and how."};
+          " px of an edge. The water is a model with chosen rates, so the turbidity at which a hue is lost "
+          "holds for that model only. The figure shows which hue is lost first, and how."};
   for (std::size_t k = 0; k < 2; ++k) figure.tables.push_back(score_table(levels, k));
   add_pictures(figure, levels);
   figure.panels.push_back(fraction_panel("Recall", "recall", 0));

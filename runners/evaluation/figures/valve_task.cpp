@@ -146,6 +146,31 @@ Table task_table(const ValveTask& task) {
   return table_of(task.name, task.label, columns, rows);
 }
 
+Table moment_table(const std::string& title, const Trace& trace, const std::vector<std::size_t>& ticks) {
+  TableRows rows;
+  Column letters{"letter", "1", "moment of the task", {}, 1, {}};
+  std::vector<std::int32_t> letter;
+  for (const std::size_t tick : ticks) {
+    letters.value_names.emplace_back(1, static_cast<char>('A' + letter.size()));
+    letter.push_back(static_cast<std::int32_t>(letter.size()));
+    rows.push_back({trace.time_s[tick], trace.force_N[tick].norm(), trace.torque_Nm[tick].norm()});
+  }
+  letters.values = letter;
+  Table table = table_of("moments", title,
+                         {{"time", "s", "simulated time"},
+                          {"force", "N", "norm of the force"},
+                          {"torque", "N m", "norm of the torque"}},
+                         rows);
+  table.columns.insert(table.columns.begin(), letters);
+  return table;
+}
+
+Panel lettered(Panel panel) {
+  const std::string column = panel.curves.front().y;
+  panel.curves.push_back({"moments", "time", column, CurveStyle::letters, "", 0, "letter"});
+  return panel;
+}
+
 Table sequence_table(const ValveTask& task) {
   TableRows rows;
   for (const SequenceEntry& entry : sequence_log(task.trace))
@@ -178,10 +203,10 @@ void add_task_picture_tables(Figure& figure, const FigureContext& context, const
 Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row,
                    int column) {
   Scene scene{{0.42, 0.40, 0.62},
-              {0, 0.01, 0.11},
+              {-0.015, 0.005, 0.125},
               Vec3::UnitY(),
-              0.44,
-              0.8,
+              0.54,
+              0.72,
               tool_in_cloud(task.name, instant, 0.003)};
   ScenePart regions{ScenePart::Kind::points, task.name + "_regions", kRegionColour};
   regions.size_m = 0.0015, regions.opacity = 0.5, regions.label = "region";

@@ -40,6 +40,11 @@ Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W);
 // Returns force, torque, the force and torque that the device exerts, distances and contacts of every fifth
 // tick.
 Table task_table(const ValveTask& task);
+// Returns force and torque at the ticks, which are called A, B, ... The table is named "moments". For
+// lettered().
+Table moment_table(const std::string& title, const Trace& trace, const std::vector<std::size_t>& ticks);
+// Adds these letters to a panel over time. Its first curve must show the force or the torque.
+Panel lettered(Panel panel);
 // The log of the task's steps; no rows without a task.
 Table sequence_table(const ValveTask& task);
 

@@ -25,6 +25,7 @@ constexpr Priority kPriorities[] = {
     {"guidance_error_angle", When::always},
     // The first question about a method: does its proxy stay on the right side of the true surface?
     {"popped_through", When::no_fixtures},
+    {"first_pop_through_time", When::no_fixtures},  // has no value unless it happened
     {"tool_popped_through", When::no_fixtures},
     // How far was it wrong? The depth of points in a tool needs no truth.
     {"max_penetration", When::no_fixtures},

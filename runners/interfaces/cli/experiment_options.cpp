@@ -142,8 +142,9 @@ void add_analyse(Subcommands& commands) {
       ->check(between(0, 1));
   add_list("--mean", analyse->means, "measure whose means are wanted; may be given several times");
   add_list("--by", analyse->by, "axes of the means and differences, A,B (default: all); others are pooled");
-  add_list("--difference", analyse->differences,
-           "measure whose differences between the values of --between are wanted");
+  add_list(
+      "--difference", analyse->differences,
+      "measure whose differences between the values of --between are wanted; may be given several times");
   command->add_option(
       "--between", analyse->between,
       "axis whose values are compared with its first value (default: the first axis of names)");

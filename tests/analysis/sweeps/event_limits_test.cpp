@@ -73,6 +73,30 @@ TEST(EventLimits, HaveTheIntervalOfTheWilsonCurves) {
   EXPECT_LT(numbers(table, "limit_low")[0], numbers(table, "limit")[0]);
 }
 
+// Of 100 runs with the event in 25 and 75 the intervals are off 0.5, in 45 and 55 they are not.
+TEST(EventLimits, AreEnclosedByTheValuesThatDifferClearlyFromTheLevel) {
+  const Table table = limits_of(sweep_of({1, 2, 4, 8}, {{0, 25, 75, 100}, {0, 45, 55, 100}, {40, 60, 80, 90}}));
+  EXPECT_EQ(numbers(table, "at_least")[0], 2);
+  EXPECT_EQ(numbers(table, "at_most")[0], 4);
+  EXPECT_EQ(numbers(table, "at_least")[1], 1);
+  EXPECT_EQ(numbers(table, "at_most")[1], 8);
+  const Table falling = limits_of(sweep_of({1, 2, 4}, {{75, 25, 0}, {100, 60, 55}}));
+  EXPECT_EQ(numbers(falling, "at_least")[0], 1);
+  EXPECT_EQ(numbers(falling, "at_most")[0], 2);
+  EXPECT_EQ(numbers(falling, "at_least")[1], 1);
+  EXPECT_TRUE(std::isnan(numbers(falling, "at_most")[1]));
+}
+
+TEST(EventLimits, CountTheRunsWithANote) {
+  SweepResult result = sweep_of({1, 2}, {{25, 75}});
+  EXPECT_EQ(limits_of(result).columns.back().name, "runs");
+  result.note_kinds = {"no contact"};
+  result.notes.assign(result.run_count(), 0);
+  result.notes[0] = result.notes[kRuns] = 1;
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(limits_of(result).columns.back().values),
+            std::vector<std::int32_t>{2});
+}
+
 // The shares 0.4 and 0.2 are pooled to 0.3, because the event can only become more probable.
 TEST(EventLimits, IgnoreAStepBack) {
   const Table table = limits_of(sweep_of({1, 2, 3, 4}, {{0, 40, 20, 70}}));

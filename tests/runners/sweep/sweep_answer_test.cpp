@@ -171,8 +171,8 @@ TEST(AnswerText, HasEachTableWithUnits) {
   question.limit = "popped_through", question.along = "x";
   const Figure answer = sweep_answer(sweep(), kConfig, question);
   const std::string text = answer_text(answer, sweep());
-  EXPECT_HAS(text, "  r_c    method  limit  limit_low  limit_high  place   runs\n");
-  EXPECT_HAS(text, "  m              m/s^2  m/s^2      m/s^2\n");
+  EXPECT_HAS(text, "  r_c    method  limit  limit_low  limit_high  at_least  at_most  place   runs\n");
+  EXPECT_HAS(text, "  m              m/s^2  m/s^2      m/s^2       m/s^2     m/s^2\n");
   EXPECT_HAS(text, "  0.005  old     2      ");
   EXPECT_EQ(text.find("limits_1"), std::string::npos);
 }

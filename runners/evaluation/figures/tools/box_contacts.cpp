@@ -70,7 +70,7 @@ void add_claims(Figure& figure, const Counts& counts) {
 
 void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row) {
   const auto panel = [&](const char* title, int column, std::pair<double, double> y_range) {
-    return plot(title, "spacing of the points (m)", "most at once", {},
+    return plot(title, "spacing of the points (m)", "largest count in a run", {},
                 {.at = {{row, column}}, .y_range = y_range});
   };
   Panel points = panel("Points that touch", 0, {0, 35}),
@@ -84,7 +84,7 @@ void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row
     others.curves.push_back(
         {rule.name, "spacing", "active", CurveStyle::dashed, rule.rule + ", active constraints"});
   }
-  points.curves.push_back({"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "6 (6.3.1)"});
+  points.curves.push_back({"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "printed: 6 contact points (6.3.1)"});
   figure.panels.push_back(points);
   figure.panels.push_back(others);
 }

@@ -41,17 +41,36 @@ double count_rows_apart(const Table& table, const std::string& carried, const st
   return apart;
 }
 
-Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
-                  std::pair<double, double> grid_position) {
-  Panel panel{table.title, x_label, y_label};
+Table derived_table(const Table& limits, const DerivedLimit& derived, int samples) {
+  const Column& setting = limits.columns.front();
+  const std::vector<double>& settings = numbers(limits, setting.name);
+  const double from = settings.front(), step = (settings.back() - from) / (samples - 1);
+  std::vector<double> at;
+  for (int i = 0; i < samples; ++i) at.push_back(from + i * step);
+  Table table{limits.name + "_bounds", limits.title + ": derived limits"};
+  table.add(setting.name, setting.units, setting.long_name, at);
   for (const CarrierName& carrier : kCarriers) {
-    const std::string column = carrier.column, x = table.columns[0].name;
-    panel.curves.push_back(
-        {table.name, x, column + "_bound", CurveStyle::dashed, std::string(carrier.label) + ", derived"});
-    panel.curves.push_back({table.name, x, column + "_carried", CurveStyle::dots, carrier.label});
+    std::vector<double> bound;
+    for (const double value : at) bound.push_back(derived(carrier.rule, value));
+    table.add(std::string(carrier.column) + "_bound", limits.columns.at(1).units, "derived limit",
+              std::move(bound));
   }
-  panel.grid_position = grid_position;
-  return panel;
+  return table;
+}
+
+void add_limit_panel(Figure& figure, const Table& limits, const DerivedLimit& derived,
+                     const LimitLabels& labels, const PanelFrame& frame, int derived_samples) {
+  const Table bounds = derived_table(limits, derived, derived_samples);
+  const std::string x = limits.columns.front().name;
+  std::vector<Curve> curves;
+  for (const CarrierName& carrier : kCarriers) {
+    const std::string column = carrier.column, label = carrier.label, carried = column + "_carried";
+    curves.push_back({bounds.name, x, column + "_bound", CurveStyle::dashed, label + ", derived"});
+    curves.push_back({limits.name, x, carried, CurveStyle::intervals, "", 0, column + "_first_lost"});
+    curves.push_back({limits.name, x, carried, CurveStyle::dots, label});
+  }
+  figure.tables.push_back(bounds);
+  figure.panels.push_back(plot(limits.title, labels.x, labels.y, std::move(curves), frame));
 }
 
 }  // namespace remote_touch

@@ -2,6 +2,7 @@
 // shared by figures tool-lifts and tool-shapes.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "analysis/figures/figure.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 
@@ -57,9 +59,19 @@ class CarrySweep {
 double count_rows_apart(const Table& table, const std::string& carried, const std::string& lost,
                         const std::string& low, const std::string& high);
 
-// Panel over the first column of a table: derived limits (columns *_bound) are dashed, and strengths up to
-// which every run is carried (columns *_carried) are dots.
-Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
-                  std::pair<double, double> grid_position);
+// Returns the limit that is derived for a rule, in the units of the measured limits.
+using DerivedLimit = std::function<double(Carrier rule, double setting)>;
+// Returns the derived limits (columns *_bound) as table NAME_bounds, at evenly spaced values of the setting.
+// limits: table NAME, whose first column is the setting, in rising order.
+Table derived_table(const Table& limits, const DerivedLimit& derived, int samples);
+
+struct LimitLabels {
+  std::string x, y;
+};
+// Adds a panel over the setting, and derived_table(). The derived limits are dashed. The strengths up to
+// which every run is carried (columns *_carried of `limits`) are dots, with a bar to the next strength, at
+// which a run is lost (*_first_lost). derived_samples: more than 20, as lines of fewer samples have markers.
+void add_limit_panel(Figure& figure, const Table& limits, const DerivedLimit& derived,
+                     const LimitLabels& labels, const PanelFrame& frame, int derived_samples = 61);
 
 }  // namespace remote_touch

@@ -57,6 +57,15 @@ std::vector<NoisyPoint> noisy_points(Shape::Kind kind, double half_m, double sig
   return points;
 }
 
+// Returns the jump after which half of the runs are lost, of a plate whose half width is larger by wider_m.
+double noise_jump_m(Carrier rule, Shape::Kind kind, double sigma_m, double wider_m) {
+  const double shell_m = rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0;
+  const double way_out_m = rule == Carrier::continuous ? ToolParameters{}.frame_reach_m : 0;
+  const double half_m = kHalfPlate_m - shell_m + wider_m;
+  return std::max(way_out_m,
+                  noisy_jump_m(kPlate_m - 2 * shell_m, noisy_points(kind, half_m, sigma_m), sigma_m));
+}
+
 }  // namespace
 
 Jump on_edge(Carrier rule, double thickness_m, double slope_deg, double turn_deg) {
@@ -92,15 +101,14 @@ Jump on_plane(Carrier rule, double extent_m) {
 // The smallest and the largest jump are those of a plate that is narrower by a spacing, or wider by a disk,
 // as without noise.
 Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m) {
-  const double shell_m = rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0;
-  const double way_out_m = rule == Carrier::continuous ? ToolParameters{}.frame_reach_m : 0;
-  const auto jump_m = [&](double wider_m) {
-    const double half_m = kHalfPlate_m - shell_m + wider_m;
-    return std::max(way_out_m,
-                    noisy_jump_m(kPlate_m - 2 * shell_m, noisy_points(kind, half_m, sigma_m), sigma_m));
-  };
-  const double disk_m = ToolParameters{}.disk_radius_ratio * kSpacing_m;
-  return {jump_m(-kSpacing_m), jump_m(0), jump_m(rule == Carrier::voxels ? shell_m : disk_m)};
+  const double disk_m =
+      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kSpacing_m;
+  return {noise_jump_m(rule, kind, sigma_m, -kSpacing_m), noise_bound_m(rule, kind, sigma_m),
+          noise_jump_m(rule, kind, sigma_m, disk_m)};
+}
+
+double noise_bound_m(Carrier rule, Shape::Kind kind, double sigma_m) {
+  return noise_jump_m(rule, kind, sigma_m, 0);
 }
 
 }  // namespace remote_touch

@@ -26,5 +26,7 @@ Jump on_ball(Carrier rule, double thickness_m, double radius_m);
 Jump on_plane(Carrier rule, double extent_m);
 // Jump after which half of the runs are lost, with noise on x, y and z; the plate is kPlate_m thick.
 Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m);
+// Returns bound_m of on_noise() alone, in a third of its time.
+double noise_bound_m(Carrier rule, Shape::Kind kind, double sigma_m);
 
 }  // namespace remote_touch

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <string>
 #include <vector>
 
 namespace remote_touch::carried_limits_test {
@@ -51,6 +52,38 @@ TEST(CountRowsApart, CountsARowWithoutABoundAsApart) {
   table.add("low", "m/s", "", {std::nan(""), 1});
   table.add("high", "m/s", "", {2, std::nan("")});
   EXPECT_EQ(count_rows_apart(table, "carried", "lost", "low", "high"), 2);
+}
+
+TEST(DerivedTable, HasEvenlySpacedSettingsFromTheFirstToTheLast) {
+  Table limits{"limits", "Limits"};
+  limits.add("thickness", "m", "", {1, 2, 5});
+  limits.add("voxels_carried", "m/s", "", {1, 2, 3});
+  const Table derived = derived_table(
+      limits, [](Carrier rule, double setting) { return rule == Carrier::voxels ? 2 * setting : setting; },
+      5);
+  EXPECT_EQ(derived.name, "limits_bounds");
+  EXPECT_EQ(numbers(derived, "thickness"), (std::vector<double>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(numbers(derived, "voxels_bound"), (std::vector<double>{2, 4, 6, 8, 10}));
+  EXPECT_EQ(numbers(derived, "continuous_bound"), (std::vector<double>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(derived.columns[1].units, "m/s");
+}
+
+TEST(AddLimitPanel, DrawsABarFromTheLastCarriedToTheFirstLostStrengthOfEachRule) {
+  Table limits{"limits", "Limits"};
+  limits.add("thickness", "m", "", {1, 2});
+  for (const CarrierName& carrier : kCarriers)
+    for (const char* what : {"_carried", "_first_lost"})
+      limits.add(carrier.column + std::string(what), "m/s", "", {1, 2});
+  Figure figure;
+  add_limit_panel(figure, limits, [](Carrier, double) { return 1.0; }, {"thickness (m)", "speed (m/s)"}, {});
+  ASSERT_EQ(figure.panels.size(), 1U);
+  const std::vector<Curve>& curves = figure.panels[0].curves;
+  ASSERT_EQ(curves.size(), 3 * std::size(kCarriers));
+  EXPECT_EQ(curves[0].table, "limits_bounds");
+  EXPECT_EQ(curves[1].style, CurveStyle::intervals);
+  EXPECT_EQ(curves[1].y, "voxels_carried");
+  EXPECT_EQ(curves[1].z, "voxels_first_lost");
+  EXPECT_EQ(curves[2].label, "as printed") << "the bar takes the colour of the curve after it";
 }
 
 }  // namespace
