@@ -116,7 +116,7 @@ def set_end_ticks(axis, limits):
     """Both ends of a colour bar have values; a tick beside an end gives way to it."""
     (low, high), ticks = limits, axis.get_major_locator().tick_values(*limits)
     span = high - low
-    kept = [low, *(tick for tick in ticks if low + 0.07 * span < tick < high - 0.07 * span), high]
+    kept = [low, *(tick for tick in ticks if low + 0.09 * span < tick < high - 0.09 * span), high]
     digits = 1 - math.floor(math.log10(span))
     axis.set_ticks(kept, [plain(round(tick, digits) + 0.0) for tick in kept])
 

@@ -8,6 +8,7 @@ import matplotlib.lines
 import matplotlib.patches
 import matplotlib.patheffects
 import numpy as np
+from matplotlib.colors import to_hex
 
 from plotting.cells import colour_range
 from plotting.raster import Camera, Canvas
@@ -91,9 +92,9 @@ def handle(part):
     if part.kind == "points":
         own = colours_of_points(part, 1)
         median = np.median(own, axis=0) if len(own) else colour
-        return matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color=median, label=label)
+        return matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color=to_hex(median), label=label)
     if part.kind == "segments":
-        return matplotlib.lines.Line2D([], [], color=colour, label=label)
+        return matplotlib.lines.Line2D([], [], color=to_hex(colour), label=label)
     return matplotlib.patches.Rectangle((0, 0), 0, 0, facecolor=colour, alpha=part.opacity, label=label)
 
 
@@ -107,7 +108,7 @@ def draw_scene(axes, panel, width_in, add_colour_bar):
     axes.grid(False)
     add_scale_bar(axes, panel.scene)
     for part in panel.scene.parts:
-        if part.label:
+        if part.label and not part.coloured_by:
             entry = handle(part)
             axes.add_line(entry) if part.kind != "solid" else axes.add_patch(entry)
         if part.coloured_by:

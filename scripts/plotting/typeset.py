@@ -6,7 +6,7 @@ import re
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
 SYMBOL = re.compile(rf"\b({'|'.join(GREEK)}|[A-Za-z])_([A-Za-z0-9]{{1,3}})\b")
 POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
-VARIABLE = re.compile(r"(?<![\w\\{}_^$#&-])(?:([xyzhvu])|(M)(?= of\b))(?![\w$-])")  # no letter of a unit is among these
+VARIABLE = re.compile(r"(?<![\w\\{}_^$#&=-])(?:([xyzhvu])|(M)(?= of\b))(?![\w$-])")  # no letter of a unit is among these
 SYMBOL_WITH_POWER, VARIABLE_WITH_POWER = (re.compile(rf"{one.pattern}(?:{POWER.pattern})?") for one in (SYMBOL, VARIABLE))
 TIMES = re.compile(r"(?<=[\w)])(?<!\babout)(?<!\balong)(?<!\b[aioO]n)(?<!\bof)(?<!\b[aiA]t) x (?=[\w(])")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown

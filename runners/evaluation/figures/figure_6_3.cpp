@@ -212,8 +212,8 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
   }
   Claims(figure).at_least(
       "contact rule " + runs[0].rule +
-          ": more points touch where they lie closer (most at once, 3, 2 and 1 mm apart: " + counts +
-          "): smallest rise",
+          ": more points touch where they lie closer (largest count in a run, 3, 2 and 1 mm apart: " +
+          counts + "): smallest rise",
       min_rise, 1, "points", "6 at an unknown spacing");
 }
 

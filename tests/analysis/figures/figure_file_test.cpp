@@ -85,13 +85,15 @@ TEST_F(FigureFile, ScenesAreStored) {
   ScenePart solid{ScenePart::Kind::solid, "corners", 0xE07B39};
   solid.triangles = "faces", solid.poses = "places", solid.pose_row = 5, solid.opacity = 0.375;
   solid.label = "a thing";
-  const ScenePart dust{ScenePart::Kind::points, "dust", 0, 0.0625};
+  ScenePart dust{ScenePart::Kind::points, "dust", 0, 0.0625};
+  dust.coloured_by = "height";
   figure.panels[0].scene = Scene{{1, 2, 3}, {4, 5, 6}, {7, 8, 9},
                                  0.25,      0.625,     {solid, dust, {ScenePart::Kind::segments, "lines"}}};
   write_figure(folder / "fig.h5", figure, {});
   const std::string bytes = bytes_of(folder / "fig.h5");
-  for (const char* word : {"scene", "eye", "target", "part2", "solid", "points", "segments", "corners",
-                           "faces", "places", "pose_row", "dust", "lines", "a thing", "proportion"})
+  for (const char* word :
+       {"scene", "eye", "target", "part2", "solid", "points", "segments", "corners", "faces", "places",
+        "pose_row", "dust", "lines", "a thing", "proportion", "coloured_by", "height"})
     EXPECT_HAS(bytes, word);
   EXPECT_HAS(bytes, raw(1.0) + raw(2.0) + raw(3.0));  // position of the eye
   for (const double value : {0.25, 0.625, 0.375, 0.0625}) EXPECT_HAS(bytes, raw(value));
@@ -102,7 +104,8 @@ TEST_F(FigureFile, checks) {
   for (const auto& [style, name] :
        {std::pair(CurveStyle::line, "line"), std::pair(CurveStyle::dots, "dots"),
         std::pair(CurveStyle::steps, "steps"), std::pair(CurveStyle::dashed, "dashed"),
-        std::pair(CurveStyle::circle, "circle"), std::pair(CurveStyle::bars, "bars")}) {
+        std::pair(CurveStyle::circle, "circle"), std::pair(CurveStyle::bars, "bars"),
+        std::pair(CurveStyle::letters, "letters"), std::pair(CurveStyle::intervals, "intervals")}) {
     figure.panels = {{"P", "", "", false, {{"heights", "time", "y", style, ""}}, {}, {}}};
     write_figure(folder / "fig.h5", figure, {});
     EXPECT_HAS(bytes_of(folder / "fig.h5"), name);

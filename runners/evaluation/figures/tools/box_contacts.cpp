@@ -84,7 +84,8 @@ void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row
     others.curves.push_back(
         {rule.name, "spacing", "active", CurveStyle::dashed, rule.rule + ", active constraints"});
   }
-  points.curves.push_back({"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "printed: 6 contact points (6.3.1)"});
+  points.curves.push_back(
+      {"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "printed: 6 contact points (6.3.1)"});
   figure.panels.push_back(points);
   figure.panels.push_back(others);
 }
