@@ -66,7 +66,8 @@ py::dict run_sweep_of(const std::string& subject, const std::optional<std::strin
   return to_python(std::move(stored));
 }
 
-// parts: axes and measures as lists of columns, the states of the runs, and the number of replicates.
+// parts: axes and measures as lists of columns, the states of the runs, the number of replicates, and the
+// notes on the runs, which may be missing.
 SweepResult result_of(const py::tuple& parts) {
   SweepResult result;
   for (const py::handle& axis : parts[0]) result.axes.push_back(column_of(axis));
@@ -74,7 +75,9 @@ SweepResult result_of(const py::tuple& parts) {
   for (const auto state : parts[2].cast<std::vector<std::int32_t>>())
     result.state.push_back(static_cast<RunState>(state));
   result.replicates = parts[3].cast<int>();
-  bool fits = result.state.size() == result.run_count();
+  result.notes = parts[4].cast<std::vector<std::int32_t>>();
+  bool fits = result.state.size() == result.run_count() &&
+              (result.notes.empty() || result.notes.size() == result.run_count());
   for (const Column& measure : result.measures)
     fits &=
         measure.length() == result.run_count() && std::holds_alternative<std::vector<double>>(measure.values);

@@ -104,7 +104,7 @@ def columns_of(trace):
 
 
 def parts_of_sweep(sweep):
-    """The axes, measures, states and replicates of a sweep that of_sweep() made, for an analysis."""
+    """The axes, measures, states, replicates and notes of a sweep that of_sweep() made, for an analysis."""
     dimensions = [*sweep["state"].dims] if isinstance(sweep, xr.Dataset) and "state" in sweep else []
     if len(dimensions) < 2 or dimensions[-1] != "replicate":
         raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
@@ -118,4 +118,5 @@ def parts_of_sweep(sweep):
                  np.ascontiguousarray(variable.transpose(*dimensions).values).ravel(), [])
                 for name, variable in sweep.data_vars.items()
                 if variable.dtype == np.float64 and {*variable.dims} == {*dimensions}]
-    return axes, measures, sweep["state"].values.ravel().tolist(), sweep.sizes["replicate"]
+    notes = sweep["notes"].transpose(*dimensions).values.ravel().tolist() if "notes" in sweep else []
+    return axes, measures, sweep["state"].values.ravel().tolist(), sweep.sizes["replicate"], notes
