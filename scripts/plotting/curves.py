@@ -48,8 +48,9 @@ def alone(curve):
 
 
 def is_sampled(curve):
-    """Whether each sample of a line has a marker, since a straight piece between two of them is no measurement."""
-    return curve.style in ("line", "dashed") and np.count_nonzero(is_finite(curve)) <= FEW and not is_formula(curve.label)
+    """Returns whether each sample of a line has a marker. A straight piece between two samples is no measurement."""
+    few = np.count_nonzero(is_finite(curve)) <= FEW
+    return few and curve.style in ("line", "dashed") and not is_formula(curve.label)
 
 
 def draw_line(axes, curve, panel, look, **options):
@@ -70,32 +71,45 @@ def draw_line(axes, curve, panel, look, **options):
 
 
 def dashed(look):
-    """The line style that a look has in its panel."""
+    """Returns the line style that a look has in its panel."""
     if look.dash == 0:
         return DASHES[0]
     return look.phase * sum(DASHES[look.dash][1]), DASHES[look.dash][1]
 
 
 def layer(curve, panel, look):
-    """Curves are drawn in their order, but a dashed line above all solid ones, which would hide it."""
-    at = [i for i, other in enumerate(panel.curves) if other is curve or (look.dash and other.style in ("line", "steps"))]
+    """Returns the z-order. Curves are drawn in their order, but a dashed line above all solid lines, which would hide
+    it."""
+    above = ("line", "steps") if look.dash else ()
+    at = [i for i, other in enumerate(panel.curves) if other is curve or other.style in above]
     return 2 + 0.01 * max(at) + (0.005 if look.dash else 0)
 
 
 def interval_series(curve, panel):
-    """Index of the interval series of this curve, and the number of such series in the panel; None without one. The
-    intervals of a curve come directly before it in panel.curves."""
-    at = [i for i, other in enumerate(panel.curves) if other.style == "intervals"]
+    """Returns the index of the intervals of this curve among all intervals of the panel at the same x, and the number
+    of these; None if the curve has no intervals. The intervals of a curve come directly before it in panel.curves."""
+    at = [i for i, other in enumerate(panel.curves)
+          if other.style == "intervals" and np.isin(other.x.values, curve.x.values).any()]
     i = next(i for i, other in enumerate(panel.curves) if other is curve)
     mine = [k for k, interval in enumerate(at) if interval in (i, i - 1)]
     return (mine[0], len(at)) if mine else None
 
 
+def aside_in(panel):
+    """Returns the distance of intervals that stand beside each other. Dots need more room than lines."""
+    return (4.5 if any(curve.style == "dots" for curve in panel.curves) else 2.4) / 72
+
+
+def room_aside_in(panel):
+    """Returns the room that the outer intervals need left of the first x and right of the last one."""
+    counts = [series[1] for curve in panel.curves if (series := interval_series(curve, panel))]
+    return aside_in(panel) * max(counts, default=0) / 2 if max(counts, default=0) > 1 else 0.0
+
+
 def put_aside(axes, line, curve, panel):
     """Intervals at one place stand beside each other. The limits of the axes are those of the data."""
     if series := interval_series(curve, panel):
-        step_pt = 4.5 if any(other.style == "dots" for other in panel.curves) else 2.4
-        step_in = step_pt * (series[0] - (series[1] - 1) / 2) / 72
+        step_in = aside_in(panel) * (series[0] - (series[1] - 1) / 2)
         aside = matplotlib.transforms.ScaledTranslation(step_in, 0, axes.figure.dpi_scale_trans)
         line.set_transform(axes.transData + aside)
 
@@ -105,8 +119,8 @@ def draw_steps(axes, curve, panel, look):
 
 
 def draw_dots(axes, curve, panel, look):
-    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first: from
-    the second on they are open, and wider than the first."""
+    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first. Dots
+    from the second series on are therefore open, and larger than those of the first."""
     count = np.count_nonzero(in_sight(curve, panel))
     size = DOT_PT if count <= 30 else 3 if count <= 100 else 1.8 if count <= 300 else 1.1 if count <= MANY else 0.7
     series = [other for other in panel.curves if other.style == "dots"].index(curve)
@@ -121,7 +135,7 @@ def draw_dots(axes, curve, panel, look):
 
 
 def draw_letters(axes, curve, _, __):
-    """Names of z above the panel, with thin lines through it: they cover no curve."""
+    """The names of z stand above the panel, each at a thin vertical line, so they cover no curve."""
     known = is_finite(curve)
     for x, name in zip(curve.x.values[known], curve.z.values[known]):
         axes.axvline(x, color="#555555", linewidth=0.6, zorder=1)
@@ -130,7 +144,7 @@ def draw_letters(axes, curve, _, __):
 
 
 def room_above_in(panel):
-    """What stands directly above a panel, below its legend and title."""
+    """Returns the height of what stands directly above a panel, below its legend and title."""
     return LETTERS_IN if any(curve.style == "letters" for curve in panel.curves) else 0.0
 
 
@@ -176,7 +190,7 @@ def draw_map(axes, curve, panel, _):
 
 
 def draw_band(axes, curve, panel, look):
-    """Several bands without a legend would mix their colours: each has an edge."""
+    """Several bands without a label would mix their colours, so each of them has an edge."""
     edged = sum(other.style == "band" and not other.label for other in panel.curves) > 1
     axes.fill_between(curve.x.values, curve.y.values, curve.z.values, color=look.colour, alpha=0.12 if edged else 0.22,
                       linewidth=0, label=typeset(curve.label))
@@ -186,8 +200,8 @@ def draw_band(axes, curve, panel, look):
 
 
 def draw_intervals(axes, curve, panel, look):
-    """A vertical line from y to z at each x, with a cap at an end that is not the value of the next curve. An end that is
-    not known is an arrow away from the other end."""
+    """Draws a vertical line from y to z at each x, with a cap at an end that is not the value of the next curve. If an
+    end is infinite or NaN, an arrow points away from the other end."""
     x, low, high = curve.x.values, curve.y.values, curve.z.values
     own = {"color": look.colour, "linewidth": 0.9, "markeredgewidth": 0.9, "markerfacecolor": "none"}
     closed = np.isfinite(low) & np.isfinite(high)
@@ -208,7 +222,7 @@ def draw_intervals(axes, curve, panel, look):
 
 
 def next_values(curve, panel):
-    """Those of the curve that intervals belong to."""
+    """Returns the values of the curve that intervals belong to."""
     i = next(i for i, other in enumerate(panel.curves) if other is curve)
     following = panel.curves[i + 1:i + 2]
     same = following and following[0].y.values.size == curve.y.values.size
@@ -251,7 +265,7 @@ def reach(curve, panel):
     seen = in_sight(curve, panel)
     y = curve.y.values[seen]
     if curve.style in ("band", "intervals"):
-        return np.concatenate([y, curve.z.values[seen]])  # an arrow begins at the value of another curve
+        return np.concatenate([y, curve.z.values[seen]])  # without arrows, which begin at the value of another curve
     if curve.style in CELLS:
         return np.concatenate([ends[seen] for ends in cell_ends(curve, panel)[1]])
     return y

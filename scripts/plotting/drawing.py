@@ -6,7 +6,7 @@ import matplotlib.ticker
 import numpy as np
 
 from plotting.cells import distinct
-from plotting.curves import DRAW, has_cells, is_sampled, reach
+from plotting.curves import DRAW, has_cells, is_sampled, reach, room_aside_in
 from plotting.style import LINES, is_formula, looks_in_panel
 from plotting.surface import draw_surface, is_surface
 from plotting.typeset import typeset, with_unit
@@ -44,7 +44,8 @@ def asks_for_log(columns):
 
 
 def asks_for_log_heights(curves):
-    """Few positive values that span four decades would all lie on the axis. More than eight decades are rounding errors."""
+    """Few positive values that span four decades would all lie on the axis. More than eight decades are rounding
+    errors."""
     if not curves or any(curve.style not in (*LINES, "dots") for curve in curves):
         return False
     values = np.concatenate([curve.y.values for curve in curves])
@@ -73,7 +74,12 @@ def set_given(set_limits, limits):
 
 
 def plain(value, _=None):
-    return f"{value:.6g}".replace("-", "\u2212")
+    """Returns the number as text; a small or large one has a power of ten."""
+    number, _, power = f"{value:.6g}".replace("-", "\u2212").partition("e")
+    if not power:
+        return number
+    times = "" if number == "1" else f"{number} × "
+    return f"{times}$10^{{{int(power.replace(chr(0x2212), '-'))}}}$"
 
 
 def set_names(axis, names):
@@ -96,7 +102,8 @@ def set_log_ticks(axis, narrow):
 
 
 def few_values(columns, length_in, is_upright):
-    """The values of a few cells or samples, if each has room for its number on an axis of this length; else None."""
+    """Returns the values of a few cells or samples if an axis of this length has room for all their numbers; else
+    None."""
     values = distinct(np.concatenate([column.values for column in columns] or [[]]))
     if not 1 < values.size <= 8:
         return None
@@ -106,14 +113,14 @@ def few_values(columns, length_in, is_upright):
 
 
 def sampled_at(panel):
-    """Positions at which a panel has values, without lines that are formulas; none if one of its curves is not sampled."""
+    """Returns the x columns of the samples of a panel. Formulas are ignored. Empty if a curve has many samples."""
     shown = [curve for curve in panel.curves if not (curve.style in LINES and is_formula(curve.label))]
     few = all(is_sampled(curve) or curve.style in ("dots", "intervals", "bars", "map") for curve in shown)
     return [curve.x for curve in shown] if few else []
 
 
 def set_end_ticks(axis, limits):
-    """Both ends of a colour bar have values; a tick beside an end gives way to it."""
+    """Gives both ends of a colour bar a tick with a value. A tick that is too near to an end is removed."""
     (low, high), ticks = limits, axis.get_major_locator().tick_values(*limits)
     span = high - low
     kept = [low, *(tick for tick in ticks if low + 0.09 * span < tick < high - 0.09 * span), high]
@@ -122,8 +129,8 @@ def set_end_ticks(axis, limits):
 
 
 def set_ticks(axis, limits, columns, few=(), length_in=3.0):
-    """Plain numbers without a common offset or factor; the names of an enum; no half of what is counted. few: columns whose
-    values have ticks, if there is room. length_in: of the axis."""
+    """Plain numbers without a common offset or factor; the names of an enum; no half of what is counted. few: columns
+    whose values have ticks, if there is room. length_in: of the axis."""
     names = next((column.names for column in columns if column.names), None)
     if names:
         set_names(axis, names)
@@ -156,8 +163,8 @@ def capitalised(title):
 
 
 def title_words(title, letter):
-    """As they are drawn, with the letter of the panel. A moment, `A) at the start`, becomes `A: at the start`: it has other
-    brackets than the letter."""
+    """Returns the title as it is drawn, with the letter of the panel. `A) at the start` becomes `A: at the start`,
+    because the letter of a moment would look like that of a panel."""
     moment = re.match(r"([A-Z])\) ", title)
     shown = typeset(f"{moment[1]}: {title[moment.end():]}" if moment else capitalised(title))
     return f"({letter}) {shown}".strip() if letter else shown
@@ -184,7 +191,7 @@ def set_scales(axes, panel):
 
 
 def add_colour_bar(axes, coloured, column, width_in):
-    """It hangs on the panel, so it follows where equal aspect puts that. coloured: what has the colours. column: its
+    """The bar is attached to the panel, so it moves with it. coloured: the artist that has the colours. column: its
     values."""
     bar = axes.figure.colorbar(coloured, cax=axes.inset_axes([1 + 0.06 / width_in, 0, 0.1 / width_in, 1]))
     bar.outline.set_visible(False)
@@ -195,8 +202,8 @@ def add_colour_bar(axes, coloured, column, width_in):
 
 
 def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
-    """Without its title and the label below it, which add_words() writes. looks: of each curve, by curve_key. width_in,
-    height_in: about what the panel has for itself. bar: says what the colours of a map mean."""
+    """Draws everything but the title, which add_words() writes. looks: of each curve, by curve_key. width_in,
+    height_in: about the size of the panel. bar: whether a colour bar explains the colours of a map."""
     if is_surface(panel):
         draw_surface(axes, panel, axis_label)
         return
@@ -205,6 +212,8 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
         DRAW[curve.style](axes, curve, panel, look)
     if any(curve.x.names and curve.style == "dots" for curve in panel.curves):
         axes.margins(x=0.3)  # room for the names
+    elif room_aside_in(panel):
+        axes.margins(x=0.05 + room_aside_in(panel) / width_in)
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
     if is_image(panel):
@@ -222,7 +231,7 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
 
 
 def add_words(axes, panel, title, width_in, title_in):
-    """The title, and the label below the panel in lines that fit. title: of title_words(). width_in: of the panel."""
+    """Writes the title, and wraps the label below the panel. title: of title_words(). width_in: of the panel."""
     axes.set_title(folded(title, title_in, TITLE), loc="left")
     if axes.get_xlabel() and not is_surface(panel):
         xs = [curve.x for curve in panel.curves]

@@ -19,7 +19,7 @@ from plotting.units import in_shown_units
 from plotting.wrapping import HEADING, TITLE, text_width_in, wrapped
 
 PAD_IN, HEADING_LINE_IN = 0.06, 0.155
-MARGIN_IN = 0.45  # the widest right margin for titles
+MARGIN_IN = 0.45  # the widest right margin that is made for titles
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
 TALLEST_IN, SMALLEST = 9.2, 0.5  # a picture fits on a page, unless its plots became smaller than this share
 BESIDE = 0.75  # how high a plot is, if a panel beside it cannot be higher
@@ -55,18 +55,18 @@ def widths_in(panels, columns):
 
 
 def plot_height(width, size):
-    """Inches for a plot that is so wide. size: rows and columns of the figure."""
+    """Returns the height of a plot of this width, in inches. size: rows and columns of the figure."""
     rows, columns = size
     return min(max(0.7 * width, 1.0), 2.0) if columns > 1 else max(1.05, min(2.0, 3.2 / rows))
 
 
 def is_flexible(panel):
-    """Whether a panel may become lower without becoming narrower."""
+    """Returns whether a panel can become lower without becoming narrower."""
     return is_plot(panel) and not panel.equal_aspect
 
 
 def panel_height(axes, panel, width, size):
-    """Inches for a panel that is so wide."""
+    """Returns the height of a panel of this width, in inches."""
     if panel.scene:
         return width * panel.scene.proportion
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
@@ -103,7 +103,8 @@ def guess(canvas, drawn, size):
 
 
 def columns_in(canvas, drawn, columns):
-    """What the labels need left and right of each column, and the width of a panel: all are equally wide."""
+    """Returns the room that labels need left and right of each column, and the width of a panel. All are equally
+    wide."""
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
     left, right = ([max((need[side] for cell, need in needs if cell[1] == column), default=PAD_IN)
                     for column in range(columns)] for side in (0, 1))
@@ -111,8 +112,8 @@ def columns_in(canvas, drawn, columns):
 
 
 def heights_in(drawn, width, size, around):
-    """Heights of the rows, and the factor by which those of the plots were reduced to fit on a page; 1: not reduced.
-    around: what labels, titles and legends need."""
+    """Returns the heights of the rows, and the factor by which plots were made lower to fit on a page; 1: not lower.
+    around: the height of labels, titles and legends."""
     rows = [[(axes, panel) for cell, axes, panel in drawn if cell[0] == row] for row in range(size[0])]
     wanted = [max((panel_height(axes, panel, width, size) for axes, panel in row), default=0) for row in rows]
     fixed = [max((panel_height(axes, panel, width, size) for axes, panel in row if not is_flexible(panel)), default=0)
@@ -124,8 +125,8 @@ def heights_in(drawn, width, size, around):
 
 
 def arrange(canvas, drawn, size, columns, top_in):
-    """Rows are as high as their panels ask, and the canvas as high as the rows. columns: of columns_in(). Returns the
-    factor of heights_in(). (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
+    """Puts the panels in their places and sets the height of the canvas. columns: of columns_in(). Returns the factor
+    of heights_in(). (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
     left, right, inner = columns
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
     below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=PAD_IN)
@@ -162,7 +163,7 @@ def is_plot(panel):
 
 
 def repeats_below(at, cell):
-    """Whether the panel below has the same label and limits. at: axes and panel of each plot."""
+    """Returns whether the panel below has the same x label and limits. at: axes and panel of each plot."""
     axes, panel = at[cell]
     below = at.get((cell[0] + 1, cell[1]))
     same = below and below[0].get_xlabel() == axes.get_xlabel() and not panel.equal_aspect
@@ -195,13 +196,13 @@ def bars_of(panels, cells):
 
 
 def letter_of(cells, i):
-    """(a), (b), ... in the order of reading, then (aa), (ab), ...; a single panel has none."""
+    """Returns the letter of a panel in reading order: a, b, ..., z, aa, ab, ...; a single panel has none."""
     at = sorted(cells).index(cells[i])
     return ("" if at < 26 else chr(96 + at // 26)) + chr(97 + at % 26) if len(cells) > 1 else ""
 
 
 def draw_panels(figure, canvas, cells, size):
-    """The cell, axes and panel of each, without titles."""
+    """Draws the panels without titles. Returns the cell, the axes and the panel of each."""
     of_curve, drawn, (rows, columns) = looks(figure.panels), [], size
     about_in = canvas.get_figwidth() / columns - LABELS_IN
     label_in = min(plot_height(about_in, size), 0.95 * TALLEST_IN / rows - LABELS_IN) + 0.1
@@ -218,19 +219,19 @@ def draw_panels(figure, canvas, cells, size):
 
 
 def with_room_for_titles(columns, drawn, titles):
-    """Columns with a margin on the right if that spares titles of the last one a second line. titles: of each panel."""
+    """Makes the right margin wider if titles of the last column then fit in one line. titles: of each panel."""
     left, right, inner = columns
     count = len(left)
-    widest = max((text_width_in(title, TITLE) - inner for (cell, _, _), title in zip(drawn, titles) if cell[1] == count - 1),
-                 default=0)
-    if count == 1 or not right[-1] < PAD_IN + widest * count / (count - 1) < MARGIN_IN:
+    widths = [text_width_in(title, TITLE) for (cell, _, _), title in zip(drawn, titles) if cell[1] == count - 1]
+    more = (max(widths, default=0) - inner) * count / max(count - 1, 1)
+    if count == 1 or not right[-1] < PAD_IN + more < MARGIN_IN:
         return columns
-    more = widest * count / (count - 1)
     return left, [*right[:-1], right[-1] + more], inner - more / count
 
 
 def write_words(drawn, titles, columns):
-    """Titles, and labels below, in lines that fit. A title may be wider than its panel, up to the next."""
+    """Writes titles and wraps the labels below the panels. A title may be wider than its panel, up to the next
+    panel."""
     left, right, inner = columns
     for ((_, column), axes, panel), title in zip(drawn, titles):
         gap_in = right[column] + (left[column + 1] if column + 1 < len(left) else PAD_IN) - 2 * PAD_IN
@@ -238,7 +239,7 @@ def write_words(drawn, titles, columns):
 
 
 def composed(figure, width_in, with_heading):
-    """The canvas with everything in its place, and what arrange() returns."""
+    """Returns the canvas with everything in its place, and the result of arrange()."""
     cells = places(figure.panels)
     size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
     canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * size[0]), dpi=PNG_DPI)
@@ -251,8 +252,8 @@ def composed(figure, width_in, with_heading):
     write_words(drawn, titles, columns)
     heading = wrapped(figure.heading, width_in - 2 * PAD_IN, HEADING) if with_heading else ""
     top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
-    top_in += add_legends(canvas, [(cell, axes, room_above_in(panel)) for cell, axes, panel in drawn], columns[2], top_in,
-                          PAD_IN)
+    panels = [(cell, axes, room_above_in(panel)) for cell, axes, panel in drawn]
+    top_in += add_legends(canvas, panels, columns[2], top_in, PAD_IN)
     smaller = arrange(canvas, drawn, size, columns, top_in)
     canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
     align(drawn)

@@ -1,4 +1,6 @@
-"""Legends stand above the panels, so they cover no curve. What several panels have in common is said once, above all."""
+"""Legends stand above the panels, so they cover no curve. Entries that several panels have are written once, above
+all."""
+import itertools
 import math
 
 from matplotlib.colors import to_hex
@@ -7,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 
 from plotting.style import DASHES, TEXT_PT
-from plotting.wrapping import folded
+from plotting.wrapping import folded, text_width_in
 
 GAP_IN = 0.05  # between a legend and what is below it
 MARKER_IN = 0.45  # what an entry needs beside its words
@@ -29,7 +31,7 @@ def is_area(handle):
 
 
 def appearance(handle):
-    """Its colour, and a line style and a marker, empty where it has none."""
+    """Returns the colour, the line style and the marker of a handle; empty where it has none."""
     if isinstance(handle, Line2D):
         line, marker = handle.get_linestyle(), str(handle.get_marker())
         return to_hex(handle.get_color()), line.replace("None", ""), marker.replace("None", "")
@@ -38,8 +40,8 @@ def appearance(handle):
 
 
 def has_entry(shared, label, handle):
-    """Whether the entry says what the handle shows. A line with markers says it for lines without and for dots, and a line
-    for a thing in a picture that has its colour."""
+    """Returns whether the shared entry explains the handle too. A line with markers also explains lines without markers
+    and dots, and any entry explains a solid of its colour."""
     if label not in shared:
         return False
     (known, *styles), (own, *others) = appearance(shared[label]), appearance(handle)
@@ -48,13 +50,14 @@ def has_entry(shared, label, handle):
 
 
 def not_in(shared, one):
-    """The entries of a panel without those that are shared."""
+    """Returns the entries of a panel without those that are shared."""
     return {label: handle for label, handle in one.items() if not has_entry(shared, label, handle)}
 
 
 def shared_entries(every, has_columns):
-    """What is said once above all panels: entries that two panels have with the same look. Without columns of panels, only
-    if two panels have no other entries: else the first panel that has an entry says it for those below."""
+    """Returns the entries above all panels: those that two panels have with the same look. If the panels are in one
+    column, these are shared only if two panels have no other entries; else only the first panel has a repeated
+    entry."""
     common = {}
     for label in dict.fromkeys(label for one in every for label in one):
         handles = sorted((one[label] for one in every if label in one), key=lambda handle: appearance(handle).count(""))
@@ -67,7 +70,7 @@ def shared_entries(every, has_columns):
 
 
 def own_entries(every, shared):
-    """Of each panel, what neither the shared legend nor a panel before it says."""
+    """Returns the entries of each panel that neither the shared legend nor an earlier panel has."""
     own, said = [], dict(shared)
     for one in every:
         own.append(not_in(said, one))
@@ -76,21 +79,40 @@ def own_entries(every, shared):
 
 
 def by_rows(items, columns):
-    """The order in which a legend, which is filled column by column, has the items row by row."""
+    """Returns the items in the order in which a legend, which is filled column by column, shows them row by row."""
     return [items[i] for column in range(columns) for i in range(column, len(items), columns)]
 
 
+def width_of_columns(labels, columns):
+    """Returns the sum of the widths of the widest labels."""
+    rows = math.ceil(len(labels) / columns)
+    short = columns * rows - len(labels)  # the number of columns that have one label less
+    starts = [k * rows - max(0, k - (columns - short)) for k in range(columns + 1)]
+    lines = [label.split("\n") for label in labels]
+    return sum(max(text_width_in(line) for label in lines[a:b] for line in label) for a, b in zip(starts, starts[1:]))
+
+
+def in_order(labels, columns):
+    """Returns the labels in the order of the columns. Each group, such as `look-ahead, 1 mm` to `look-ahead, 3 mm`,
+    gets a row or a column. Without groups the upper of two rows is filled first, unless that is wider."""
+    rows, across = math.ceil(len(labels) / columns), by_rows(labels, columns)
+    groups = {len(list(group)) for _, group in itertools.groupby(label.split(", ")[0] for label in labels)}
+    if len(groups) == 1 and groups <= {rows, columns} - {1}:
+        return labels if groups == {rows} else across
+    is_narrow = width_of_columns(across, columns) < width_of_columns(labels, columns) + 0.1
+    return across if rows == 2 and len(labels) < 2 * columns and is_narrow else labels
+
+
 def fitted(owner, found, width_in, **options):
-    """A legend of as many columns as fit, all about equally full. Of two rows, the upper one is filled first, so the lower
-    one may be incomplete."""
+    """A legend of as many columns as fit, all about equally full."""
     is_short = all(isinstance(handle, Line2D) and handle.get_linestyle() == "None" for handle in found.values())
     options |= {"handlelength": 1.2} if is_short else {}
-    items = [(folded(label, width_in - MARKER_IN), handle) for label, handle in found.items()]
+    items = {folded(label, width_in - MARKER_IN): handle for label, handle in found.items()}
     renderer = owner.figure.canvas.get_renderer() if owner.figure else owner.canvas.get_renderer()
     for columns in range(len(items), 0, -1):
         columns = math.ceil(len(items) / math.ceil(len(items) / columns))
-        ordered = by_rows(items, columns) if len(items) < 2 * columns else items
-        labels, handles = zip(*ordered)
+        labels = in_order(list(items), columns)
+        handles = [items[label] for label in labels]
         legend = owner.legend(handles, labels, ncol=columns, borderaxespad=0, **options)
         if columns == 1 or legend.get_window_extent(renderer).width <= width_in * 72 * renderer.points_to_pixels(1):
             break
@@ -102,7 +124,7 @@ def fitted(owner, found, width_in, **options):
 
 
 def whole_dashes(line, handle):
-    """A handle begins with a whole dash, wherever that of the curve begins."""
+    """Lets the handle begin with a whole dash, even if the curve begins within one."""
     if dash := getattr(handle, "dash", 0):
         line.set_linestyle(DASHES[dash])
 
@@ -112,7 +134,7 @@ def height_in(legend):
 
 
 def add_panel_legend(axes, found, width_in, above_in):
-    """Between the panel and its title, which moves up. Returns its height. above_in: room for what stands directly above
+    """Adds a legend between the panel and its title. Returns its height. above_in: height of what stands directly above
     the panel."""
     above = ScaledTranslation(0, GAP_IN + above_in, axes.figure.dpi_scale_trans)
     return height_in(fitted(axes, found, width_in, loc="lower left", bbox_to_anchor=(0, 1),
@@ -120,15 +142,15 @@ def add_panel_legend(axes, found, width_in, above_in):
 
 
 def tallest(heights, cells):
-    """Index of the panel whose legend is a line or more higher than another of its row, which it would leave empty there;
-    None: there is no such panel."""
+    """Returns the index of the panel whose legend would leave an empty band above another panel of its row, because it
+    is higher by three lines, or by one if the other panel has no legend. None: there is no such panel."""
     low = {row: min(height for height, cell in zip(heights, cells) if cell[0] == row) for row, _ in cells}
-    above = [height - low[cell[0]] for height, cell in zip(heights, cells)]
-    return above.index(max(above)) if max(above) > 0.9 * LINE_IN else None
+    lines = [(height - low[cell[0]]) / LINE_IN - (2 if low[cell[0]] else 0) for height, cell in zip(heights, cells)]
+    return lines.index(max(lines)) if max(lines) > 0.9 else None
 
 
 def add_panel_legends(panels, shared, width_in):
-    """Each panel's own entries above it; those of a legend that is taller than others of its row are added to `shared`."""
+    """Adds the legend of each panel. Entries of a legend that is too tall for its row are added to `shared` instead."""
     own = own_entries([entries(axes) for _, axes, _ in panels], shared)
     heights = [add_panel_legend(axes, one, width_in, above_in) if one else 0.0
                for one, (_, axes, above_in) in zip(own, panels)]
@@ -147,8 +169,8 @@ def add_panel_legends(panels, shared, width_in):
 
 
 def add_legends(canvas, panels, width_in, top_in, pad_in):
-    """The legends of all panels; returns the height of the one above them all. panels: cell, axes, and what stands directly
-    above the axes, in inches. width_in: of a panel."""
+    """Adds all legends. Returns the height of the one above all panels. panels: cell, axes, and the height of what
+    stands directly above the axes. width_in: of a panel."""
     shared = shared_entries([entries(axes) for _, axes, _ in panels], any(cell[1] for cell, _, _ in panels))
     add_panel_legends(panels, shared, width_in)
     if not shared:

@@ -18,7 +18,7 @@ from plotting.units import shown_column
 
 FINER = 2  # pixels are drawn so much finer, then averaged
 LARGEST_PX = 1100  # a picture of one column has 1050: 300 dpi
-BAR_SHARE = 0.25  # of the width of a picture, that its scale bar may take
+BAR_SHARE = 0.25  # the largest share of the width of a picture that its scale bar takes
 EDGE = [matplotlib.patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
@@ -41,7 +41,7 @@ def colour_of(part):
 
 
 def colour_scale(column):
-    """What a colour bar shows: the column in the unit that is shown."""
+    """Returns the colours of the values of a column, for a colour bar."""
     return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*colour_range(column)), "viridis")
 
 
@@ -74,20 +74,21 @@ def picture(scene, width):
 
 
 def add_scale_bar(axes, scene):
-    """As long as it says at the distance of the target; what is nearer is larger."""
+    """Adds a bar whose length is true at the distance of the target. Nearer things appear larger."""
     longest = BAR_SHARE * scene.width
     decade = 10.0 ** math.floor(math.log10(longest))
     length = next(factor * decade for factor in (5, 2, 1) if factor * decade <= longest * (1 + 1e-9))
     x, y = 1 - 0.03 - length / scene.width, 0.035
     bar, = axes.plot([x, 0.97], [y, y], color="black", linewidth=1.6, solid_capstyle="butt", transform=axes.transAxes,
                      path_effects=EDGE)
-    bar.set_in_layout(False)
-    axes.annotate(f"{1000 * length:g} mm", (x + length / scene.width / 2, y), xycoords="axes fraction", xytext=(0, 2.5),
-                  textcoords="offset points", ha="center", va="bottom", path_effects=EDGE)
+    words = axes.annotate(f"{1000 * length:g} mm", (x + length / scene.width / 2, y), xycoords="axes fraction",
+                          xytext=(0, 2.5), textcoords="offset points", ha="center", va="bottom", path_effects=EDGE)
+    bar.set_in_layout(False), words.set_in_layout(False)
 
 
 def handle(part):
-    """Of the legend: points are a dot, segments a line, and a solid is an area. Points of several colours have their median."""
+    """Returns an entry of the legend: a dot for points, a line for segments, an area for a solid. Points of several
+    colours are shown in their median colour."""
     colour, label = colour_of(part), typeset(part.label)
     if part.kind == "points":
         own = colours_of_points(part, 1)
@@ -99,7 +100,7 @@ def handle(part):
 
 
 def draw_scene(axes, panel, width_in, add_colour_bar):
-    """With the names of its parts as entries of a legend. add_colour_bar: of plotting.drawing."""
+    """Draws the picture; the names of its parts become entries of a legend. add_colour_bar: of plotting.drawing."""
     pixels = picture(panel.scene, min(LARGEST_PX, int(PNG_DPI * width_in)))
     axes.imshow(pixels, interpolation="antialiased", extent=(0, 1, 0, panel.scene.proportion))
     axes.set_anchor("SW")

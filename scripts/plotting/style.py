@@ -29,7 +29,7 @@ RC = {
 COLOURS = {"hip": "#c08800", "proxy": "#146bab", "truth": "#3691ba", "force": "#b34c00", "normal": "#00a67c",
            "points": "#81939f", "estimate": "#822055", "limit": "#000000", "fixture": "#452700", "measured": "#1b2a83",
            "region": "#8a3ffc",
-          "rose": "#e43054", "olive": "#546030", "lavender": "#8478f0"}  # these three have no meaning of their own
+          "rose": "#e43054", "olive": "#546030", "lavender": "#8478f0"}  # the last three have no meaning
 COMPONENTS = {"x": "#a81e3c", "y": "#4f9a2a", "z": "#4a55d8"}
 SERIES = ("measured", "rose", "olive", "lavender", "points", "fixture")  # for curves without a known meaning
 NOTHING_COLOUR = "#d4d4d4"  # cells without a value
@@ -42,13 +42,13 @@ OF_LABEL = (
     (r"points\b", "points"),
     (r"normal$", "normal"),
     (r"true |truth|surface$|walls$|exact$", "truth"),
-    (r"bound|limit|.*\bprinted\b|r_1 f_c|r_f \+ r_c$|\d+ \(\d|equal$|assigned\b", "limit"),
+    (r"bounds?\b|limit|.*\bprinted\b|r_1 f_c|r_f \+ r_c$|\d+ \(\d|equal$|assigned\b", "limit"),
     (r".*refitted|with scatter|predicted|mean error of v_hat|its standard deviation|derived$|95 % confidence", "estimate"),
     (r"measured|observed|felt$|maximum of|mean$|half survive|ends of the", "measured"),
     (r"did not pop through", "points"), (r"yellow\b", "hip"),
     (r".*region", "fixture"),
 )
-BOUND_DASH = 3  # of DASHES: a bound differs from a solid line of another dark colour
+BOUND_DASH = 3  # index of the dash of a bound, which would look like a solid line of another dark colour
 FORMULA = re.compile(r".*\b(derived|predicted|refitted|with scatter)\b")
 OF_QUANTITY = ((r".*\bforce\b", "force"), (r".*\btorque\b", "fixture"), (r".*\b(proxy|tool|contact point)\b", "proxy"),
                (r".*\bHIP\b", "hip"), (r".+", "measured"))
@@ -110,7 +110,7 @@ def base(label):
 
 
 def variant(label):
-    """What distinguishes curves of one base: `1 mm` for `look-ahead, 1 mm`; empty: nothing."""
+    """Returns the words that distinguish curves of one base: `1 mm` for `look-ahead, 1 mm`; may be empty."""
     return ", ".join(parts_of(label)[1:])
 
 
@@ -119,7 +119,8 @@ def meaning(words, table):
 
 
 def is_formula(label):
-    """Whether a curve is a formula: its samples are no measurements. A curve without a label has another key."""
+    """Returns whether the label is that of a formula, whose samples are no measurements. A key that is no label is
+    none."""
     if not isinstance(label, str) or FORMULA.match(label):
         return isinstance(label, str)
     return not method_look(base(label)) and meaning(base(label), OF_LABEL) in ("limit", "truth")
@@ -138,7 +139,7 @@ def known_look(curve):
         name = "measured" if label.startswith("m") else "estimate"
     else:
         name = meaning(base(label), OF_LABEL)
-    return Look(COLOURS[name], BOUND_DASH if label.startswith("bound") else 0) if name else None
+    return Look(COLOURS[name], BOUND_DASH if re.match(r"bounds?\b", label) else 0) if name else None
 
 
 def curve_key(curve, i):
@@ -152,8 +153,8 @@ def kind(curve):
 
 
 def colour_of(curves, known, series):
-    """A look for each curve of a panel, its dash and marker not final. known: looks by curve_key. series: looks by base,
-    for the whole figure."""
+    """Returns a look for each curve of a panel; dash and marker are not final. known: looks by curve_key. series: looks
+    by base, for the whole figure."""
     found = []
     for i, curve in reversed(list(enumerate(curves))):  # an interval belongs to the curve that follows it
         look = known_look(curve)
@@ -167,7 +168,7 @@ def colour_of(curves, known, series):
 
 
 def series_looks(panels):
-    """Looks for curves without a known meaning: first the colours that no other curve of the figure has."""
+    """Returns looks for curves without a known meaning. Colours that no other curve of the figure has come first."""
     curves = [(i, curve) for panel in panels for i, curve in enumerate(panel.curves)]
     taken = {look.colour for _, curve in curves if (look := known_look(curve))}
     keys = dict.fromkeys(base(curve.label) if curve.label else curve_key(curve, i) for i, curve in curves
@@ -178,7 +179,7 @@ def series_looks(panels):
 
 
 def first_free(order, used):
-    """The first that is not used, or else the first."""
+    """Returns the first value that is not used, or the first value if all are used."""
     order = list(order)
     return next((one for one in order if one not in used), order[0])
 
@@ -188,9 +189,9 @@ def in_turn(first, count):
 
 
 def distinct_look(look, curve, beside):
-    """The look with the first dash that no line of its colour has and the first marker that no dots of its colour have.
-    beside: looks in the same panels, by curve_key. Curves of one variant, `look-ahead, 1 mm` and `voxels, 1 mm`, have one
-    dash, and lines of one base one marker."""
+    """Returns the look with the first dash that no line of its colour has, or the first marker that no dots of it have.
+    beside: looks in the same panels, by curve_key. Curves of one variant, `look-ahead, 1 mm` and `voxels, 1 mm`, have
+    one dash, and lines of one base one marker."""
     lines = {label: other for (label, which), other in beside.items() if which == "line"}
     if curve.style in LINES:
         first = max(look.dash, int(curve.style == "dashed"))
@@ -199,15 +200,16 @@ def distinct_look(look, curve, beside):
         used = {other.dash for other in lines.values() if other.colour == look.colour}
         return dataclasses.replace(look, dash=first_free([*alike, *in_turn(first, len(DASHES))], used),
                                    marker=line_marker(look, curve, lines))
-    used = {other.marker for (_, which), other in beside.items() if other.colour == look.colour and which == kind(curve)}
-    used |= {other.marker for label, other in lines.items() if other.colour == look.colour and not is_formula(label)}
+    used = {other.marker for (label, which), other in beside.items() if other.colour == look.colour and
+            (which == kind(curve) or which == "line" and not is_formula(label))}
     return dataclasses.replace(look, marker=first_free(in_turn(look.marker, len(MARKERS)), used))
 
 
 def line_marker(look, curve, lines):
-    """That of the method, or of a line of the same base, or one that no other line has."""
-    same = [other.marker for label, other in lines.items() if isinstance(label, str) and base(label) == base(curve.label)]
-    if same or method_look(base(curve.label)):
+    """Returns the marker of the method or of a line of the same base, else one that no other line has."""
+    own = base(curve.label)
+    same = [other.marker for label, other in lines.items() if isinstance(label, str) and base(label) == own]
+    if same or method_look(own):
         return same[0] if same else look.marker
     return first_free(in_turn(look.marker, len(MARKERS)), {other.marker for other in lines.values()})
 
@@ -225,14 +227,15 @@ def looks(panels):
 
 
 def neighbours(panels, key):
-    """Keys of the curves that share a panel with a curve, in the order of the panels."""
+    """Returns the keys of the curves that share a panel with a curve, in the order of the panels."""
     keys = [[curve_key(curve, i) for i, curve in enumerate(panel.curves)] for panel in panels]
     return dict.fromkeys(other for group in keys if key in group for other in group if other != key)
 
 
 def looks_in_panel(panel, found):
-    """The looks of the curves of one panel. Lines that coincide can be distinguished: those of one dash begin at different
-    phases, and a dashed line has an edge above a solid line of its colour. found: as looks() returns it."""
+    """Returns the looks of the curves of one panel. Lines of one dash begin at different phases, and a dashed line
+    above a solid line of its colour has an edge, so lines that coincide can be distinguished. found: as looks() returns
+    it."""
     own = [found.get(curve_key(curve, i)) for i, curve in enumerate(panel.curves)]
     lines = [(i, own[i]) for i, curve in enumerate(panel.curves) if own[i] and curve.style in LINES]
     solid = {look.colour for _, look in lines if not look.dash}

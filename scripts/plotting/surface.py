@@ -29,10 +29,11 @@ def thinned(count):
 
 
 def few_ticks(low, high):
-    """Ticks of a short axis at round values, and their words: there is room for those of the first and the last only."""
+    """Returns round ticks of a short axis, and their labels. There is room for the first and the last label only."""
     ticks = matplotlib.ticker.MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high)
     ticks = ticks[(ticks >= low) & (ticks <= high)]
-    return ticks, [f"{tick:g}".replace("-", "\u2212") if i in (0, len(ticks) - 1) else "" for i, tick in enumerate(ticks)]
+    labels = [f"{tick:g}".replace("-", "\u2212") for tick in ticks]
+    return ticks, [*labels[:1], *("" for _ in labels[1:-1]), *labels[1:][-1:]]
 
 
 def draw_surface(axes, panel, axis_label):
@@ -65,7 +66,6 @@ def draw_surface(axes, panel, axis_label):
 
 
 def add_title(axes):
-    """Moves the title above the left end of the panel, of which a view in perspective takes only the middle. The panel has
-    its place."""
+    """Moves the title above the left end of the panel, because a view in perspective takes only the middle of it."""
     whole, middle = axes.get_position(original=True), axes.get_position()
     axes.set_title(axes.get_title(loc="left"), loc="left", x=(whole.x0 - middle.x0) / middle.width)

@@ -6,20 +6,21 @@ import re
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
 SYMBOL = re.compile(rf"\b({'|'.join(GREEK)}|[A-Za-z])_([A-Za-z0-9]{{1,3}})\b")
 POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
-VARIABLE = re.compile(r"(?<![\w\\{}_^$#&=-])(?:([xyzhvu])|(M)(?= of\b))(?![\w$-])")  # no letter of a unit is among these
-SYMBOL_WITH_POWER, VARIABLE_WITH_POWER = (re.compile(rf"{one.pattern}(?:{POWER.pattern})?") for one in (SYMBOL, VARIABLE))
+VARIABLE = re.compile(r"(?<![\w\\{}_^$#&=-])(?:([xyzhvu])|(M)(?= of\b))(?![\w$-])")  # no unit has these letters
+SYMBOL_WITH_POWER = re.compile(rf"{SYMBOL.pattern}(?:{POWER.pattern})?")
+VARIABLE_WITH_POWER = re.compile(rf"{VARIABLE.pattern}(?:{POWER.pattern})?")
 TIMES = re.compile(r"(?<=[\w)])(?<!\babout)(?<!\balong)(?<!\b[aioO]n)(?<!\bof)(?<!\b[aiA]t) x (?=[\w(])")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
 UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
 LENGTH = re.compile(r"(?<![\w.])((?:\d+(?:\.\d+)?(?: to | or | x ))*\d+(?:\.\d+)?) (m|cm|micrometres|um)(?![\w/^·])")
 DEGREES = re.compile(r"(?<=\d) deg\b")
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
-MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # how many there are in a unit
+MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # in each unit
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
 
 def superscript(match):
-    """The power after a symbol or variable, which are two groups of the match."""
+    """Returns the power after a symbol or variable as mathematics; it is group 3 or 4 of the match."""
     return f"^{{{match[3] or match[4]}}}" if match[3] or match[4] else ""
 
 
@@ -59,7 +60,7 @@ def typeset_html(words):
 
 
 def in_mm(words):
-    """0.025 m as 25 mm, and 3 cm as 30 mm. Lengths of 1 m and more stay."""
+    """Writes 0.025 m as 25 mm, and 3 cm as 30 mm. Lengths of 1 m and more are not changed."""
     def shown(match):
         numbers = [float(number) for number in NUMBER.findall(match[1])]
         if match[2] == "m" and max(numbers) >= 1:

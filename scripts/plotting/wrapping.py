@@ -10,7 +10,7 @@ from matplotlib.font_manager import FontProperties
 from plotting.style import HEADING_PT, PNG_DPI, TEXT_PT
 from plotting.typeset import typeset
 
-NARROWEST_IN = 0.5  # a line is never asked to be narrower
+NARROWEST_IN = 0.5  # the least width of a line
 TITLE, HEADING = ("bold", TEXT_PT), ("normal", HEADING_PT)  # weight and size
 TEXT = ("normal", TEXT_PT)
 
@@ -22,7 +22,7 @@ def renderer():
 
 @functools.lru_cache(maxsize=10000)
 def text_width_in(words, font=TEXT):
-    """Width of words that typeset() returned."""
+    """Returns the width of words that typeset() returned."""
     weight, size = font
     is_math = is_math_text(words)
     shown = words if is_math else words.replace(r"\$", "$")
