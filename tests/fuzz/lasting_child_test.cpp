@@ -8,7 +8,7 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "runners/experiment/tool_files/mesh_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/support/test_files.h"
 

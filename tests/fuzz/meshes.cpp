@@ -1,6 +1,6 @@
 // Mesh files of each kind, read in a child process with limits.
-#include "core/dissertation/tool/shape/mesh_corners.h"
-#include "runners/experiment/tool_files/mesh_file.h"
+#include "core/mesh/mesh_corners.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/lasting_child.h"
 #include "tests/fuzz/shared/scratch_file.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

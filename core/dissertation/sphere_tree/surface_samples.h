@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

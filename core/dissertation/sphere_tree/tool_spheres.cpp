@@ -7,8 +7,8 @@
 
 #include "core/dissertation/sphere_tree/sphere_cover.h"
 #include "core/dissertation/sphere_tree/surface_samples.h"
-#include "core/dissertation/tool/shape/triangle_tree.h"
 #include "core/geometry/bounding_box.h"
+#include "core/mesh/triangle_tree.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

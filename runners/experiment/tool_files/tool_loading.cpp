@@ -4,8 +4,8 @@
 
 #include "analysis/storage/sha256.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/provenance/cache_folder.h"
-#include "runners/experiment/tool_files/mesh_file.h"
 #include "runners/experiment/tool_files/spheres_cache.h"
 #include "runners/experiment/tool_files/tool_cache.h"
 

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "core/dissertation/tool/contact/touch_finder.h"
-#include "core/dissertation/tool/shape/triangle_tree.h"
 #include "core/kernels/isa.h"
+#include "core/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_tool.h"
 #include "tests/benchmarks/peers/voxmap_pointshell.h"

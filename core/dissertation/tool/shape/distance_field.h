@@ -1,8 +1,8 @@
 // The signed distance to a mesh at the nodes of a grid.
 #pragma once
 
-#include "core/dissertation/tool/shape/triangle_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/mesh/triangle_tree.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

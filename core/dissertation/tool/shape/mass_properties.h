@@ -1,8 +1,8 @@
 // Volume, centre of mass and inertia of a solid of uniform density.
 #pragma once
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

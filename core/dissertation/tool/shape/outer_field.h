@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/triangle_mesh.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

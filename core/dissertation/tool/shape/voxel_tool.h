@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/shape/mesh_check.h"
-#include "core/dissertation/tool/shape/mesh_repair.h"
-#include "core/dissertation/tool/shape/triangle_mesh.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_repair.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

@@ -1,9 +1,9 @@
 // A mesh as voxels of three values, 6.2.2.
 #pragma once
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
-#include "core/dissertation/tool/shape/triangle_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/mesh/triangle_tree.h"
 
 namespace remote_touch {
 

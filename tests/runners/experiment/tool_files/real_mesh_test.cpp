@@ -1,9 +1,9 @@
 // Meshes that are kept outside of the repository; the tests are skipped if they are missing.
 #include <gtest/gtest.h>
 
-#include "core/dissertation/tool/shape/mesh_check.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "runners/experiment/tool_files/mesh_file.h"
+#include "core/mesh/mesh_check.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::real_mesh_test {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/dissertation/tool/shape/marching_tetrahedra.h"
-#include "core/dissertation/tool/shape/mesh_check.h"
+#include "core/mesh/mesh_check.h"
 #include "core/parameters/input_error.h"
 #include "tests/support/meshes.h"
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/mesh_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -15,13 +15,13 @@
 
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/packed_values.h"
-#include "core/dissertation/tool/shape/mesh_corners.h"
-#include "core/dissertation/tool/shape/polygon_triangles.h"
+#include "core/mesh/mesh_corners.h"
+#include "core/mesh/polygon_triangles.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/tool_files/obj_text.h"
-#include "runners/experiment/tool_files/ply_body.h"
-#include "runners/experiment/tool_files/ply_header.h"
-#include "runners/experiment/tool_files/stl_text.h"
+#include "runners/experiment/mesh_files/obj_text.h"
+#include "runners/experiment/mesh_files/ply_body.h"
+#include "runners/experiment/mesh_files/ply_header.h"
+#include "runners/experiment/mesh_files/stl_text.h"
 
 namespace remote_touch {
 

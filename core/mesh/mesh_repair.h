@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

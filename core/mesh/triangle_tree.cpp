@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/triangle_tree.h"
+#include "core/mesh/triangle_tree.h"
 
 #include <algorithm>
 #include <cmath>

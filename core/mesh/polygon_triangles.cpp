@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/polygon_triangles.h"
+#include "core/mesh/polygon_triangles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/mesh_repair.h"
+#include "core/mesh/mesh_repair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "core/dissertation/tool/shape/mesh_check.h"
 #include "core/geometry/bounding_box.h"
+#include "core/mesh/mesh_check.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/ply_header.h"
+#include "runners/experiment/mesh_files/ply_header.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/mesh_check.h"
+#include "core/mesh/mesh_check.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/ply_body.h"
+#include "runners/experiment/mesh_files/ply_body.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "runners/experiment/tool_files/mesh_words.h"
-#include "runners/experiment/tool_files/ply_header.h"
+#include "runners/experiment/mesh_files/mesh_words.h"
+#include "runners/experiment/mesh_files/ply_header.h"
 
 namespace remote_touch {
 

@@ -1,5 +1,5 @@
 // Meshes from files: what the formats allow, and what is refused.
-#include "runners/experiment/tool_files/mesh_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/dissertation/tool/shape/mesh_check.h"
+#include "core/mesh/mesh_check.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/mesh_words.h"
+#include "runners/experiment/mesh_files/mesh_words.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,11 @@
-#include "core/dissertation/tool/shape/mesh_check.h"
+#include "core/mesh/mesh_check.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <utility>
 
-#include "core/dissertation/tool/shape/mesh_repair.h"
+#include "core/mesh/mesh_repair.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

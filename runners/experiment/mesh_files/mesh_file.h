@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "analysis/storage/child_process.h"
-#include "core/dissertation/tool/shape/triangle_mesh.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/stl_text.h"
+#include "runners/experiment/mesh_files/stl_text.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "runners/experiment/tool_files/mesh_words.h"
+#include "runners/experiment/mesh_files/mesh_words.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/obj_text.h"
+#include "runners/experiment/mesh_files/obj_text.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/experiment/tool_files/mesh_words.h"
+#include "runners/experiment/mesh_files/mesh_words.h"
 
 namespace remote_touch {
 
