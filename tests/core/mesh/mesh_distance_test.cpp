@@ -1,0 +1,312 @@
+#include "core/mesh/mesh_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_tree.h"
+#include "tests/core/mesh/mesh_shapes.h"
+
+namespace remote_touch::mesh_distance_test {
+namespace {
+
+using namespace mesh_shapes;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class RandomVectors {
+ public:
+  explicit RandomVectors(unsigned seed) : random_(seed) {}
+  Vec3 in_box(const BoundingBox& box) {
+    std::uniform_real_distribution<double> any(-0.7, 0.7);
+    return box.center() + box.sizes().cwiseProduct(Vec3(any(random_), any(random_), any(random_)));
+  }
+  Vec3 direction() {
+    std::normal_distribution<double> normal;
+    return Vec3(normal(random_), normal(random_), normal(random_)).normalized();
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+// The references go over all triangles: the distance to each, and the sum of the solid angles, by which the
+// inside of a closed mesh is known without any normal.
+void expect_right_at(const TriangleMesh& mesh, const MeshDistance& surface, const Vec3& p,
+                     bool closed = true) {
+  const auto nearest = surface.nearest(p, kInfinity);
+  ASSERT_TRUE(nearest);
+  const double expected = meshes::distance(mesh, p), rounding = 1e-14 * (1 + p.norm());
+  ASSERT_NEAR(std::abs(nearest->distance_m), expected, rounding) << p.transpose();
+  ASSERT_NEAR((p - nearest->point).norm(), expected, rounding) << p.transpose();
+  ASSERT_LT(meshes::distance(mesh, nearest->point), rounding) << p.transpose();
+  ASSERT_NEAR(nearest->normal.norm(), 1, 1e-15);
+  if (!closed) return;
+  ASSERT_FALSE(nearest->on_border);
+  if (expected < 1e-6) return;
+  ASSERT_EQ(nearest->distance_m<0, meshes::winding(mesh, p)> 0.5) << p.transpose();
+}
+
+// Positions all around the mesh, and others close to a vertex or an edge.
+void expect_right_around(const TriangleMesh& mesh, const MeshDistance& surface) {
+  ASSERT_TRUE(surface.is_closed());
+  const BoundingBox box = bounding_box(mesh.vertices);
+  const double size = box.sizes().maxCoeff();
+  RandomVectors random(11);
+  for (int i = 0; i < 400 && !testing::Test::HasFatalFailure(); ++i)
+    expect_right_at(mesh, surface, random.in_box(box));
+  const std::size_t step = 1 + mesh.triangles.size() / 100;
+  for (std::size_t t = 0; t < mesh.triangles.size() && !testing::Test::HasFatalFailure(); t += step)
+    for (int i = 0; i < 3; ++i) {
+      const Vec3& corner = mesh.vertices[mesh.triangles[t][i]];
+      const Vec3 middle = (corner + mesh.vertices[mesh.triangles[t][(i + 1) % 3]]) / 2;
+      for (const double away : {0.1 * size, 1e-3 * size, 1e-5 * size}) {
+        expect_right_at(mesh, surface, corner + away * random.direction());
+        expect_right_at(mesh, surface, middle + away * random.direction());
+      }
+    }
+}
+
+void expect_right(const TriangleMesh& mesh, const std::string& what) {
+  SCOPED_TRACE(what);
+  ASSERT_TRUE(check_mesh(mesh).closed()) << text(check_mesh(mesh));
+  ASSERT_FALSE(check_mesh(mesh).inverted());
+  expect_right_around(mesh, MeshDistance(mesh));
+}
+
+TEST(MeshDistance, IsThatOfBruteForce) {
+  expect_right(box_mesh({2, 3, 4}, {1, 1, 1}), "a box");
+  expect_right(meshes::tetrahedron({0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0}, {0.1, 0.3, 1}), "a tetrahedron");
+  expect_right(prism(kL, 1), "an L");
+  expect_right(torus(24, 12), "a torus");
+  expect_right(rough_ball(15, 20, 0.01), "a ball");
+  expect_right(rough_ball(15, 20, 0.6), "a rough ball");
+}
+
+TEST(MeshDistance, IsThatOfBruteForceAtSharpEdgesAndVertices) {
+  expect_right(pyramid(kSquare, {0, 0, 1}), "a spike");
+  expect_right(pyramid(divided_square(), {0, 0, 0.3}), "a spike with a divided side");
+  expect_right(prism({{0, 0, 0}, {1, -0.01, 0}, {1, 0.01, 0}}, 1), "a wedge");
+  expect_right(prism({{0, 0, 0}, {2, 0, 0}, {1, 0.05, 0}, {0, 2, 0}}, 1), "a prism with a notch");
+  expect_right(meshes::moved(rough_ball(9, 9, 0.6), Vec3(1, 1, 0.02).asDiagonal(), {0, 0, 0}), "a flat ball");
+}
+
+TEST(MeshDistance, IsTheClosedFormForABox) {
+  const Vec3 half(0.02, 0.01, 0.005);
+  const MeshDistance surface(box_mesh(2 * half));
+  RandomVectors random(2);
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p = random.in_box(BoundingBox(-2 * half, 2 * half)), q = p.cwiseAbs() - half;
+    const double expected = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+    const auto nearest = surface.nearest(p, 1);
+    ASSERT_TRUE(nearest);
+    ASSERT_NEAR(nearest->distance_m, expected, 1e-16) << p.transpose();
+  }
+}
+
+// Positions near the apex of a pyramid that are outside, but behind one of its faces: the normal of that face
+// gives the wrong sign. Where one side has many faces, so does the mean that is not weighted by angles.
+TEST(MeshDistance, HasTheRightSignWhereSimplerNormalsFail) {
+  const Vec3 apex(0, 0, 0.3);
+  const TriangleMesh mesh = pyramid(divided_square(), apex);
+  const MeshDistance surface(mesh);
+  const auto end = static_cast<int>(mesh.vertices.size()) - 1;
+  std::vector<Vec3> normals;
+  Vec3 mean = Vec3::Zero();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if (c != end) continue;
+    normals.push_back((mesh.vertices[b] - mesh.vertices[a]).cross(apex - mesh.vertices[a]).normalized());
+    mean += normals.back();
+  }
+  ASSERT_EQ(normals.size(), 23u);
+  RandomVectors random(3);
+  int behind_a_face = 0, behind_the_mean = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = apex + 0.01 * random.direction();
+    const auto nearest = surface.nearest(p, 1);
+    ASSERT_TRUE(nearest);
+    if (nearest->point != apex) continue;
+    ASSERT_GT(meshes::winding(mesh, p), -0.5);
+    ASSERT_LT(meshes::winding(mesh, p), 0.5);
+    ASSERT_GT(nearest->distance_m, 0) << p.transpose();
+    const auto behind = [&](const Vec3& normal) { return normal.dot(p - apex) < 0; };
+    behind_a_face += std::any_of(normals.begin(), normals.end(), behind);
+    behind_the_mean += behind(mean);
+  }
+  EXPECT_GT(behind_a_face, 100);
+  EXPECT_GT(behind_the_mean, 10);
+}
+
+// Positions on the surface itself, and those that several faces are equally near to.
+TEST(MeshDistance, IsRightOnVerticesEdgesAndPlanesOfSymmetry) {
+  const TriangleMesh body = prism(kL, 1);
+  const MeshDistance surface(body);
+  for (const Vec3& v : body.vertices) {
+    const auto nearest = surface.nearest(v, 1);
+    ASSERT_TRUE(nearest);
+    EXPECT_EQ(nearest->distance_m, 0);
+    EXPECT_EQ(nearest->point, v);
+    EXPECT_NEAR(nearest->normal.norm(), 1, 1e-15);
+  }
+  EXPECT_LT((surface.nearest({1, 1, 0.5}, 1)->normal - Vec3(1, 1, 0).normalized()).norm(), 1e-15);
+  EXPECT_LT((surface.nearest({0, 0, 0}, 1)->normal - Vec3(-1, -1, -1).normalized()).norm(), 1e-15);
+  for (double x = -1; x <= 4; x += 0.25)
+    for (double y = -1; y <= 3; y += 0.25)
+      for (double z = -1; z <= 2; z += 0.25) {
+        const Vec3 p(x, y, z);
+        expect_right_at(body, surface, p);
+        const double to_low = surface.nearest(p, kInfinity)->distance_m;
+        const bool inside = x > 0 && y > 0 && z > 0 && z < 1 && ((x < 3 && y < 1) || (x < 1 && y < 2));
+        ASSERT_EQ(to_low < 0, inside) << p.transpose();
+      }
+}
+
+TEST(MeshDistance, IsPositiveInAHollowAndNegativeInItsWall) {
+  const TriangleMesh hollow =
+      meshes::together(box_mesh({4, 4, 4}), meshes::inside_out(rough_ball(9, 12, 0.3)));
+  expect_right(hollow, "a box with a hollow");
+  const MeshDistance surface(hollow);
+  EXPECT_GT(surface.nearest({0, 0, 0}, 2)->distance_m, 0.5);
+  EXPECT_DOUBLE_EQ(surface.nearest({1.75, 0, 1.5}, 2)->distance_m, -0.25);
+}
+
+// Four faces meet at the edge, so check_mesh() does not count the surface as closed. Nevertheless it bounds a
+// solid, and the sum of the solid angles is the reference there, too.
+TEST(MeshDistance, HasTheRightSignWherePartsTouchAlongAnEdge) {
+  const TriangleMesh boxes = boxes_at_an_edge();
+  EXPECT_EQ(text(check_mesh(boxes)), "not closed: 1 non-manifold edge (1 part, 24 triangles)");
+  expect_right_around(boxes, MeshDistance(boxes));
+  // The first prism has a sharp edge on the z axis, and the second one an obtuse one.
+  const TriangleMesh sharp = prism({{0, 0, 0}, {1, -0.1, 0}, {1, 0.1, 0}}, 1);
+  const TriangleMesh obtuse = prism({{0, 0, 0}, {-0.1, 1, 0}, {-1, 0, 0}, {-0.1, -1, 0}}, 1);
+  const TriangleMesh both = meshes::together(sharp, obtuse);
+  expect_right_around(both, MeshDistance(both));
+  EXPECT_EQ(check_mesh({MeshDistance(both).vertices(), MeshDistance(both).triangles()}).non_manifold_edges,
+            1);
+}
+
+// A triangle on an edge of the box bounds no volume. It is left out where it is small; a large one makes the
+// side unknown near it.
+TEST(MeshDistance, IsClosedInSpiteOfASmallFin) {
+  for (const double height : {1e-4, 0.1}) {
+    TriangleMesh mesh = box_mesh({1, 1, 1});
+    const auto [a, b, c] = mesh.triangles.front();
+    const Vec3 middle = (mesh.vertices[a] + mesh.vertices[b]) / 2;
+    mesh.vertices.push_back((1 + height) * middle);
+    mesh.triangles.push_back({a, b, 8});
+    const MeshDistance surface(mesh);
+    EXPECT_EQ(surface.is_closed(), height < 1e-3);
+    if (surface.is_closed()) expect_right_around(box_mesh({1, 1, 1}), surface);
+    EXPECT_EQ(surface.nearest(2 * middle, 1)->on_border, !surface.is_closed());
+  }
+  EXPECT_FALSE(MeshDistance(Sheet(2, 0).mesh).is_closed());
+}
+
+TEST(MeshDistance, UsesTheFirstOfEquallyNearFaces) {
+  TriangleMesh box = box_mesh({2, 2, 2});
+  for (int turn = 0; turn < 12; ++turn) {
+    const auto& [a, b, c] = box.triangles.front();
+    const Vec3 normal =
+        (box.vertices[b] - box.vertices[a]).cross(box.vertices[c] - box.vertices[a]).normalized();
+    EXPECT_EQ(MeshDistance(box).nearest({0, 0, 0}, 2)->normal, normal) << turn;
+    std::rotate(box.triangles.begin(), box.triangles.begin() + 1, box.triangles.end());
+  }
+}
+
+TEST(MeshDistance, IsNotKnownBeyondItsReachAndDoesNotDependOnIt) {
+  const TriangleMesh ball = rough_ball(15, 20, 0.3);
+  const MeshDistance surface(ball), other(ball);
+  RandomVectors random(4);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = random.in_box(bounding_box(ball.vertices));
+    const auto expected = surface.nearest(p, kInfinity);
+    const double distance_m = std::abs(expected->distance_m);
+    EXPECT_FALSE(surface.nearest(p, distance_m));
+    EXPECT_FALSE(surface.nearest(p, 0.9 * distance_m));
+    for (const double reach_m : {std::nextafter(distance_m, 1e9), 1.1 * distance_m, 1e6}) {
+      const auto same = other.nearest(p, reach_m);
+      ASSERT_TRUE(same);
+      EXPECT_EQ(same->distance_m, expected->distance_m);
+      EXPECT_EQ(same->point, expected->point);
+      EXPECT_EQ(same->normal, expected->normal);
+    }
+  }
+  for (const double reach_m : {0.0, -1.0, std::nan("")}) EXPECT_FALSE(surface.nearest({0, 0, 2}, reach_m));
+  for (const double x : {std::nan(""), kInfinity, -kInfinity, 1e200})
+    EXPECT_FALSE(surface.nearest({0, x, 0}, kInfinity)) << x;
+}
+
+TEST(MeshDistance, OfASheetIsKnownOnBothSidesButNotBeyondItsBorder) {
+  const Sheet sheet(8, 0.1);
+  for (const TriangleMesh& mesh : {sheet.mesh, loose_triangles(sheet.mesh)}) {
+    const MeshDistance surface(mesh);
+    EXPECT_EQ(surface.vertices().size(), 81u);
+    RandomVectors random(5);
+    int above = 0, below = 0, beyond = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p = random.in_box(BoundingBox(Vec3(0, 0, -0.2), Vec3(1, 1, 0.3)));
+      expect_right_at(sheet.mesh, surface, p, false);
+      const auto nearest = surface.nearest(p, kInfinity);
+      const double x = nearest->point.x(), y = nearest->point.y();
+      ASSERT_EQ(nearest->on_border, x == 0 || x == 1 || y == 0 || y == 1) << p.transpose();
+      beyond += nearest->on_border;
+      if (nearest->on_border || p.x() < 0 || p.x() > 1 || p.y() < 0 || p.y() > 1) continue;
+      const bool is_above = p.z() > sheet.height_at(p.x(), p.y());
+      ASSERT_EQ(nearest->distance_m > 0, is_above) << p.transpose();
+      above += is_above, below += !is_above;
+    }
+    EXPECT_GT(above, 200);
+    EXPECT_GT(below, 200);
+    EXPECT_GT(beyond, 200);
+  }
+}
+
+// If such triangles were not joined, the sharp edge would have a single face, whose normal gives the wrong
+// sign.
+TEST(MeshDistance, HasTheRightSignAtSharpEdgesWhoseTrianglesDoNotMeetNeatly) {
+  const TriangleMesh wedge = prism({{0, 0, 0}, {1, -0.05, 0}, {1, 0.05, 0}}, 1);
+  const TriangleMesh loose = loose_triangles(wedge);
+  const TriangleMesh divided = with_divided_side(wedge, 0, 3, {{0, 0, 0.25}, {0, 0, 0.5}, {0, 0, 0.75}});
+  for (const TriangleMesh& mesh : {loose, divided}) {
+    const MeshDistance surface(mesh);
+    RandomVectors random(6);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 on_edge(0, 0, 0.25 * (i % 5));
+      expect_right_at(wedge, surface, on_edge + 0.2 * random.direction());
+      expect_right_at(wedge, surface, on_edge + 0.001 * random.direction());
+    }
+  }
+}
+
+TEST(MeshDistance, RejectsAMeshWithoutArea) {
+  const TriangleMesh line{{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}}, {{0, 1, 2}, {1, 1, 2}}};
+  EXPECT_THROW(MeshDistance{line}, std::invalid_argument);
+}
+
+// A large mesh, with the fast reference of another tree.
+TEST(MeshDistance, AgreesWithTheOtherTreeOnALargeMesh) {
+  const TriangleMesh ball = meshes::moved(rough_ball(100, 100, 0.1), meshes::rotated(), {5, -3, 2});
+  const MeshDistance surface(ball);
+  const TriangleTree tree(ball);
+  const BoundingBox box = bounding_box(ball.vertices);
+  RandomVectors random(8);
+  int inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = random.in_box(box);
+    const auto nearest = surface.nearest(p, kInfinity);
+    ASSERT_TRUE(nearest);
+    ASSERT_NEAR(std::abs(nearest->distance_m), std::sqrt(tree.nearest(p, 0).squared_m2), 1e-13);
+    ASSERT_EQ(nearest->distance_m<0, tree.winding_number(p)> 0.5) << p.transpose();
+    inside += nearest->distance_m < 0;
+  }
+  EXPECT_GT(inside, 200);
+}
+
+}  // namespace
+}  // namespace remote_touch::mesh_distance_test
