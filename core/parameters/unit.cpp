@@ -9,6 +9,7 @@ namespace {
 constexpr Unit kUnits[] = {
     {"_m_per_s2", "m/s^2", {1, -2, 0}},
     {"_m_per_s", "m/s", {1, -1, 0}},
+    {"_N_per_m3", "N/m^3", {-3, 0, 1}},
     {"_N_per_m", "N/m", {-1, 0, 1}},
     {"_Ns_per_m", "N s/m", {-1, 1, 1}},
     {"_N_per_s", "N/s", {0, -1, 1}},
