@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace remote_touch {
 
@@ -106,14 +107,24 @@ std::vector<char> DepthCamera::holes(const DepthImage& ideal) const {
   return hole;
 }
 
+IdealView DepthCamera::view(DepthImage depth, std::vector<std::uint32_t> colour) const {
+  IdealView view{std::move(depth), {}, std::move(colour), {}};
+  view.hole = holes(view.depth);
+  return view;
+}
+
 PointCloud DepthCamera::measured(const IdealView& view, int frame) const {
+  PointCloud cloud = cloud_from_depth(measured_depth(view, frame), intrinsics_, X_WC_);
+  cloud.colour = view.colour;
+  return cloud;
+}
+
+DepthImage DepthCamera::measured_depth(const IdealView& view, int frame) const {
   DepthImage depth = view.depth;
   const NoiseStream stream = noise_stream(key_, NoiseUse::depth, static_cast<std::uint32_t>(frame));
 #pragma omp parallel for schedule(static)
   for (int v = 0; v < intrinsics_.height; ++v) measure_row(view, stream, v, depth);
-  PointCloud cloud = cloud_from_depth(depth, intrinsics_, X_WC_);
-  cloud.colour = view.colour;
-  return cloud;
+  return depth;
 }
 
 // Replaces the ideal depths of a row by measured ones: noisy, quantised, and NaN at holes.

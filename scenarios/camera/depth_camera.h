@@ -63,9 +63,14 @@ class DepthCamera {
 
   // Casts the ray of every pixel. Calls `cast` from several threads at once.
   IdealView view(const RayCast& cast, bool coloured) const;
+  // Returns the view with these true depths and colours, whose image has the camera's size. The holes follow
+  // from the depths.
+  IdealView view(DepthImage depth, std::vector<std::uint32_t> colour) const;
   // Returns the organised cloud of a frame, a pure function of the view, the noise key and the frame's
   // number. A hole keeps its colour, because the camera sees it and only its depth is missing.
   PointCloud measured(const IdealView& view, int frame) const;
+  // Returns the depths of that cloud.
+  DepthImage measured_depth(const IdealView& view, int frame) const;
 
  private:
   std::vector<char> holes(const DepthImage& ideal) const;

@@ -65,11 +65,18 @@ class FaultySensor final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return scenario_->signed_distance(p_W, time_s);
   }
+  // The surface as the camera measured it, before the simulated faults.
+  bool has_measured_distance() const override { return scenario_->has_measured_distance(); }
+  double measured_distance(const Vec3& p_W, double time_s) const override {
+    return scenario_->measured_distance(p_W, time_s);
+  }
   Vec3 true_normal(const Vec3& p_W, double time_s) const override {
     return scenario_->true_normal(p_W, time_s);
   }
   std::optional<Vec3> plane_normal(double time_s) const override { return scenario_->plane_normal(time_s); }
   double truth_time_s(double time_s) const override { return scenario_->truth_time_s(time_s); }
+  std::string truth_text() const override { return scenario_->truth_text(); }
+  std::vector<PosedMesh> true_meshes(double time_s) const override { return scenario_->true_meshes(time_s); }
   double surface_height(double x, double z, double time_s) const override {
     return scenario_->surface_height(x, z, time_s);
   }

@@ -56,6 +56,7 @@ class Recorded final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int) const override { return make_search({}); }
   PointCloud cloud(int) const override { return {}; }
   double signed_distance(const Vec3&, double) const override { return 0; }
+  std::vector<PosedMesh> true_meshes(double) const override { return {{"a cube", {}, {}, {}}}; }
 };
 
 TEST(SensorFaults, KeepWhatTheScenarioReports) {
@@ -66,6 +67,8 @@ TEST(SensorFaults, KeepWhatTheScenarioReports) {
   ASSERT_EQ(sensor.input_notes().size(), 1u);
   EXPECT_EQ(sensor.input_notes()[0].kind, "cut short");
   EXPECT_EQ(sensor.sensor_pose().value().translation().y(), 5);
+  ASSERT_EQ(sensor.true_meshes(0).size(), 1u);
+  EXPECT_EQ(sensor.true_meshes(0)[0].name, "a cube");
 }
 
 TEST(SensorFaults, AnEmptySectionChangesNoRun) {

@@ -1,0 +1,195 @@
+#include "scenarios/camera/depth_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "core/geometry/rotation.h"
+#include "scenarios/camera/baseline_shadow.h"
+#include "scenarios/camera/window_noise.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// The sensors of depth_sensor.h: baseline, noise, step, window, lateral noise, range and angle.
+constexpr Triangulation kStructuredLight{0.075, 0.0625, 0.125, 1, 0.8, 108.75, 80};
+constexpr Triangulation kActiveStereo{0.05, 0.08, 1.0 / 32, 7, 0, 126, 80};
+
+// Nguyen et al. 2012; lateral noise grows by this share of its value for a surface seen head-on.
+constexpr double kAxialAtNearest_m = 0.0012, kAxialGrowth_per_m = 0.0019, kNearest_m = 0.4;
+constexpr double kAxialGrazing = 0.0001, kLateralGrazing = 0.035 / 0.8;
+
+// Returns theta / (pi / 2 - theta) for the angle theta between a ray and a normal.
+double grazing(double cosine) {
+  constexpr double kQuarterTurn = 1.5707963267948966;
+  const double c = std::clamp(std::abs(cosine), 0.0, 1.0);
+  const double angle = 0.5 * rotation_vector(Eigen::Quaterniond(c, std::sqrt(1 - c * c), 0, 0)).norm();
+  return angle / (kQuarterTurn - angle);
+}
+
+// Returns the standard deviation of the disparity in px. focal_baseline: in px m. q: grazing() of the angle.
+double disparity_noise(const DepthSensorSettings& s, const Triangulation& t, double focal_baseline,
+                       double z_m, double q) {
+  if (t.noise_px == 0 || s.sensor == DepthSensorKind::active_stereo) return t.noise_px;
+  const double px_per_m = focal_baseline / (z_m * z_m);
+  const double from_angle_m = kAxialGrazing / std::sqrt(z_m) * q * q;
+  const double beyond_m = z_m - kNearest_m;
+  const double head_on_px = s.axial_noise == AxialNoise::nguyen_2012
+                                ? (kAxialAtNearest_m + kAxialGrowth_per_m * beyond_m * beyond_m) * px_per_m
+                                : t.noise_px;
+  return head_on_px + from_angle_m * px_per_m;
+}
+
+}  // namespace
+
+Parameters parameters(DepthSensorSettings& s) {
+  const Parameters own = {
+      {"sensor", choice(s.sensor, {"simple", "structured-light", "active-stereo"}), 0, 0,
+       "model of the sensor's errors; simple: noise_per_m, quantisation_per_m and hole_px; structured-light: "
+       "Kinect of 2010; active-stereo: RealSense D400; both measure disparities, f b / z in pixels"},
+      {"max_depth_m", &s.max_depth_m, 0.01, 100, "largest depth that the sensor measures"},
+      {"axial_noise", choice(s.axial_noise, {"disparity", "nguyen-2012"}), 0, 0,
+       "structured-light: noise of depth on a surface seen head-on: from noise_px, or "
+       "1.2 mm + 1.9 mm (z / m - 0.4)^2"},
+      {"baseline_m", &s.baseline_m, -1, 1,
+       "distance of the projector or second camera, to the camera's right; below 0: that of the sensor, "
+       "0.075 (structured-light) or 0.05 (active-stereo)"},
+      {"noise_px", &s.noise_px, -1, 10,
+       "standard deviation of the disparity; 0: no noise; below 0: that of the sensor, 0.0625 or 0.08",
+       kLive},
+      {"disparity_step_px", &s.disparity_step_px, -1, 10,
+       "disparity is rounded to multiples of this; 0: not rounded; below 0: that of the sensor, 1/8 or 1/32"},
+      {"window_px", &s.window_px, -1, 64,
+       "width of the matching window, over which noise is correlated; below 1: that of the sensor, 1 or 7"},
+      {"lateral_noise_px", &s.lateral_noise_px, -1, 16,
+       "standard deviation of the position of depth edges in the image; below 0: that of the sensor, 0.8 or "
+       "0"},
+      {"max_disparity_px", &s.max_disparity_px, -1, 4096,
+       "nearer surfaces, of larger disparity, have no depth; below 0: that of the sensor, 108.75 or 126"},
+      {"max_angle_deg", &s.max_angle_deg, -1, 90,
+       "largest angle between ray and normal of a surface with a depth; below 0: that of the sensor, 80"},
+  };
+  return appended(parameters(s.camera), own);
+}
+
+std::string validate(const DepthSensorSettings& s) {
+  if (s.baseline_m == 0) return "baseline_m = 0: expected above 0, or below 0 for that of the sensor";
+  return validate(s.camera);
+}
+
+Triangulation triangulation(const DepthSensorSettings& s) {
+  Triangulation t = s.sensor == DepthSensorKind::active_stereo ? kActiveStereo : kStructuredLight;
+  const auto set = [](double& value, double setting) {
+    if (setting >= 0) value = setting;
+  };
+  set(t.baseline_m, s.baseline_m), set(t.noise_px, s.noise_px), set(t.step_px, s.disparity_step_px);
+  set(t.lateral_noise_px, s.lateral_noise_px), set(t.max_disparity_px, s.max_disparity_px);
+  set(t.max_angle_deg, s.max_angle_deg);
+  if (s.window_px >= 1) t.window_px = s.window_px;
+  return t;
+}
+
+DepthSensor::DepthSensor(const DepthSensorSettings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings),
+      key_(key),
+      kernels_(kernels),
+      camera_(settings.camera, key, kernels),
+      triangulation_(triangulation(settings)),
+      min_cosine_(sin_cos(kRadiansPerDegree * triangulation_.max_angle_deg).second) {}
+
+bool DepthSensor::noisy() const {
+  if (settings_.sensor == DepthSensorKind::simple) return camera_.noisy();
+  return triangulation_.noise_px > 0 || triangulation_.lateral_noise_px > 0;
+}
+
+SceneView DepthSensor::view(DepthImage depth, const std::vector<double>& cosine,
+                            std::vector<std::uint32_t> colour) const {
+  const CameraIntrinsics& camera = intrinsics();
+  if (depth.width != camera.width || depth.height != camera.height || depth.z_m.size() != camera.pixels() ||
+      (!cosine.empty() && cosine.size() != camera.pixels()))
+    throw std::invalid_argument("depth sensor: expected an image of " + size_text(camera));
+  for (double& z : depth.z_m)
+    if (!(z <= settings_.max_depth_m)) z = kNaN;
+  if (settings_.sensor == DepthSensorKind::simple)
+    return {camera_.view(std::move(depth), std::move(colour)), {}, {}};
+  SceneView view{{std::move(depth), {}, std::move(colour), {}}, {}, {}};
+  view.ideal.hole = baseline_shadow(view.ideal.depth, focal_baseline(), settings_.camera.edge_jump_m);
+  add_noise(cosine, view);
+  return view;
+}
+
+// Sets the noise of every pixel, and adds the holes that are no shadow.
+void DepthSensor::add_noise(const std::vector<double>& cosine, SceneView& view) const {
+  const int width = intrinsics().width, height = intrinsics().height;
+  const bool is_lateral = triangulation_.lateral_noise_px > 0;
+  const bool uses_angle = is_lateral || settings_.sensor == DepthSensorKind::structured_light;
+  view.noise_px.assign(intrinsics().pixels(), 0);
+  if (is_lateral) view.lateral_noise_px.assign(intrinsics().pixels(), triangulation_.lateral_noise_px);
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * width + u;
+      const double z = view.ideal.depth.z_m[i];
+      if (std::isnan(z)) continue;
+      const double c = cosine.empty() ? 1 : cosine[i], q = uses_angle && c < 1 ? grazing(c) : 0;
+      view.noise_px[i] = disparity_noise(settings_, triangulation_, focal_baseline(), z, q);
+      if (is_lateral) view.lateral_noise_px[i] *= 1 + kLateralGrazing * q;
+      if (is_out_of_range(z, c, u)) view.ideal.hole[i] = 1;
+    }
+}
+
+// Returns true if the sensor cannot measure the surface, although its second device may see it.
+bool DepthSensor::is_out_of_range(double z_m, double cosine, int u) const {
+  const double disparity = focal_baseline() / z_m;
+  const bool is_beyond_second_image = settings_.sensor == DepthSensorKind::active_stereo && u < disparity;
+  return disparity > triangulation_.max_disparity_px || std::abs(cosine) < min_cosine_ ||
+         is_beyond_second_image;
+}
+
+// Returns the pixel whose surface pixel (u, v) measures: itself, or a displaced one that is on the other side
+// of a depth edge.
+std::size_t DepthSensor::source(const SceneView& view, int u, int v, double across, double down) const {
+  const int width = intrinsics().width, height = intrinsics().height;
+  const std::size_t own = static_cast<std::size_t>(v) * width + u;
+  // The displacement may be infinite, and its sum with the pixel is limited before it becomes a whole number.
+  const double sigma = view.lateral_noise_px[own];
+  const double to_u = std::clamp(std::floor(u + sigma * across + 0.5), 0.0, width - 1.0);
+  const double to_v = std::clamp(std::floor(v + sigma * down + 0.5), 0.0, height - 1.0);
+  if (!(to_u >= 0 && to_v >= 0)) return own;  // NaN
+  const std::size_t other =
+      static_cast<std::size_t>(to_v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(to_u);
+  const double z = view.ideal.depth.z_m[own], z_other = view.ideal.depth.z_m[other];
+  const bool is_edge =
+      std::isnan(z) != std::isnan(z_other) || std::abs(z - z_other) > settings_.camera.edge_jump_m;
+  return is_edge ? other : own;
+}
+
+DepthImage DepthSensor::measured_depth(const SceneView& view, int frame) const {
+  if (settings_.sensor == DepthSensorKind::simple) return camera_.measured_depth(view.ideal, frame);
+  const int width = intrinsics().width, height = intrinsics().height;
+  const bool is_lateral = !view.lateral_noise_px.empty();
+  const NoiseStream stream = noise_stream(key_, NoiseUse::depth, static_cast<std::uint32_t>(frame));
+  const WindowNoise noise =
+      window_noise(width, height, triangulation_.window_px, is_lateral, stream, kernels_);
+  DepthImage depth = view.ideal.depth;
+  const double step = triangulation_.step_px;
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * width + u;
+      const std::size_t from = is_lateral ? source(view, u, v, noise.across[i], noise.down[i]) : i;
+      double disparity = focal_baseline() / view.ideal.depth.z_m[from];
+      disparity += view.noise_px[from] * noise.averaged[i];
+      if (step > 0) disparity = step * std::floor(disparity / step + 0.5);
+      const bool is_measured = !view.ideal.hole[from] && disparity > 0 && std::isfinite(disparity);
+      depth.z_m[i] = is_measured ? focal_baseline() / disparity : kNaN;
+    }
+  return depth;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,130 @@
+// Sensors of depth images with the errors of real ones: structured light and active stereo, beside the simple
+// model of depth_camera.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/kernels/kernels.h"
+#include "core/numeric/noise.h"
+#include "core/parameters/parameter.h"
+#include "scenarios/camera/depth_camera.h"
+
+namespace remote_touch {
+
+// Structured light and active stereo triangulate: a second device, a projector or a second camera, is at
+// (baseline, 0, 0) in the camera frame, to the right of the camera. The sensor measures the disparity
+// d = f b / z in pixels, with the focal length f and the baseline b. All errors arise there:
+//
+//   1. Pixels without a measurement: the second device does not see the surface (baseline_shadow.h); the
+//      disparity exceeds the range of the search, so that the surface is too near; the ray meets the surface
+//      at a grazing angle; in stereo also if the point is beyond the left border of the second image, which
+//      is a band of f b / z pixels.
+//   2. Lateral noise (structured light): at a depth edge the pixel may measure the surface on the other side.
+//   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (window_noise.h).
+//   4. Rounding to a multiple of the smallest step of disparity, s.
+//
+// So the depth has the standard deviation z^2 / (f b) sqrt(sigma^2 + s^2 / 12).
+//
+// Structured light is the Kinect of 2010 (IR camera f = 580 px, b = 75 mm):
+//   K. Khoshelham, S. Oude Elberink, "Accuracy and resolution of Kinect depth data for indoor mapping
+//   applications", Sensors 12 (2012) 1437-1454: depth noise 1.425e-3 z^2 (m), which is half of a step of
+//   disparity; 1 / (f b) per step of 2.85e-3 per m, which is a step of 1/8 px. Hence s = 1/8 px and
+//   sigma = 1/16 px. With both, the depth noise is 1.7 mm at 1 m and 6.6 mm at 2 m.
+//   C. V. Nguyen, S. Izadi, D. Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and
+//   tracking", 3DIMPVT 2012: axial noise 0.0012 + 0.0019 (z - 0.4)^2 + 0.0001 / sqrt(z) q^2 (m), lateral
+//   noise 0.8 + 0.035 q (px), q = theta / (pi / 2 - theta), theta the angle between the ray and the normal.
+//   The term with theta and the lateral noise are always used. The rest of the axial noise, 1.9 mm at 1 m and
+//   6.1 mm at 2 m, replaces sigma if axial_noise is nguyen_2012.
+//   The largest disparity is that of 0.4 m, the nearest depth of that sensor in its near mode.
+// Active stereo is the RealSense D400:
+//   A. Grunnet-Jepsen, J. N. Sweetser, J. Woodfill, "Best-known-methods for tuning Intel RealSense D400 depth
+//   cameras for best performance" (Intel, 2018): depth noise z^2 sigma / (f b), sigma below 0.1 px on a
+//   textured wall, typically 0.05 to 0.1; b = 50 mm (D435) and 55 mm (D415). The nearest depths listed there
+//   for all resolutions are those of a disparity of 126 px.
+//   A. Grunnet-Jepsen et al., "Subpixel linearity improvement for Intel RealSense depth camera D400 series"
+//   (Intel, 2019): steps of 1/32 px.
+//   Intel RealSense D400 series product family datasheet, section on the invalid depth band: f b / z px.
+//   L. Keselman, J. I. Woodfill, A. Grunnet-Jepsen, A. Bhowmik, "Intel RealSense stereoscopic depth cameras",
+//   CVPR workshops 2017: matching costs are summed over a window of 7 x 7 (R200, its predecessor). M. S. Ahn
+//   et al., Ubiquitous Robots 2019, and M. Carfagni et al., Sensors 19 (2019) 489 measured noise that grows
+//   with z^2, of that size.
+// No measurement was found for the largest angle: 80 degrees is a choice.
+enum class DepthSensorKind { simple, structured_light, active_stereo };
+enum class AxialNoise { disparity, nguyen_2012 };
+
+struct DepthSensorSettings {
+  DepthCameraSettings camera;  // its noise, steps and holes are those of the simple sensor only
+  double max_depth_m = 3;
+  DepthSensorKind sensor = DepthSensorKind::simple;
+  AxialNoise axial_noise = AxialNoise::disparity;
+  // Below 0: the value of the sensor, see triangulation().
+  double baseline_m = -1;
+  double noise_px = -1;
+  double disparity_step_px = -1;
+  int window_px = -1;
+  double lateral_noise_px = -1;
+  double max_disparity_px = -1;
+  double max_angle_deg = -1;
+};
+
+Parameters parameters(DepthSensorSettings& s);
+std::string validate(const DepthSensorSettings& s);
+
+// The numbers with which a sensor triangulates.
+struct Triangulation {
+  double baseline_m;
+  double noise_px;          // standard deviation of the disparity; 0: no axial noise
+  double step_px;           // smallest step of disparity; 0: not rounded
+  int window_px;            // width of the matching window
+  double lateral_noise_px;  // standard deviation of a depth edge's position, for a surface seen head-on
+  double max_disparity_px;
+  double max_angle_deg;  // angle between ray and normal
+};
+// Returns the settings, with the values of the sensor for those below 0. Pre: the sensor is not simple.
+Triangulation triangulation(const DepthSensorSettings& s);
+
+// A scene at one instant, and all of its measurement that does not change from frame to frame.
+struct SceneView {
+  IdealView ideal;                       // a hole is a pixel without a measurement
+  std::vector<double> noise_px;          // standard deviation of each pixel's disparity; empty: simple sensor
+  std::vector<double> lateral_noise_px;  // empty: none
+};
+
+class DepthSensor {
+ public:
+  // Keeps a reference to the kernels. Pre: validate(settings) is empty.
+  DepthSensor(const DepthSensorSettings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  const CameraIntrinsics& intrinsics() const { return camera_.intrinsics(); }
+  // The pose of the camera in the world frame, from its settings.
+  const RigidTransform& pose() const { return camera_.pose(); }
+  // True if successive frames of a scene at rest differ.
+  bool noisy() const;
+
+  // depth: true depths, NaN where the ray of the pixel meets nothing. cosine: of the angle between the ray
+  // and the surface's normal, for each pixel; empty: 1. colour: 0xRRGGBB of each pixel; empty: none. Throws
+  // std::invalid_argument if the image does not have the camera's size.
+  SceneView view(DepthImage depth, const std::vector<double>& cosine,
+                 std::vector<std::uint32_t> colour) const;
+  // Returns the measured depths, NaN where there are none: a pure function of the view, the noise key and the
+  // frame's number.
+  DepthImage measured_depth(const SceneView& view, int frame) const;
+
+ private:
+  double focal_baseline() const { return camera_.intrinsics().fx * triangulation_.baseline_m; }
+  void add_noise(const std::vector<double>& cosine, SceneView& view) const;
+  bool is_out_of_range(double z_m, double cosine, int u) const;
+  std::size_t source(const SceneView& view, int u, int v, double across, double down) const;
+
+  DepthSensorSettings settings_;
+  NoiseKey key_;
+  const Kernels& kernels_;
+  DepthCamera camera_;
+  Triangulation triangulation_;  // not used by the simple sensor
+  double min_cosine_;
+};
+
+}  // namespace remote_touch
