@@ -1,10 +1,12 @@
 // The interface of every scenario: a stream of point cloud frames and the ground truth of the scene.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,14 @@ namespace remote_touch {
 
 // Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
 inline constexpr double kSameTime_s = 5e-7;
+
+// A mesh that is a part of the true surface, and its pose. The spans are valid as long as the scenario.
+struct PosedMesh {
+  std::string name;
+  std::span<const Vec3> vertices_O;               // frame O of the object, m
+  std::span<const std::array<int, 3>> triangles;  // indices of vertices, counter-clockwise seen from outside
+  std::optional<RigidTransform> X_WO;             // object to world frame; nothing: unknown
+};
 
 // A scenario is a pure function of its configuration, the noise key and the frame number: the same call gives
 // the same result. Positions are in the world frame, in metres. y is up in synthetic scenes; recordings keep
@@ -69,6 +79,13 @@ class Scenario {
   // Beside the surface and in front of that plane the result is positive: it is the distance to the border,
   // or, for a flat grid, the height over the plane.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
+  // Distance to the surface as the sensor has measured it in its newest frame, m, with the sign of
+  // signed_distance(). A scenario has it if it knows a true surface besides the measured one, so that the
+  // error of the camera can be told from that of the renderer. NaN where it is not known.
+  virtual bool has_measured_distance() const { return false; }
+  virtual double measured_distance(const Vec3& /*p_W*/, double /*time_s*/) const {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   // Returns the unit normal of the true surface of signed_distance() at the point that is nearest to p,
   // towards the side that the sensor sees. Returns NaN in all three coordinates if the truth is not known. It
   // does so also if several parts of the surface are equally near, within 0.1 mm, as over the bottom of a
@@ -82,6 +99,12 @@ class Scenario {
   // Time of the surface from which signed_distance() measures. It is time_s, or the time of the last capture
   // if the truth is what the camera has seen.
   virtual double truth_time_s(double time_s) const { return time_s; }
+  // The true surface of signed_distance() in words, if the scenario is a recording: "the measured surface".
+  // Empty for a simulation, whose true surface is exact.
+  virtual std::string truth_text() const { return {}; }
+  // Returns the meshes from which signed_distance() measures at this time: the same meshes in the same order
+  // at all times, at the poses of that time. Empty if the true surface is not one of meshes.
+  virtual std::vector<PosedMesh> true_meshes(double /*time_s*/) const { return {}; }
   // Height (y) of the surface over (x, z) at time_s; NaN where the scene is not a height field.
   virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {
     return std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include "core/geometry/near_origin.h"
 #include "core/geometry/rotation.h"
 #include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/measured_surface.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
@@ -26,36 +27,6 @@ RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingInde
   return X_WC;
 }
 
-// The plane through the pixels of a window: the mean of all points, and a normal from the differences along
-// its rows and columns. Not usable if a pixel is missing, or if the depths in the camera differ by more than
-// max_width_m, which indicates an edge.
-struct Patch {
-  Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
-  bool usable = false;
-};
-
-Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, int v, int half,
-                   double max_width_m) {
-  const CameraIntrinsics& camera = cloud.image->camera;
-  Patch patch;
-  if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
-  Vec3 across = Vec3::Zero(), down = Vec3::Zero();
-  double min_depth = std::numeric_limits<double>::infinity(), max_depth = -min_depth;
-  for (int y = -half; y <= half; ++y) {
-    for (int x = -half; x <= half; ++x) {
-      const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
-      if (!p.allFinite()) return patch;
-      patch.mean += p, across += x * p, down += y * p;
-      const double depth = (X_CW * p).z();
-      min_depth = std::min(min_depth, depth), max_depth = std::max(max_depth, depth);
-    }
-  }
-  patch.mean /= (2 * half + 1) * (2 * half + 1);
-  patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
-  patch.usable = max_depth - min_depth <= max_width_m && patch.normal.allFinite();
-  return patch;
-}
-
 }  // namespace
 
 Parameters parameters(RecordedScene::Settings& s) {
@@ -72,10 +43,19 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"max_depth_m", &s.max_depth_m, 0.01, 100,
        "maximum depth, along the camera's axis; measurements beyond it are discarded; does not apply to clouds "
        "without a camera"},
+      {"truth", choice(s.truth, {"auto", "measured", "mesh"}), 0, 0,
+       "true surface: the measured one, the meshes in the folder truth/ of the recording, or auto: the meshes "
+       "if there are some"},
       {"truth_radius_m", &s.truth_radius_m, 1e-4, 1,
-       "radius of the patch whose plane is used as true surface"},
+       "radius of the patch whose plane is the measured surface"},
+      {"truth_reach_m", &s.truth_reach_m, 1e-3, 10,
+       "distance from the true meshes up to which the truth is known"},
+      {"camera_poses", &s.camera_poses, 0, 0,
+       "file in the recording's folder with the poses of a moving camera, base frame to camera frame, one for "
+       "each frame; empty: the camera does not move"},
       {"camera_position_m", &s.camera_position_m, -100, 100,
-       "position of the camera in the base frame (registration, 6.2.1)"},
+       "position of the camera in the base frame (registration, 6.2.1); with camera_poses: of the frame of "
+       "these poses"},
       {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
        "rotation vector (axis times angle) of the camera in the base frame; zero: x right, y down, z forward"},
       {"topic", &s.bag.topic, 0, 0,
@@ -102,13 +82,15 @@ std::string validate(const RecordedScene::Settings& s) {
 }
 
 RecordingPart input_files(const RecordedScene::Settings& s) {
-  return {s.path, s.first_frame, s.last_frame};
+  return {s.path, s.first_frame, s.last_frame, s.truth != RecordedScene::Truth::measured, s.camera_poses};
 }
 
-RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
+RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&,
+                             const MeshReader& read_mesh)
     : settings_(settings),
       recording_(index_recording(find_recording(settings.path), settings.bag)),
-      X_WC_(camera_pose(settings, recording_)),
+      camera_(camera_pose(settings, recording_), settings.camera_poses, recording_,
+              find_recording(settings.path)),
       times_(recording_, input_files(settings), settings.playback, settings.frame_rate_hz),
       statistics_(recording_.frames.size()) {
   require_points();
@@ -117,6 +99,18 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
     refuse(settings_.path,
            "its points form no camera image and have no depth: expected scenario.max_depth_m = ",
            Settings{}.max_depth_m, ", the default, which does not apply to them");
+  read_truth(read_mesh);
+}
+
+void RecordedScene::read_truth(const MeshReader& read_mesh) {
+  if (settings_.truth == Truth::measured) return;
+  const std::optional<TruthFolder> folder =
+      read_mesh ? find_truth(find_recording(settings_.path)) : std::nullopt;
+  if (folder)
+    truth_ = std::make_unique<const RecordedTruth>(*folder, recording_.frames.size(), settings_.truth_reach_m,
+                                                   read_mesh, recording_.camera);
+  else if (settings_.truth == Truth::mesh)
+    refuse(settings_.path, "has no folder truth/: expected one for scenario.truth = mesh");
 }
 
 // Throws InputError if the first frame has no usable point. That is caused by a mistake: another unit,
@@ -137,9 +131,24 @@ int RecordedScene::frame_count() const {
   return ends ? times_.count() : std::numeric_limits<int>::max();
 }
 
+std::string RecordedScene::truth_text() const {
+  if (!truth_) return "the measured surface";
+  std::string names;
+  for (const MeshObject& object : truth_->objects())
+    names.append(names.empty() ? "" : ", ").append(object.name);
+  const std::string text = "meshes of truth/ (" + names + "), uncertainty ";
+  if (std::isnan(truth_->uncertainty_m())) return text + "not stated";
+  char uncertainty[32];
+  std::snprintf(uncertainty, sizeof uncertainty, "%.3g mm", 1e3 * truth_->uncertainty_m());
+  return text + uncertainty;
+}
+
+// The truth is stated if the recording has another one than the measured surface, or if that was chosen.
 std::string RecordedScene::input() const {
+  const bool states_truth = truth_ || settings_.truth == Truth::measured;
   return description(recording_, times_.text()) + "; " + statistics_.text() +
-         (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply");
+         (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply") +
+         (states_truth ? "; truth: " + truth_text() : "");
 }
 
 // A camera usually has a rate between these limits; outside them the stamps are probably not in seconds. The
@@ -193,7 +202,7 @@ PointCloud RecordedScene::as_recorded(std::size_t source, RigidTransform& X_FC) 
   return cloud;
 }
 
-// Returns a frame in the base frame. Without a registration the points keep the bits that were read.
+// Returns a frame in the world frame. Without a registration the points keep the bits that were read.
 PointCloud RecordedScene::registered(std::size_t source) const {
   RigidTransform X_FC;
   PointCloud cloud = as_recorded(source, X_FC);
@@ -201,7 +210,8 @@ PointCloud RecordedScene::registered(std::size_t source) const {
     refuse(settings_.path, far_from_origin("frame " + std::to_string(source) + " has all its points"));
   if (!is_near_origin(X_FC.translation()))
     refuse(settings_.path, far_from_origin("frame " + std::to_string(source) + " has its VIEWPOINT"));
-  const RigidTransform X_WC = X_FC.matrix().isIdentity(0) ? X_WC_ : X_WC_ * X_FC;
+  const RigidTransform X_WF = camera_.pose(source);
+  const RigidTransform X_WC = X_FC.matrix().isIdentity(0) ? X_WF : X_WF * X_FC;
   if (X_WC.matrix().isIdentity(0)) return cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p_W = X_WC * cloud.point(i);
@@ -234,23 +244,37 @@ PointCloud RecordedScene::cloud(int frame) const {
   return registered(times_.source(frame));
 }
 
+const PointCloud& RecordedScene::newest_cloud(double time_s) const {
+  return dynamic_cast<const CloudSearch&>(*points(newest_frame(time_s))).cloud();
+}
+
+RigidTransform RecordedScene::camera_at(double time_s) const {
+  const PointCloud& cloud = newest_cloud(time_s);
+  return cloud.image ? cloud.image->X_WC : camera_.pose(source_at(time_s));
+}
+
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!p_W.allFinite()) return unknown;
-  const auto search = points(newest_frame(time_s));
-  const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*search).cloud();
-  if (!cloud.image) return unknown;
-  const RigidTransform X_CW = cloud.image->X_WC.inverse();
-  const Vec3 p_C = X_CW * p_W;
-  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
-  const CameraIntrinsics& camera = cloud.image->camera;
-  const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
-  const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
-  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
-  const double half = std::clamp(camera.fx * settings_.truth_radius_m / p_C.z(), 1.0, 1.0 * camera.width);
-  const Patch patch = patch_around(cloud, X_CW, static_cast<int>(u), static_cast<int>(v),
-                                   static_cast<int>(half), 4 * settings_.truth_radius_m);
-  return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
+  if (!truth_) return measured_distance(p_W, time_s);
+  if (!p_W.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  return truth_->at(source_at(time_s), camera_at(time_s).inverse() * p_W).distance_m;
+}
+
+double RecordedScene::measured_distance(const Vec3& p_W, double time_s) const {
+  if (!p_W.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  return distance_to_measured(newest_cloud(time_s), p_W, settings_.truth_radius_m);
+}
+
+Vec3 RecordedScene::true_normal(const Vec3& p_W, double time_s) const {
+  return truth_ ? Scenario::true_normal(p_W, time_s) : Vec3::Constant(std::nan(""));
+}
+
+std::vector<PosedMesh> RecordedScene::true_meshes(double time_s) const {
+  if (!truth_) return {};
+  const RigidTransform X_WC = camera_at(time_s);
+  std::vector<std::optional<RigidTransform>> X_WO;
+  for (const std::optional<RigidTransform>& X_CO : truth_->poses(source_at(time_s)))
+    X_WO.push_back(X_CO ? std::optional(X_WC * *X_CO) : std::nullopt);
+  return posed_meshes(truth_->objects(), X_WO);
 }
 
 }  // namespace remote_touch

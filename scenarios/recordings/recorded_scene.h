@@ -9,6 +9,8 @@
 
 #include "core/parameters/parameter.h"
 #include "scenarios/interface/scenario.h"
+#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/frame_times.h"
@@ -17,10 +19,13 @@
 
 namespace remote_touch {
 
-// The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another.
-class RecordedScene final : public Scenario {
+// The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another or
+// its poses are known. The true surface is the measured one, or that of the meshes in the folder truth/ of
+// the recording, see truth_folder.h.
+class RecordedScene : public Scenario {
  public:
   using Playback = FrameTimes::Playback;
+  enum class Truth { automatic, measured, mesh };
   struct Settings {
     std::string path;
     int first_frame = 0;
@@ -28,15 +33,20 @@ class RecordedScene final : public Scenario {
     Playback playback = Playback::hold;
     double frame_rate_hz = 0;
     double max_depth_m = 3;  // along the camera's axis; does not apply to clouds that are no image
+    Truth truth = Truth::automatic;
     double truth_radius_m = 0.006;
+    double truth_reach_m = 0.03;
+    std::string camera_poses;               // file in the folder of the recording
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
     BagChoice bag;  // used if the path is a bag of ROS
   };
 
-  // Throws InputError when the recording cannot be read, and when a later frame is not of the layout of the
-  // first one that is used, see conform().
-  RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+  // Throws InputError when the recording or its truth cannot be read, and when a later frame is not of the
+  // layout of the first one that is used, see conform(). read_mesh: reads the meshes of the truth. Without it
+  // the truth is the measured surface.
+  RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels,
+                const MeshReader& read_mesh = {});
 
   // The mean rate at which the frames are played.
   double frame_rate_hz() const override { return times_.rate_hz(); }
@@ -45,27 +55,43 @@ class RecordedScene final : public Scenario {
   // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels; 12 read: ..."
   std::string input() const override;
   std::vector<Note> input_notes() const override;
-  std::optional<RigidTransform> sensor_pose() const override { return X_WC_; }
+  // The pose at the first frame, if the camera moves.
+  std::optional<RigidTransform> sensor_pose() const override { return camera_.pose(times_.source(0)); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // The truth is the measurement itself: the distance to a plane through the points of the newest frame
-  // around p's pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges,
-  // outside the image, and for clouds without a camera.
+  // Meshes: the distance to the union of the true objects at their poses in the newest frame, NaN farther
+  // than truth_reach_m from all of them, beyond the border of an open one, and outside the mask. Otherwise it
+  // is measured_distance().
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Returns NaN, because the measured surface is no independent truth: a normal would be judged by the error
-  // of the measurement.
-  Vec3 true_normal(const Vec3&, double) const override { return Vec3::Constant(std::nan("")); }
+  // The distance to a plane through the points of the newest frame around p's pixel, see measured_surface.h.
+  bool has_measured_distance() const override { return truth_ != nullptr; }
+  double measured_distance(const Vec3& p_W, double time_s) const override;
+  // Returns NaN if the truth is the measured surface, which is no independent truth: a normal would be judged
+  // by the error of the measurement.
+  Vec3 true_normal(const Vec3& p_W, double time_s) const override;
+  // "meshes of truth/ (cube, table), uncertainty 3 mm", or "the measured surface".
+  std::string truth_text() const override;
+  // Meshes: the true objects at their poses in the newest frame. Otherwise empty.
+  std::vector<PosedMesh> true_meshes(double time_s) const override;
+  // The true objects; null if the truth is the measured surface.
+  const RecordedTruth* truth() const { return truth_.get(); }
+  // The frame of the recording that is the newest at a time, and the pose of its camera.
+  std::size_t source_at(double time_s) const { return times_.source(newest_frame(time_s)); }
+  RigidTransform camera_at(double time_s) const;
 
  private:
   void require_points() const;
+  void read_truth(const MeshReader& read_mesh);
   PointCloud as_recorded(std::size_t source, RigidTransform& X_FC) const;
   std::vector<Note> unusual_rate() const;
   PointCloud registered(std::size_t source) const;
+  const PointCloud& newest_cloud(double time_s) const;
 
   const Settings settings_;
   RecordingIndex recording_;  // its camera is that of the layout
-  const RigidTransform X_WC_;
+  const CameraPath camera_;
   const FrameTimes times_;
+  std::unique_ptr<const RecordedTruth> truth_;
   // The frames that were used last, the newest in front. Renderer, trajectory and truth use them in turn, and
   // a short part is played many times.
   struct CachedFrame {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 
+#include "scenarios/meshes/truth_folder.h"
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/refuse.h"
@@ -16,9 +18,11 @@ namespace {
 
 std::string data_folder;
 
-// True for images, meshes of tools and live sessions. A recording of frames is not made from such files.
+// True for images, meshes, paths of poses, measured contacts and live sessions. A recording of frames is not
+// made from such files.
 bool is_single_file(const fs::path& file) {
-  constexpr std::array kEndings = {".png", ".obj", ".ply", ".stl", ".h5", ".oni"};
+  constexpr std::array kEndings = {".png", ".obj", ".ply",  ".stl", ".h5",
+                                   ".oni", ".csv", ".traj", ".txt", ".tum"};
   return std::any_of(kEndings.begin(), kEndings.end(),
                      [&](const char* ending) { return has_ending(file, ending); });
 }
@@ -77,6 +81,9 @@ std::vector<InputFile> files_of(const RecordingPart& part) {
     add(frame.depth);
     if (!frame.colour.empty()) add(frame.colour);
   }
+  if (!part.camera_poses.empty()) add(folder / part.camera_poses);
+  if (const std::optional<TruthFolder> truth = part.with_truth ? find_truth(folder) : std::nullopt)
+    for (const fs::path& file : files_of(*truth)) add(file);
   std::vector<InputFile> list;
   for (const auto& [name, file] : files) list.push_back({name, file});
   return list;

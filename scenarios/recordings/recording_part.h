@@ -17,7 +17,9 @@ namespace remote_touch {
 struct RecordingPart {
   std::string path;
   int first_frame = 0;
-  int last_frame = -1;  // -1: the last frame of the recording
+  int last_frame = -1;            // -1: the last frame of the recording
+  bool with_truth = false;        // the run also reads the folder truth/, if the recording has one
+  std::string camera_poses = {};  // a file in the recording's folder that the run also reads; empty: none
   auto operator<=>(const RecordingPart&) const = default;
 };
 
@@ -49,10 +51,10 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 // Returns the files from which the part's frames are made, each once, sorted by name. For a single file, such
 // as a PNG, a mesh or a live session, it is the file itself. For a recording in a folder they are the depth
-// images or PCD files of the part, the colour images registered to them, and those of camera.json, depth.txt
-// and rgb.txt that are used. For a bag they are all its files, because its frames are not counted here.
-// Throws InputError if the recording is not there, its lists or camera.json cannot be used, or it has fewer
-// frames. Images and PCD files are not opened.
+// images or PCD files of the part, the colour images registered to them, those of camera.json, depth.txt and
+// rgb.txt that are used, the poses of the camera, and the files of the truth. For a bag they are all its
+// files, because its frames are not counted here. Throws InputError if the recording is not there, its lists
+// or camera.json cannot be used, or it has fewer frames. Images and PCD files are not opened.
 struct InputFile {
   std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
   std::filesystem::path file;  // path with which the file is opened

@@ -1,0 +1,243 @@
+// Files of poses: what is read, and what is refused with its line.
+#include "scenarios/meshes/pose_file.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::pose_file_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A quarter turn about z: x of the object is y of the camera.
+const std::string kQuarterTurn = "0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0 0 0 1";
+const std::string kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+const std::string kUnknown = "nan nan nan nan nan nan nan nan nan nan nan nan nan nan nan nan";
+
+std::string line_of(const Eigen::Matrix3d& R, const Vec3& position_m, const char* format) {
+  std::string line;
+  char number[64];
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const double last_row = column == 3 ? 1 : 0;
+      const double value = row == 3 ? last_row : column == 3 ? position_m[row] : R(row, column);
+      std::snprintf(number, sizeof number, format, value);
+      line += (line.empty() ? "" : " ") + std::string(number);
+    }
+  return line + "\n";
+}
+
+Eigen::Matrix3d random_rotation(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  return q.normalized().toRotationMatrix();
+}
+
+double error_of(const Eigen::Matrix3d& R) {
+  return (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+}
+
+class PoseMatrices : public testing::Test {
+ protected:
+  std::vector<std::optional<RigidTransform>> read(const std::string& bytes) const {
+    return read_pose_matrices(folder_.write("poses.txt", bytes));
+  }
+  void expect_refused(const std::string& bytes, int line, const std::string& part) const {
+    const std::string text = refusal([&] { read(bytes); });
+    EXPECT_HAS(text, (folder_ / "poses.txt").string() + ":" + std::to_string(line) + ": ");
+    EXPECT_HAS(text, part);
+  }
+
+  const TestFolder folder_{"pose_matrices_test"};
+};
+
+TEST_F(PoseMatrices, AreReadRowByRow) {
+  const auto poses = read(kIdentity + "\n" + kQuarterTurn + "\n");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_TRUE(poses[0]->matrix().isIdentity(0));
+  EXPECT_LT((*poses[1] * Vec3(1, 0, 0) - Vec3(0.1, 1.2, 0.3)).norm(), 1e-15);
+  EXPECT_LT((*poses[1] * Vec3(0, 1, 0) - Vec3(-0.9, 0.2, 0.3)).norm(), 1e-15);
+  EXPECT_EQ(poses[1]->translation(), Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(poses[1]->matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+}
+
+TEST_F(PoseMatrices, AreUnknownInALineOfNan) {
+  const auto poses = read(kUnknown + "\n" + kIdentity + "\n" + kUnknown);
+  ASSERT_EQ(poses.size(), 3u);
+  EXPECT_FALSE(poses[0]);
+  EXPECT_TRUE(poses[1]);
+  EXPECT_FALSE(poses[2]);
+}
+
+TEST_F(PoseMatrices, MayHaveCommentsAndAnyLineEnds) {
+  const auto poses =
+      read("\xEF\xBB\xBF# r00 r01\r\n" + kIdentity + "\r\n  # more\r\n\t" + kQuarterTurn + " \r\n");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1]->translation().z(), 0.3);
+  EXPECT_EQ(read("# nothing\n").size(), 0u);
+  EXPECT_EQ(read("").size(), 0u);
+}
+
+TEST_F(PoseMatrices, MayHaveSignsAndExponents) {
+  const auto poses = read("+1 0.0 -0 1e-2 0 1.0E0 0 +2.5e-1 0 0 1 -.5 0 0 0 1.");
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0]->translation(), Vec3(0.01, 0.25, -0.5));
+}
+
+// The digits of a file are few. The result is the nearest rotation, which the singular values give.
+TEST_F(PoseMatrices, BecomeTheNearestRotation) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-2e-4, 2e-4);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Matrix3d R = random_rotation(random);
+    const Eigen::Matrix3d rounded = read(line_of(R, {1, 2, 3}, "%.8f")).at(0)->linear();
+    EXPECT_LT(error_of(rounded), 2e-15);
+    EXPECT_LT((rounded - R).cwiseAbs().maxCoeff(), 1e-8);
+    Eigen::Matrix3d bent = R;
+    for (double& value : bent.reshaped()) value += off(random);
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(bent, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Matrix3d nearest = read(line_of(bent, {1, 2, 3}, "%.17g")).at(0)->linear();
+    EXPECT_LT(error_of(nearest), 2e-15);
+    EXPECT_LT((nearest - svd.matrixU() * svd.matrixV().transpose()).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+TEST_F(PoseMatrices, AreRefusedIfTheyAreNotRigid) {
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  EXPECT_TRUE(read(line_of(1.0004 * I, Vec3::Zero(), "%.17g"))[0]);  // 1.0004^2 - 1 = 0.0008
+  expect_refused(kIdentity + "\n" + line_of(1.001 * I, Vec3::Zero(), "%.17g"), 2, "expected a rigid pose");
+  expect_refused(line_of(1000 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
+  expect_refused(line_of(1e200 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
+  expect_refused(line_of(0 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
+  Eigen::Matrix3d sheared = I;
+  sheared(0, 1) = 0.0011;
+  expect_refused(line_of(sheared, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
+  Eigen::Matrix3d mirror = I;
+  mirror(2, 2) = -1;
+  expect_refused(line_of(mirror, Vec3::Zero(), "%.17g"), 1, "mirrors");
+}
+
+TEST_F(PoseMatrices, AreRefusedIfTheLastRowIsAnother) {
+  const std::string rows = "1 0 0 0 0 1 0 0 0 0 1 0 ";
+  EXPECT_TRUE(read(rows + "0 0 0 1.0000009")[0]);
+  for (const char* last : {"0 0 0 1.000002", "0 0 0 0", "0.000002 0 0 1", "0 0 -0.5 1"})
+    expect_refused(rows + last, 1, "the last row is not 0 0 0 1");
+  // A matrix column by column has its translation there.
+  expect_refused("1 0 0 0 0 1 0 0 0 0 1 0 0.1 0.2 0.3 1", 1, "row by row");
+}
+
+TEST_F(PoseMatrices, AreRefusedWithAnotherCountOfNumbers) {
+  expect_refused(kIdentity + "\n" + kIdentity + " 0\n", 2, "has 17 words: expected 16 numbers");
+  expect_refused("# comment\n1 0 0 0 0 1 0 0 0 0 1 0\n", 2, "has 12 words");
+  expect_refused(kIdentity + "\n\n" + kIdentity + "\n", 2, "is empty");
+  expect_refused(kIdentity + "\n \t\r\n", 2, "is empty");
+}
+
+TEST_F(PoseMatrices, AreRefusedWithWordsThatAreNotNumbers) {
+  for (const char* word : {"0x1", "1,0", "1.0f", "one", "--1", "+-1", "+", "1e999"}) {
+    expect_refused(word + kIdentity.substr(1), 1, "': expected a number");
+    expect_refused(word + kIdentity.substr(1), 1, word);
+  }
+}
+
+TEST_F(PoseMatrices, AreRefusedWithNumbersThatAreNotFinite) {
+  expect_refused("nan" + kIdentity.substr(1), 1, "has nan beside numbers");
+  expect_refused("inf" + kIdentity.substr(1), 1, "has a number that is not finite");
+  expect_refused("1 0 0 -inf 0 1 0 0 0 0 1 0 0 0 0 1", 1, "has a number that is not finite");
+}
+
+TEST_F(PoseMatrices, AreRefusedFarFromTheOrigin) {
+  EXPECT_TRUE(read("1 0 0 1000 0 1 0 0 0 0 1 0 0 0 0 1")[0]);
+  expect_refused("1 0 0 0 0 1 0 -1001 0 0 1 0 0 0 0 1", 1, "more than 1000 m from the origin");
+}
+
+TEST_F(PoseMatrices, AreRefusedWithoutTheirFile) {
+  EXPECT_HAS(refusal([&] { read_pose_matrices(folder_ / "none.txt"); }),
+             (folder_ / "none.txt").string() + ": cannot be read");
+}
+
+TEST_F(PoseMatrices, MayNameTheirColumnsInTheFirstComment) {
+  const std::string names = "# frame r00 r01 r02 tx r10 r11 r12 ty r20 r21 r22 tz error\n";
+  const auto poses = read(names + "0 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0.4\n# a break\n" +
+                          "1 nan nan nan nan nan nan nan nan nan nan nan nan 0.4\n");
+  ASSERT_EQ(poses.size(), 2U);
+  ASSERT_TRUE(poses[0]);
+  EXPECT_EQ(poses[0]->matrix(), read(kQuarterTurn)[0]->matrix());
+  EXPECT_FALSE(poses[1]);
+  expect_refused(names + "1 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0.4\n", 2, "is for frame 1: expected frame 0");
+  expect_refused(names + "0 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3\n", 2, "has 13 words: expected 14");
+}
+
+class StampedPoses : public testing::Test {
+ protected:
+  PosePath read(const std::string& bytes) const {
+    return read_stamped_poses(folder_.write("path.txt", bytes));
+  }
+  void expect_refused(const std::string& bytes, int line, const std::string& part) const {
+    const std::string text = refusal([&] { read(bytes); });
+    EXPECT_HAS(text, (folder_ / "path.txt").string() + ":" + std::to_string(line) + ": ");
+    EXPECT_HAS(text, part);
+  }
+
+  const TestFolder folder_{"stamped_poses_test"};
+};
+
+// The quaternion's real part is the last number. (0, 0, s, s) is a quarter turn about z.
+TEST_F(StampedPoses, AreReadInTheFormatOfTum) {
+  const PosePath path =
+      read("\xEF\xBB\xBF# timestamp tx ty tz qx qy qz qw\r\n1305031102.25 1 2 3 0 0 0 1\r\n\r\n" +
+           std::string("1305031102.75 2 2 3 0 0 0.7071067811865476 0.7071067811865476\r\n"));
+  ASSERT_EQ(path.poses().size(), 2u);
+  EXPECT_EQ(path.poses()[0].time_s, 0);
+  EXPECT_EQ(path.duration_s(), 0.5);
+  EXPECT_TRUE(path.at(0).linear().isIdentity(0));
+  EXPECT_EQ(path.at(0).translation(), Vec3(1, 2, 3));
+  EXPECT_LT((path.at(1) * Vec3(1, 0, 0) - Vec3(2, 3, 3)).norm(), 1e-15);
+  const double half = std::sqrt(0.5);
+  EXPECT_LT((path.at(0.25) * Vec3(1, 0, 0) - Vec3(1.5 + half, 2 + half, 3)).norm(), 4e-15);
+}
+
+TEST_F(StampedPoses, HaveTheirQuaternionsNormalised) {
+  const Eigen::Matrix3d R = read("0 0 0 0 0.6 0 0 0.806").at(0).linear();
+  EXPECT_LT(error_of(R), 1e-15);
+  const Eigen::Matrix3d expected = Eigen::Quaterniond(0.806, 0.6, 0, 0).normalized().toRotationMatrix();
+  EXPECT_LT((R - expected).norm(), 1e-15);
+  expect_refused("0 0 0 0 0 0 0 0.98\n", 1, "its quaternion has the norm 0.98");
+  expect_refused("0 0 0 0 0 0 0 1.02\n", 1, "expected 1, within 0.01");
+  expect_refused("0 0 0 0 0 0 0 0\n", 1, "its quaternion has the norm 0.0");
+}
+
+TEST_F(StampedPoses, AreRefusedIfTheirTimesDoNotIncrease) {
+  const std::string rest = " 0 0 0 0 0 0 1\n";
+  expect_refused("1" + rest + "1" + rest, 2, "not above that of the line before");
+  expect_refused("1" + rest + "# comment\n2" + rest + "1.5" + rest, 4, "not above that of the line before");
+  expect_refused("-1e13" + rest, 1, "its time is above 1e12");
+}
+
+TEST_F(StampedPoses, AreRefusedInLinesOfOtherWords) {
+  const std::string good = "0 0 0 0 0 0 0 1\n";
+  expect_refused(good + "1 0 0 0 0 0 0\n", 2, "has 7 words: expected lines 't tx ty tz qx qy qz qw'");
+  expect_refused(good + "1 0 0 0 0 0 0 1 0\n", 2, "has 9 words");
+  expect_refused(good + "1,0 0 0 0 0 0 0 1\n", 2, "'1,0': expected a number");
+  expect_refused(good + "1 0 nan 0 0 0 0 1\n", 2, "has a number that is not finite");
+  expect_refused(good + "1 0 0 0 0 0 inf 1\n", 2, "has a number that is not finite");
+  expect_refused(good + "1 0 0 1001 0 0 0 1\n", 2, "more than 1000 m from the origin");
+}
+
+TEST_F(StampedPoses, AreRefusedWithoutAnyPose) {
+  for (const char* bytes : {"", "# nothing\n", "\n\n"})
+    EXPECT_HAS(refusal([&] { read(bytes); }), (folder_ / "path.txt").string() + ": has no pose");
+  EXPECT_HAS(refusal([&] { read_stamped_poses(folder_ / "none.txt"); }),
+             (folder_ / "none.txt").string() + ": cannot be read");
+}
+
+}  // namespace
+}  // namespace remote_touch::pose_file_test

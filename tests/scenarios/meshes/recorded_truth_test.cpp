@@ -1,0 +1,220 @@
+// The true surface in the frames of a recording, from meshes that a test provides, and what is refused.
+#include "scenarios/meshes/recorded_truth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "tests/support/meshes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::recorded_truth_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kReach_m = 0.03;
+const CameraIntrinsics kCamera = {4, 3, 10, 10, 1.5, 1};
+const std::string kUnknown = "nan nan nan nan nan nan nan nan nan nan nan nan nan nan nan nan\n";
+
+// A pose without a rotation.
+std::string at(double x, double y, double z) {
+  return "1 0 0 " + std::to_string(x) + " 0 1 0 " + std::to_string(y) + " 0 0 1 " + std::to_string(z) +
+         " 0 0 0 1\n";
+}
+
+// A square of 1 m in the plane z = 0 that points towards the camera, which is on the side of -z.
+TriangleMesh sheet() {
+  return {{{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}}, {{0, 2, 1}, {0, 3, 2}}};
+}
+
+class Truths : public testing::Test {
+ protected:
+  // Adds an object whose mesh the reader returns for the file NAME.obj.
+  void add(const std::string& name, const TriangleMesh& mesh, const std::string& poses,
+           std::optional<bool> closed = {}) {
+    meshes_[name] = mesh;
+    truth_.objects.push_back({name, folder_ / (name + ".obj"), folder_.write(name + ".txt", poses), closed});
+  }
+  RecordedTruth read(std::size_t frames) const {
+    const MeshReader reader = [this](const fs::path& file) { return meshes_.at(file.stem().string()); };
+    return RecordedTruth(truth_, frames, kReach_m, reader, kCamera);
+  }
+  void expect_refused(const std::string& file, const std::string& part) const {
+    const std::string text = refusal([&] { read(1); });
+    EXPECT_EQ(text.rfind((folder_ / file).string() + ": ", 0), 0u) << text << "\nis not about " << file;
+    EXPECT_HAS(text, part);
+  }
+  // Expects a refusal of a single object.
+  void expect_mesh_refused(const TriangleMesh& mesh, std::optional<bool> closed, const std::string& part) {
+    truth_.objects.clear();
+    add("mesh", mesh, at(0, 0, 1), closed);
+    expect_refused("mesh.obj", part);
+  }
+
+  const TestFolder folder_{"recorded_truth_test"};
+  std::map<std::string, TriangleMesh> meshes_;
+  TruthFolder truth_;
+};
+
+void expect_unknown(const NearestOnObjects& nearest) {
+  EXPECT_TRUE(std::isnan(nearest.distance_m));
+  EXPECT_TRUE(nearest.normal.array().isNaN().all());
+  EXPECT_EQ(nearest.object, -1);
+}
+
+// The front of the box is at z = 0.9 in frame 0, and at z = 0.8 and x from 0.4 to 0.6 in frame 1.
+TEST_F(Truths, FollowThePosesOfTheirFrames) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + at(0.5, 0, 0.9));
+  const RecordedTruth truth = read(2);
+  const NearestOnObjects first = truth.at(0, {0.05, 0.02, 0.88});
+  EXPECT_NEAR(first.distance_m, 0.02, 1e-15);
+  EXPECT_TRUE(first.normal.isApprox(-Vec3::UnitZ(), 1e-15));
+  EXPECT_EQ(first.object, 0);
+  EXPECT_NEAR(truth.at(0, {0.05, 0.02, 0.91}).distance_m, -0.01, 1e-15);
+  expect_unknown(truth.at(1, {0.05, 0.02, 0.88}));
+  EXPECT_NEAR(truth.at(1, {0.55, 0.02, 0.79}).distance_m, 0.01, 1e-15);
+}
+
+TEST_F(Truths, KeepTheirObjectsApart) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + kUnknown + at(0, 0, 1));
+  add("table", sheet(), kUnknown + at(0, 0, 0.86) + at(0, 0, 0.89));
+  const RecordedTruth truth = read(3);
+  ASSERT_EQ(truth.objects().size(), 2u);
+  EXPECT_EQ(truth.objects()[1].name, "table");
+  EXPECT_TRUE(truth.poses(0)[0] && !truth.poses(0)[1] && !truth.poses(1)[0] && truth.poses(1)[1]);
+  EXPECT_EQ(truth.poses(2)[1]->translation(), Vec3(0, 0, 0.89));
+  const Vec3 p_C(0.05, 0.02, 0.88);
+  EXPECT_EQ(truth.at(0, p_C).object, 0);
+  EXPECT_NEAR(truth.at(0, p_C).distance_m, 0.02, 1e-15);
+  EXPECT_EQ(truth.at(1, p_C).object, 1);
+  EXPECT_NEAR(truth.at(1, p_C).distance_m, -0.02, 1e-15);
+  EXPECT_EQ(truth.at(2, p_C).object, 1);
+  EXPECT_NEAR(truth.at(2, p_C).distance_m, 0.01, 1e-15);
+}
+
+TEST_F(Truths, AreUnknownBeyondTheReachAndWithoutAPose) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + kUnknown);
+  const RecordedTruth truth = read(2);
+  EXPECT_NEAR(truth.at(0, {0, 0.02, 0.871}).distance_m, 0.029, 1e-15);
+  expect_unknown(truth.at(0, {0, 0.02, 0.869}));
+  expect_unknown(truth.at(1, {0, 0.02, 0.9}));
+  expect_unknown(truth.at(0, Vec3::Constant(std::nan(""))));
+}
+
+TEST_F(Truths, EndAtTheBorderOfASheet) {
+  add("table", sheet(), at(0, 0, 1));
+  const RecordedTruth truth = read(1);
+  EXPECT_FALSE(truth.objects()[0].is_closed);
+  EXPECT_NEAR(truth.at(0, {0.49, 0, 0.99}).distance_m, 0.01, 1e-15);
+  EXPECT_NEAR(truth.at(0, {0.49, 0, 1.01}).distance_m, -0.01, 1e-15);
+  expect_unknown(truth.at(0, {0.501, 0, 0.99}));
+}
+
+TEST_F(Truths, HoldInsideTheMask) {
+  add("table", sheet(), at(0, 0, 1) + at(0, 0, 1));
+  truth_.masks = folder_ / "mask";
+  const std::vector<std::uint8_t> left = {255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0};
+  const std::vector<std::uint8_t> none(12, 0);
+  folder_.write_png("mask/0000.png", 4, 3, PNG_FORMAT_GRAY, left.data());
+  folder_.write_png("mask/0001.png", 4, 3, PNG_FORMAT_GRAY, none.data());
+  const RecordedTruth truth = read(2);
+  EXPECT_NEAR(truth.at(0, unproject(kCamera, 1, 1, 0.99)).distance_m, 0.01, 1e-15);
+  expect_unknown(truth.at(0, unproject(kCamera, 2, 1, 0.99)));
+  expect_unknown(truth.at(1, unproject(kCamera, 1, 1, 0.99)));
+}
+
+TEST_F(Truths, StateTheirUncertainty) {
+  add("table", sheet(), at(0, 0, 1));
+  EXPECT_TRUE(std::isnan(read(1).uncertainty_m()));
+  truth_.uncertainty_m = 0.003;
+  EXPECT_EQ(read(1).uncertainty_m(), 0.003);
+}
+
+// An object is a solid if its mesh is one, unless it is stated to be a sheet.
+TEST_F(Truths, AreClosedAsStatedOrAsTheMeshIs) {
+  const TriangleMesh box = box_mesh({1, 1, 1});
+  add("stated", box, at(0, 0, 1), true);
+  add("unstated", box, at(0, 0, 1));
+  add("room", meshes::inside_out(box), at(0, 0, 1), false);
+  add("sheet", sheet(), at(0, 0, 1), false);
+  const RecordedTruth truth = read(1);
+  EXPECT_TRUE(truth.objects()[0].is_closed);
+  EXPECT_TRUE(truth.objects()[1].is_closed);
+  EXPECT_FALSE(truth.objects()[2].is_closed);
+  EXPECT_FALSE(truth.objects()[3].is_closed);
+}
+
+// Reconstruction leaves such a fin on an edge of a box.
+TEST_F(Truths, AreClosedInSpiteOfASmallFin) {
+  TriangleMesh box = box_mesh({1, 1, 1});
+  const auto [a, b, c] = box.triangles.front();
+  box.vertices.push_back(1.0001 * (box.vertices[a] + box.vertices[b]) / 2);
+  box.triangles.push_back({a, b, 8});
+  add("stated", box, at(0, 0, 1), true);
+  add("unstated", box, at(0, 0, 1));
+  const RecordedTruth truth = read(1);
+  EXPECT_TRUE(truth.objects()[0].is_closed);
+  EXPECT_TRUE(truth.objects()[1].is_closed);
+  expect_mesh_refused(meshes::inside_out(box), {}, "expected triangles counter-clockwise seen from outside");
+}
+
+TEST_F(Truths, AreRefusedWithAnotherNumberOfPosesThanFrames) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + at(0, 0, 1));
+  expect_refused("box.txt", "2 poses for 1 frames");
+  EXPECT_HAS(refusal([&] { read(3); }), "2 poses for 3 frames: expected one line for each frame");
+  truth_.objects.clear();
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1));
+  add("table", sheet(), "# no pose\n");
+  expect_refused("table.txt", "0 poses for 1 frames");
+  truth_.objects.clear();
+  add("box", box_mesh({0.2, 0.2, 0.2}), "1 0 0\n");
+  expect_refused("box.txt:1", "has 3 words");
+}
+
+TEST_F(Truths, AreRefusedWithoutASurface) {
+  expect_mesh_refused({}, {}, "no triangles: expected a mesh of triangles");
+  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}, {},
+                      "1 triangle with a corner that is not a vertex");
+  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}}, {{0, 1, 2}}}, {}, "1 vertex that is not finite");
+  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, {}, "no triangle has an area");
+}
+
+TEST_F(Truths, AreRefusedInMillimetres) {
+  expect_mesh_refused(
+      box_mesh({85, 85, 85}), {},
+      "its bounding box has a diagonal of 147.224319 m: metres expected, these may be millimetres");
+  truth_.objects.clear();
+  add("long", box_mesh({9.99, 0.1, 0.1}), at(0, 0, 1));
+  EXPECT_EQ(read(1).objects().size(), 1u);
+  TriangleMesh stray = box_mesh({0.1, 0.1, 0.1});
+  stray.vertices.emplace_back(0, 0, 5000);  // no triangle uses it
+  add("stray", stray, at(0, 0, 1));
+  EXPECT_EQ(read(1).objects().size(), 2u);
+}
+
+TEST_F(Truths, AreRefusedIfASolidIsOpenOrInsideOut) {
+  TriangleMesh open = box_mesh({0.2, 0.2, 0.2});
+  open.triangles.pop_back();
+  expect_mesh_refused(open, true,
+                      "not closed: 3 boundary edges (1 part, 11 triangles): expected a closed mesh");
+  const TriangleMesh inverted = meshes::inside_out(box_mesh({0.2, 0.2, 0.2}));
+  expect_mesh_refused(inverted, true, "inside out): expected triangles counter-clockwise seen from outside");
+  expect_mesh_refused(inverted, {}, "inside out): expected triangles counter-clockwise seen from outside");
+}
+
+TEST_F(Truths, PassOnTheRefusalOfAReader) {
+  truth_.objects.push_back({"gone", folder_ / "gone.obj", folder_.write("gone.txt", at(0, 0, 1)), {}});
+  const MeshReader reader = [](const fs::path& file) -> TriangleMesh {
+    throw InputError(file.string(), "no such file");
+  };
+  EXPECT_HAS(refusal([&] { RecordedTruth(truth_, 1, kReach_m, reader, kCamera); }), "gone.obj: no such file");
+}
+
+}  // namespace
+}  // namespace remote_touch::recorded_truth_test

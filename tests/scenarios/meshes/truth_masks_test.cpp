@@ -1,0 +1,164 @@
+// The pixels at which the truth holds, and the masks that are refused.
+#include "scenarios/meshes/truth_masks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::truth_masks_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const CameraIntrinsics kCamera = {4, 3, 10, 20, 1.5, 1};
+const Vec3 kCentre = unproject(kCamera, 1, 1, 2);  // a position at pixel (1, 1)
+const std::vector<std::uint8_t> kAll(12, 255), kNone(12, 0);
+
+class Masks : public testing::Test {
+ protected:
+  // A mask of 4 x 3 pixels or another width.
+  void write(const std::string& name, const std::vector<std::uint8_t>& grey, int width = 4) const {
+    const int height = static_cast<int>(grey.size()) / width;
+    folder_.write_png("mask/" + name, width, height, PNG_FORMAT_GRAY, grey.data());
+  }
+  TruthMasks masks(std::size_t frames, const CameraIntrinsics& camera = kCamera) const {
+    TruthFolder truth;
+    truth.masks = folder_ / "mask";
+    return {truth, frames, camera};
+  }
+  std::string why(std::size_t frames) const {
+    return refusal([&] { masks(frames).holds_at(0, kCentre); });
+  }
+
+  const TestFolder folder_{"truth_masks_test"};
+};
+
+TEST_F(Masks, HoldAtTheirPixelsThatAreNotBlack) {
+  const std::vector<std::uint8_t> grey = {0, 255, 0, 1, 7, 0, 0, 0, 0, 0, 128, 0};
+  write("0000.png", grey);
+  const TruthMasks one = masks(1);
+  for (int v = 0; v < 3; ++v)
+    for (int u = 0; u < 4; ++u)
+      for (const double z_m : {0.1, 1.0, 30.0})
+        EXPECT_EQ(one.holds_at(0, unproject(kCamera, u, v, z_m)), grey[4 * v + u] != 0) << u << " " << v;
+}
+
+// A pixel reaches half a pixel to each side of its centre.
+TEST_F(Masks, RoundToTheNearestPixel) {
+  write("0000.png", {0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 0, 0});
+  const TruthMasks one = masks(1);
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 0.51, 0.51, 1)));
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 1.49, 1.49, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 0.49, 1, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1.51, 1, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 0.49, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1.51, 1)));
+}
+
+TEST_F(Masks, HoldNowhereOutsideTheImage) {
+  write("0000.png", kAll);
+  const TruthMasks one = masks(1);
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, -0.49, -0.49, 1)));
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 3.49, 2.49, 1)));
+  for (const auto& [u, v] : {std::pair(-0.51, 1.0), {3.51, 1.0}, {1.0, -0.51}, {1.0, 2.51}, {1e300, 1.0}})
+    EXPECT_FALSE(one.holds_at(0, unproject(kCamera, u, v, 1))) << u << " " << v;
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1, -1)));
+  EXPECT_FALSE(one.holds_at(0, Vec3::Zero()));
+  EXPECT_FALSE(one.holds_at(0, Vec3::Constant(std::nan(""))));
+}
+
+TEST_F(Masks, HoldEverywhereWithoutAFolder) {
+  const TruthMasks none(TruthFolder{}, 3, {});
+  EXPECT_TRUE(none.holds_at(2, kCentre));
+  EXPECT_TRUE(none.holds_at(2, {0, 0, -1}));
+}
+
+// The numbers of a complete series may begin anywhere.
+TEST_F(Masks, BelongToTheFramesInTheirOrder) {
+  write("m_9.png", kAll), write("m_10.png", kNone), write("m_11.png", kAll);
+  const TruthMasks three = masks(3);
+  EXPECT_TRUE(three.holds_at(0, kCentre));
+  EXPECT_FALSE(three.holds_at(1, kCentre));
+  EXPECT_TRUE(three.holds_at(2, kCentre));
+}
+
+TEST_F(Masks, BelongToTheFramesOfTheirNumbersIfSomeAreMissing) {
+  write("0002.png", kAll), write("0004.png", kNone);
+  const TruthMasks two = masks(5);
+  const std::vector<bool> expected = {false, false, true, false, false};
+  for (std::size_t frame = 0; frame < 5; ++frame) EXPECT_EQ(two.holds_at(frame, kCentre), expected[frame]);
+}
+
+// More masks than are kept in memory, in an order that reads each of them several times.
+TEST_F(Masks, StayWithTheirFrames) {
+  for (int i = 0; i < 12; ++i) write("m" + std::to_string(i) + ".png", i % 3 == 0 ? kAll : kNone);
+  const TruthMasks many = masks(12);
+  for (std::size_t i = 0; i < 200; ++i) {
+    const std::size_t frame = i * i * 7 % 12;
+    ASSERT_EQ(many.holds_at(frame, kCentre), frame % 3 == 0) << frame;
+    ASSERT_EQ(many.holds_at(i % 12, kCentre), i % 12 % 3 == 0) << i;
+  }
+}
+
+// Reading an image a second time would fail.
+TEST_F(Masks, AreReadOnceAndNotBeforeTheyAreNeeded) {
+  write("0.png", kAll);
+  const TruthMasks two = [&] {
+    write("1.png", kNone);
+    return masks(2);
+  }();
+  EXPECT_TRUE(two.holds_at(0, kCentre));
+  fs::remove_all(folder_ / "mask");
+  EXPECT_TRUE(two.holds_at(0, kCentre));
+  EXPECT_HAS(refusal([&] { two.holds_at(1, kCentre); }), "1.png: cannot be read");
+}
+
+TEST_F(Masks, AreTransparentWhereTheTruthDoesNotHold) {
+  std::vector<std::uint8_t> rgba(48, 255);
+  rgba[4 * 5 + 3] = 0;
+  folder_.write_png("mask/0.png", 4, 3, PNG_FORMAT_RGBA, rgba.data());
+  EXPECT_FALSE(masks(1).holds_at(0, unproject(kCamera, 1, 1, 1)));
+  EXPECT_TRUE(masks(1).holds_at(0, unproject(kCamera, 2, 1, 1)));
+}
+
+TEST_F(Masks, AreRefusedIfThereAreMoreThanFrames) {
+  write("0.png", kAll), write("1.png", kAll);
+  EXPECT_EQ(why(1), (folder_ / "mask").string() + ": 2 masks for 1 frames: expected one mask for each frame");
+}
+
+TEST_F(Masks, AreRefusedIfTheirFrameIsNotClear) {
+  for (const char* name : {"3.png", "mask.png", "0_1.png", "99999999999999999999.png"}) {
+    fs::remove_all(folder_ / "mask");
+    write(name, kAll);
+    EXPECT_EQ(why(3), (folder_ / "mask" / name).string() +
+                          ": its name is not the number of a frame: expected 0 to 2");
+  }
+  fs::remove_all(folder_ / "mask");
+  write("1.png", kAll), write("01.png", kAll);
+  EXPECT_HAS(why(3), "frame 1 has another mask");
+}
+
+TEST_F(Masks, AreRefusedForFramesThatAreNotImages) {
+  write("0.png", kAll);
+  EXPECT_EQ(refusal([&] { masks(1, {}); }),
+            (folder_ / "mask").string() + ": the frames are not images: expected no masks");
+}
+
+TEST_F(Masks, AreRefusedInAnotherSizeOrFormat) {
+  write("0.png", kAll, 3);
+  EXPECT_EQ(why(1), (folder_ / "mask/0.png").string() +
+                        ": has 3 x 4 pixels: expected 4 x 3 pixels, as the camera has");
+  const std::vector<std::uint16_t> deep(12, 1);
+  folder_.write_png("mask/0.png", 4, 3, PNG_FORMAT_LINEAR_Y, deep.data());
+  EXPECT_HAS(why(1), "expected up to 8 bits a channel");
+  folder_.write("mask/0.png", "no image");
+  EXPECT_HAS(why(1), "0.png: is not a whole PNG file");
+}
+
+}  // namespace
+}  // namespace remote_touch::truth_masks_test
