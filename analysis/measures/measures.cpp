@@ -12,7 +12,10 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/perceived_force_measures.h"
+#include "analysis/measures/perceived_measures.h"
+#include "analysis/measures/replay_measures.h"
 #include "analysis/measures/settled_contact_measures.h"
+#include "analysis/measures/stiffness_measures.h"
 #include "analysis/measures/surface_side.h"
 #include "analysis/measures/tool_measures.h"
 #include "analysis/statistics/mean.h"
@@ -112,6 +115,15 @@ constexpr Row kMeasures[] = {
      contact_force_fraction},
     {"contact_known_fraction", "1", "fraction of the settled ticks with a known truth", contact, neither,
      contact_known_fraction},
+    {"rms_renderer_error", "m",
+     "rms distance of the contact point from the measured surface, in settled ticks", measured_surface,
+     smaller, rms_renderer_error_m},
+    {"rms_camera_error", "m",
+     "rms distance between the measured and the true surface at the contact point, in settled ticks",
+     measured_surface, neither, rms_camera_error_m},
+    {"mean_camera_error", "m",
+     "mean height of the measured surface above the true one at the contact point, in settled ticks",
+     measured_surface, neither, mean_camera_error_m},
     {"mean_lateral_force", "1",
      "mean ratio of the force along the true surface to the force along its normal, "
      "in contact while the force pushes out of it",
@@ -137,6 +149,44 @@ constexpr Row kMeasures[] = {
      neither, [](const Trace& trace) { return deadband_packets_per_s(trace, 0.1); }},
     {"packet_rate_20", "1/s", "packets per second of the force with a dead-band of 20 %, IEEE 1918.1.1", all,
      neither, [](const Trace& trace) { return deadband_packets_per_s(trace, 0.2); }},
+    {"max_relative_jump", "1",
+     "maximum change of the force at a frame update as a fraction of the force before it, from 0.1 N on", all,
+     smaller, max_relative_jump},
+    {"max_relative_change", "1",
+     "maximum change of the force from tick to tick as a fraction of the force before it, from 0.1 N on, "
+     "without an update",
+     all, smaller, max_relative_change},
+    {"apparent_friction", "1",
+     "ratio of the force against the direction of sliding to the force along the normal of the true surface",
+     true_normal, near_zero, apparent_friction},
+    {"force_ripple", "N", "rms difference of the force from its mean over 100 ms, while there is force", all,
+     smaller, force_ripple_N},
+    {"relative_ripple", "1",
+     "rms difference of the force from its mean over 100 ms, divided by the mean force", all, smaller,
+     relative_ripple},
+    {"rendered_stiffness", "N/m",
+     "slope of the force along the normal of the true surface over the depth of the HIP, during a press",
+     contact, neither, rendered_stiffness_N_per_m},
+    {"stiffness_error", "1", "rendered stiffness divided by that of the virtual coupling, minus 1", contact,
+     near_zero, stiffness_error},
+    {"stiffness_nonlinearity", "1",
+     "rms distance of the force of a press from its line over the depth, divided by its maximum", contact,
+     smaller, stiffness_nonlinearity},
+    {"stiffness_hysteresis", "1", "part of the work of a press that the release does not give back", contact,
+     near_zero, stiffness_hysteresis},
+    {"rms_force_error", "N", "rms difference of the force from the expected force", replay, smaller,
+     rms_force_error_N},
+    {"relative_force_error", "1",
+     "rms difference of the force from the expected force, divided by the rms expected force", replay,
+     smaller, relative_force_error},
+    {"force_direction_error", "rad",
+     "mean angle between the force and the expected force, where both are felt", replay, smaller,
+     force_direction_error_rad},
+    {"false_contact_fraction", "1",
+     "fraction of the ticks without an expected force in which there is a force", replay, smaller,
+     false_contact_fraction},
+    {"lost_contact_fraction", "1", "fraction of the ticks with an expected force in which there is no force",
+     replay, smaller, lost_contact_fraction},
 
     {"tool_popped_through", "1",
      "1 when the tool's centre of mass passed through the true surface and ended behind it", tool, smaller,
@@ -208,6 +258,10 @@ const char* name_of(MeasuredRuns runs) {
       return "runs with guidance";
     case true_normal:
       return "runs with a known true normal";
+    case replay:
+      return "runs with an expected force";
+    case measured_surface:
+      return "runs with a measured surface beside the true one";
     default:
       return "all runs";
   }
@@ -226,13 +280,17 @@ bool applies(const Measure& measure, const Trace& trace) {
     case true_normal:
       return std::any_of(trace.true_normal.begin(), trace.true_normal.end(),
                          [](const Vec3& normal) { return normal.allFinite(); });
+    case replay:
+      return trace.has_replay();
+    case measured_surface:
+      return !trace.has_tool() && trace.has_contact() && trace.has_measured_surface();
     default:
       return true;
   }
 }
 
 bool needs_true_contact(const Measure& measure) {
-  return measure.runs == contact || measure.runs == true_normal;
+  return measure.runs == contact || measure.runs == true_normal || measure.runs == measured_surface;
 }
 
 double value_of(const Measure& measure, const Trace& trace) {

@@ -38,6 +38,17 @@ double max_of_heights(const Trace& trace, Value&& value) {
   return max;
 }
 
+// Mean of value(contact) over the settled ticks in which it is not NaN; NaN if there is none.
+template <class Value>
+double settled_mean(const Trace& trace, Value&& value) {
+  double sum = 0, count = 0;
+  for_each_settled(trace, [&](std::size_t i) {
+    const double here = value(trace.contact[i]);
+    if (!std::isnan(here)) sum += here, ++count;
+  });
+  return count == 0 ? kNoValue : sum / count;
+}
+
 // Fraction of the settled ticks whose index satisfies the condition; NaN if no tick settled.
 template <class Condition>
 double settled_fraction(const Trace& trace, Condition&& holds) {
@@ -61,12 +72,25 @@ double max_float_m(const Trace& trace) {
 }
 
 double rms_contact_error_m(const Trace& trace) {
-  double squares = 0, count = 0;
-  for_each_settled(trace, [&](std::size_t i) {
-    const double height = trace.contact[i].height_m;
-    if (!std::isnan(height)) squares += height * height, ++count;
-  });
-  return count == 0 ? kNoValue : std::sqrt(squares / count);
+  return std::sqrt(
+      settled_mean(trace, [](const Trace::TrueContact& at) { return at.height_m * at.height_m; }));
+}
+
+double rms_renderer_error_m(const Trace& trace) {
+  return std::sqrt(settled_mean(trace, [](const Trace::TrueContact& at) {
+    return std::isnan(at.height_m) ? kNoValue : at.measured_height_m * at.measured_height_m;
+  }));
+}
+
+double rms_camera_error_m(const Trace& trace) {
+  return std::sqrt(settled_mean(trace, [](const Trace::TrueContact& at) {
+    const double error_m = at.height_m - at.measured_height_m;
+    return error_m * error_m;
+  }));
+}
+
+double mean_camera_error_m(const Trace& trace) {
+  return settled_mean(trace, [](const Trace::TrueContact& at) { return at.height_m - at.measured_height_m; });
 }
 
 double contact_force_fraction(const Trace& trace) {

@@ -24,6 +24,13 @@ double max_sink_m(const Trace& trace);
 double max_float_m(const Trace& trace);
 // Root mean square of the height of the contact point, m.
 double rms_contact_error_m(const Trace& trace);
+// The two parts of that height if the run has a measured surface beside the true one. The error of the
+// renderer is the height of the contact point above the measured surface. The error of the camera is the
+// height of the measured surface above the true one, at the contact point. Root mean squares, and the mean of
+// the camera's error, m, over the settled ticks in which both surfaces are known.
+double rms_renderer_error_m(const Trace& trace);
+double rms_camera_error_m(const Trace& trace);
+double mean_camera_error_m(const Trace& trace);
 // Fraction of the settled ticks with a force; NaN if no tick settled.
 double contact_force_fraction(const Trace& trace);
 // Fraction of the settled ticks in which the truth is known; NaN if no tick settled.

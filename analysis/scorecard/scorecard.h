@@ -47,6 +47,7 @@ struct SceneScore {
   std::vector<Successes> old_success;  // successes by the previous rule; empty without one
   Ranking ranking;                     // ranking by success, over all levels with noise
   std::vector<JudgedMeasure> measures;
+  std::string truth = {};  // the true surface of a recorded scene, in words; empty for a simulated scene
 };
 
 struct Scorecard {

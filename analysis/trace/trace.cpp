@@ -20,13 +20,16 @@ struct TraceTick {
 
 bool has(const TraceTick& tick, TracePart part) {
   return part == TracePart::always || (part == TracePart::tool && tick.out.tool) ||
-         (part == TracePart::guidance && tick.out.guidance) || (part == TracePart::hand && tick.hand);
+         (part == TracePart::guidance && tick.out.guidance) || (part == TracePart::hand && tick.hand) ||
+         (part == TracePart::replay && tick.truth.expected_force_N) ||
+         (part == TracePart::measured_surface && tick.truth.measured_distance_m);
 }
 
 bool has(const Trace& trace, TracePart part) {
   return part == TracePart::always || (part == TracePart::tool && trace.has_tool()) ||
          (part == TracePart::guidance && trace.has_guidance()) ||
-         (part == TracePart::hand && trace.has_hand());
+         (part == TracePart::hand && trace.has_hand()) || (part == TracePart::replay && trace.has_replay()) ||
+         (part == TracePart::measured_surface && trace.has_measured_surface());
 }
 
 template <class Number>

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Trace {
   struct TrueContact {
     double height_m = 0;        // height of the contact point
     double hip_distance_m = 0;  // distance of the HIP
+    // Height of the contact point above the surface that a real camera measured. NaN if the run has none
+    // beside its true one, or if it is not known there.
+    double measured_height_m = std::numeric_limits<double>::quiet_NaN();
   };
   // Ground truth of a tick, which the renderer does not know.
   struct Truth {
@@ -32,6 +36,11 @@ struct Trace {
     // Unit normal of the true surface at the renderer's contact, towards the free side. NaN if it is not
     // known or nothing is touched. Computed only if a measure needs it.
     std::optional<Vec3> normal = {};
+    // The force that Trajectory::expected_force_N() states. Present in every tick of a run or in none.
+    std::optional<Vec3> expected_force_N = {};
+    // Distance of the proxy from the surface that a real camera measured, Scenario::measured_distance().
+    // Present in every tick of a run or in none.
+    std::optional<double> measured_distance_m = {};
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});
@@ -39,6 +48,8 @@ struct Trace {
   bool has_tool() const { return !tool_orientation.empty(); }
   bool has_guidance() const { return !guidance_goal_m.empty(); }
   bool has_hand() const { return !intended_position_m.empty(); }
+  bool has_replay() const { return !expected_force_N.empty(); }
+  bool has_measured_surface() const { return !measured_distance_m.empty(); }
   bool has_contact() const { return !contact.empty(); }
   bool has_true_normal() const { return !true_normal.empty(); }
   // True if tick i uses another frame than tick i - 1; false for the first tick.
@@ -63,8 +74,9 @@ struct Trace {
 };
 
 // The runs that have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
-// simulated operator or device.
-enum class TracePart { always, tool, guidance, hand };
+// simulated operator or device, those that replay a contact whose force is known, those with a measured
+// surface beside the true one.
+enum class TracePart { always, tool, guidance, hand, replay, measured_surface };
 
 struct TraceColumn {
   const char* name;

@@ -98,3 +98,11 @@ TRACE_COLUMN(device_torque_Nm, Vec3, "device_torque", "N m", hand, t.hand->torqu
              "torque that the device exerts on the hand")
 TRACE_COLUMN(buttons, std::int32_t, "buttons", "1", hand, t.device.buttons,
              "pressed buttons of the device, one bit each")
+
+TRACE_COLUMN(expected_force_N, Vec3, "expected_force", "N", replay, *t.truth.expected_force_N,
+             "force that an ideal renderer would exert on the hand, world frame; NaN: not known")
+
+TRACE_COLUMN(measured_distance_m, double, "measured_distance", "m", measured_surface,
+             *t.truth.measured_distance_m,
+             proxy_or_tool("distance of the proxy's centre to the surface that the camera measured",
+                           "distance of the tool's centre of mass to the surface that the camera measured"))

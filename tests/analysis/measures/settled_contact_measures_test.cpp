@@ -66,6 +66,17 @@ TEST(SettledContact, SettlingStartsAgainAfterTheHandLeavesTheSurface) {
   }
 }
 
+TEST(SettledContact, ErrorsOfCameraAndRendererAreToldApart) {
+  Trace trace = settled({{0.005}, {0.001}, {kUnknown}, {0.5}, {0.003}});
+  const std::vector<double> measured_m = {0.002, -0.002, 0.3, kUnknown, 0};
+  for (std::size_t i = 0; i < measured_m.size(); ++i) trace.contact[5 + i].measured_height_m = measured_m[i];
+  EXPECT_NEAR(rms_renderer_error_m(trace), std::sqrt((4 + 4 + 0) / 3.0) * 1e-3, 1e-18);
+  EXPECT_NEAR(rms_camera_error_m(trace), 3e-3, 1e-17);
+  EXPECT_NEAR(mean_camera_error_m(trace), 3e-3, 1e-17);
+  for (const auto measure : {rms_renderer_error_m, rms_camera_error_m, mean_camera_error_m})
+    EXPECT_TRUE(std::isnan(measure(settled({{0.001}, {0.002}}))));
+}
+
 TEST(SettledContact, TicksWithoutATruthAreLeftOutAndCounted) {
   const Trace trace = settled({{kUnknown}, {0.002}, {kUnknown}, {-0.001}});
   EXPECT_EQ(max_contact_error_m(trace), 0.002);
@@ -83,6 +94,21 @@ TEST(SettledContact, ForceFractionUsesSettledTicksOnly) {
   EXPECT_TRUE(std::isnan(contact_known_fraction(trace_of({{0}, {0}}))));
 }
 
+TEST(SettledContact, PartsOfTheErrorApplyToRunsWithAMeasuredSurface) {
+  Trace with = settled({{0.003}});
+  with.measured_distance_m.assign(with.length(), 0.004);
+  int found = 0;
+  for (const Measure& measure : built_in_measures()) {
+    if (measure.runs != MeasuredRuns::measured_surface) continue;
+    ++found;
+    EXPECT_TRUE(applies(measure, with)) << measure.name;
+    EXPECT_FALSE(applies(measure, settled({{0.003}}))) << measure.name;
+    EXPECT_TRUE(needs_true_contact(measure)) << measure.name;
+    EXPECT_TRUE(std::isnan(measure.compute(Trace()))) << measure.name;
+  }
+  EXPECT_EQ(found, 3);
+}
+
 TEST(SettledContact, IsNanIfTheContactWasNotComputed) {
   Trace trace;
   trace.append(0, {}, {}, {});
@@ -95,7 +121,7 @@ TEST(SettledContact, IsNanIfTheContactWasNotComputed) {
     EXPECT_TRUE(std::isnan(value_of(measure, trace))) << measure.name;
     EXPECT_TRUE(std::isnan(measure.compute(trace))) << measure.name;
   }
-  EXPECT_EQ(found, 6);
+  EXPECT_EQ(found, 10);
 }
 
 }  // namespace

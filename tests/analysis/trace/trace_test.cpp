@@ -14,7 +14,7 @@ namespace remote_touch {
 namespace {
 
 // A trace of one tick with distinct numbers, so that swapped columns are found.
-Trace one_tick(bool tool, bool guidance, bool hand) {
+Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool measured = false) {
   RenderOutput out;
   out.proxy_W = {1, 2, 3}, out.state = ContactState::entrenched, out.contact_count = 4;
   if (tool) {
@@ -25,9 +25,11 @@ Trace one_tick(bool tool, bool guidance, bool hand) {
   if (guidance) out.guidance.emplace().sequence_missed = 7;
   DeviceState device;
   device.buttons = 9;
+  Trace::Truth truth{5, 6, 0xfedcba9876543210u};
+  if (replay) truth.expected_force_N = Vec3(11, 12, 13);
+  if (measured) truth.measured_distance_m = 14;
   Trace trace;
-  trace.append(0.25, device, out, {5, 6, 0xfedcba9876543210u},
-               hand ? std::optional<HandState>(HandState{}) : std::nullopt);
+  trace.append(0.25, device, out, truth, hand ? std::optional<HandState>(HandState{}) : std::nullopt);
   return trace;
 }
 
@@ -49,7 +51,7 @@ std::vector<Number> values(const Trace& trace, const std::string& name) {
 }
 
 TEST(TraceColumns, AreThoseOfTheTableInItsOrder) {
-  const std::vector<Column> columns = one_tick(true, true, true).columns();
+  const std::vector<Column> columns = one_tick(true, true, true, true, true).columns();
   ASSERT_EQ(columns.size(), trace_columns().size());
   std::set<std::string> seen;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -78,10 +80,12 @@ TEST(TraceColumns, ARunHasTheColumnsOfItsParts) {
   EXPECT_EQ(names(one_tick(true, false, false).columns()).size(), always + 9);
   EXPECT_EQ(names(one_tick(false, true, false).columns()).size(), always + 10);
   EXPECT_EQ(names(one_tick(false, false, true).columns()).size(), always + 5);
+  EXPECT_EQ(names(one_tick(false, false, false, true).columns()).size(), always + 1);
+  EXPECT_EQ(names(one_tick(false, false, false, false, true).columns()).size(), always + 1);
 }
 
 TEST(TraceColumns, HoldTheValuesOfTheTick) {
-  const Trace trace = one_tick(true, true, true);
+  const Trace trace = one_tick(true, true, true, true, true);
   EXPECT_EQ(values<double>(trace, "time"), std::vector<double>{0.25});
   EXPECT_EQ(values<double>(trace, "proxy_position"), (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(values<std::int32_t>(trace, "state"), std::vector<std::int32_t>{2});
@@ -94,6 +98,8 @@ TEST(TraceColumns, HoldTheValuesOfTheTick) {
   EXPECT_EQ(values<std::int32_t>(trace, "budget_exhausted"), std::vector<std::int32_t>{1});
   EXPECT_EQ(values<std::int32_t>(trace, "sequence_missed"), std::vector<std::int32_t>{7});
   EXPECT_EQ(values<std::int32_t>(trace, "buttons"), std::vector<std::int32_t>{9});
+  EXPECT_EQ(values<double>(trace, "expected_force"), (std::vector<double>{11, 12, 13}));
+  EXPECT_EQ(values<double>(trace, "measured_distance"), std::vector<double>{14});
 }
 
 std::optional<Trace> again(const std::vector<Column>& columns) {
@@ -108,15 +114,29 @@ std::optional<Trace> again(const std::vector<Column>& columns) {
 TEST(TraceColumns, RestoreTheTrace) {
   for (const bool tool : {false, true})
     for (const bool guidance : {false, true})
-      for (const bool hand : {false, true}) {
-        const std::vector<Column> columns = one_tick(tool, guidance, hand).columns();
-        const std::optional<Trace> trace = again(columns);
-        ASSERT_TRUE(trace);
-        EXPECT_EQ(trace->columns().back().values, columns.back().values);
-        EXPECT_EQ(trace->columns().size(), columns.size());
-      }
+      for (const bool hand : {false, true})
+        for (const bool replay : {false, true})
+          for (const bool measured : {false, true}) {
+            const std::vector<Column> columns = one_tick(tool, guidance, hand, replay, measured).columns();
+            const std::optional<Trace> trace = again(columns);
+            ASSERT_TRUE(trace);
+            EXPECT_EQ(trace->columns().back().values, columns.back().values);
+            EXPECT_EQ(trace->columns().size(), columns.size());
+          }
 }
 
+// An ordinary run has the columns, and so the hashes, that it had before there was an expected force or a
+// measured surface.
+TEST(TraceColumns, AnOrdinaryRunHasNoExpectedForceAndNoMeasuredDistance) {
+  const Trace trace = one_tick(true, true, true);
+  EXPECT_FALSE(trace.has_replay());
+  EXPECT_FALSE(trace.has_measured_surface());
+  const std::vector<std::string> list = names(trace.columns());
+  for (const char* name : {"expected_force", "measured_distance"})
+    EXPECT_EQ(std::count(list.begin(), list.end(), name), 0) << name;
+}
+
+// The only column of a replay or of a measured surface may be missing: the trace is then one without it.
 TEST(TraceColumns, RestoreNoTraceIfOneIsMissingOrWrong) {
   const std::vector<Column> all = one_tick(true, true, true).columns();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
@@ -137,9 +157,10 @@ TEST(TraceColumns, RestoreNoTraceIfOneIsMissingOrWrong) {
 
 // A tool has no proxy of radius r_c, so no description of a run with a tool may mention a proxy.
 TEST(TraceColumns, DoNotMentionAProxyForATool) {
-  const std::vector<Column> proxy = one_tick(false, false, false).columns();
-  const std::vector<Column> tool = one_tick(true, false, false).columns();
-  for (const char* name : {"contact_count", "nearest_distance", "signed_distance", "proxy_position"}) {
+  const std::vector<Column> proxy = one_tick(false, false, false, false, true).columns();
+  const std::vector<Column> tool = one_tick(true, false, false, false, true).columns();
+  for (const char* name :
+       {"contact_count", "nearest_distance", "signed_distance", "measured_distance", "proxy_position"}) {
     EXPECT_NE(find(proxy, name).long_name.find("proxy"), std::string::npos) << name;
     EXPECT_NE(find(tool, name).long_name.find("tool"), std::string::npos) << name;
   }
