@@ -42,8 +42,8 @@ DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {
 // Returns why the first frame of the scenario is no image, and what is expected.
 std::string no_image_text(const Scenario& scenario, const PointCloud& cloud) {
   if (scenario.input().empty())
-    return "the scene has no camera: expected a scenario with one (recording, camera-scene, beating-heart, "
-           "valve-tank)";
+    return "the scene has no camera: expected a scenario with one (recording, mesh-scene, camera-scene, "
+           "beating-heart, valve-tank)";
   if (cloud.grid_columns == 0) return "the frames are not images: expected a recording with a camera";
   return "the rows and columns of the recording are no image of a camera: expected clouds in the frame of "
          "the camera that are not mirrored";

@@ -18,6 +18,8 @@ class SimulatedHand {
   SimulatedHand(const std::optional<OperatorSettings>& operator_settings,
                 const std::optional<MotorSettings>& motors, double tick_s);
 
+  // True if there is no operator: the device is then always where the script intends it to be.
+  bool follows_script() const { return !operator_model_; }
   DeviceState move(const DeviceState& intended, double time_s);
   // Computes the wrench that the device exerts for the renderer's output. It moves the hand in the next tick.
   void apply(const DeviceState& device, const RenderOutput& out);

@@ -40,6 +40,11 @@ class Trajectory {
   // Returns one line about the pixels of the first frame that the motion follows, and their depth. Returns an
   // empty text if the motion is not planned on depth images.
   virtual std::string aim() const { return {}; }
+  // Returns the force that an ideal renderer exerts on a hand at the position of at(), N, world frame, for a
+  // motion that replays a known contact; 0 in free motion, NaN in all three coordinates where it is not
+  // known. Returns nothing at any time if the motion states no force. A run with an operator, who leaves this
+  // position, does not use it.
+  virtual std::optional<Vec3> expected_force_N(double /*time_s*/) const { return {}; }
   // Notes on how the motion was planned.
   virtual std::vector<Note> notes() const { return {}; }
   // True if the loop of a recorded live session missed the tick at that time. The tick is then skipped.

@@ -32,6 +32,9 @@ constexpr Priority kPriorities[] = {
     {"max_tool_penetration", When::always},
     // How well does the hand feel the shape?
     {"rms_contact_error", When::no_fixtures},
+    // Which part of that error is the camera's?
+    {"rms_camera_error", When::no_fixtures},
+    {"rms_renderer_error", When::no_fixtures},
     // How much does the device have to exert, and how large is the jolt when a frame arrives?
     {"max_force", When::always},
     {"max_force_jump", When::always},
@@ -55,8 +58,15 @@ struct UnitName {
   const char *unit, *words;
 };
 constexpr UnitName kUnitNames[] = {
-    {"1", ""},       {"m", "metres"},    {"s", "seconds"},         {"N", "newtons"},
-    {"J", "joules"}, {"rad", "radians"}, {"N m", "newton metres"}, {"1/s", "per second"},
+    {"1", ""},
+    {"m", "metres"},
+    {"s", "seconds"},
+    {"N", "newtons"},
+    {"J", "joules"},
+    {"rad", "radians"},
+    {"N m", "newton metres"},
+    {"1/s", "per second"},
+    {"N/m", "newtons per metre"},
 };
 
 }  // namespace

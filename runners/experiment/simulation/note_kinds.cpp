@@ -46,6 +46,7 @@ const std::vector<NoteKind>& note_kinds() {
       {"outcome unknown",
        "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
       {"few frames", "fewer than three frames show the motion of the scene"},
+      {"columns unused", "a measured contact has columns that are not used"},
   };
   return kinds;
 }

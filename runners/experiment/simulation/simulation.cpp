@@ -37,18 +37,30 @@ Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double tim
     slave_command_m = std::numeric_limits<double>::quiet_NaN();
   else if (out.slave_W != out.proxy_W)
     slave_command_m = scenario.signed_distance(out.slave_W, time_s);
-  return {proxy_position_m, slave_command_m, frame_hash};
+  Trace::Truth truth{proxy_position_m, slave_command_m, frame_hash};
+  if (scenario.has_measured_distance())
+    truth.measured_distance_m = scenario.measured_distance(out.proxy_W, time_s);
+  return truth;
+}
+
+// Returns the height of the contact point above the measured surface. x_W: position of the renderer, see
+// RenderedContact. The contact point is below x along the true normal. The measured surface is that of the
+// pixel which shows the contact point: x may hide another part of the object.
+double measured_height_m(const Scenario& scenario, const Vec3& x_W, double rest_distance_m, double time_s) {
+  if (!scenario.has_measured_distance()) return std::numeric_limits<double>::quiet_NaN();
+  if (rest_distance_m == 0) return scenario.measured_distance(x_W, time_s);
+  return scenario.measured_distance(x_W - rest_distance_m * scenario.true_normal(x_W, time_s), time_s);
 }
 
 // See RenderedContact.
 Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact& contact, const Vec3& hip_W,
                                 const RenderOutput& out, double proxy_distance_m, double time_s) {
   const double hip_distance_m = scenario.signed_distance(hip_W, time_s);
-  const double distance_m =
-      contact.spring_N_per_m > 0
-          ? scenario.signed_distance(hip_W + out.force_N / contact.spring_N_per_m, time_s)
-          : proxy_distance_m;
-  return {distance_m - contact.rest_distance_m, hip_distance_m};
+  const bool has_proxy = !(contact.spring_N_per_m > 0);
+  const Vec3 x_W = has_proxy ? out.proxy_W : Vec3(hip_W + out.force_N / contact.spring_N_per_m);
+  const double distance_m = has_proxy ? proxy_distance_m : scenario.signed_distance(x_W, time_s);
+  return {distance_m - contact.rest_distance_m, hip_distance_m,
+          measured_height_m(scenario, x_W, contact.rest_distance_m, time_s)};
 }
 
 // Returns the true normal where the renderer touches, below the proxy; NaN without a contact. A tool touches
@@ -162,6 +174,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
       known.contact =
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
+    if (hand.follows_script()) known.expected_force_N = trajectory->expected_force_N(time_s);
     trace.append(time_s, device, out, known, hand.state());
     if (options.report) {
       surface.add(device.position_W, time_s);

@@ -126,8 +126,8 @@ TEST(ImageFrames, RefusesASceneWithoutACameraByThoseThatHaveOne) {
   for (const int columns : {0, kCamera.width}) {
     grid.grid_columns = columns;
     EXPECT_EQ(refusal([&] { first_image(Frames({grid}), "x"); }),
-              "x: the scene has no camera: expected a scenario with one (recording, camera-scene, "
-              "beating-heart, valve-tank)");
+              "x: the scene has no camera: expected a scenario with one (recording, mesh-scene, "
+              "camera-scene, beating-heart, valve-tank)");
   }
 }
 

@@ -102,8 +102,8 @@ TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
 }
 
 TEST(ContactWatch, AProxyThatSinglePointsDoNotHoldHasNoNoteOnSpacing) {
-  for (const char* name :
-       {"god-object", "density-proxy", "surfels", "implicit-surface", "penalty", "tracked-sheet"})
+  for (const char* name : {"god-object", "density-proxy", "surfels", "mls-surface", "implicit-surface",
+                           "penalty", "tracked-sheet"})
     EXPECT_FALSE(
         run_of(flat("0.008"), press_from(0.0003, 0.02), R"("duration_s": 0.3)", name).has("wide spacing"))
         << name;

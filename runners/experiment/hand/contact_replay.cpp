@@ -1,0 +1,275 @@
+#include "runners/experiment/hand/contact_replay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/near_origin.h"
+#include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/hand/force_trace_file.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Settings = ContactReplay::Settings;
+using Row = ContactReplay::Row;
+
+constexpr double kRows_per_s = 1000;     // rows of a generated contact; the usual haptic rate
+constexpr double kMaxDuration_s = 1000;  // longest generated contact
+constexpr double kFullTurn_rad = 6.283185307179586;
+
+const char* const kReplaySubject = "trajectory.name = contact-replay";
+
+// A contact at a moment. outward: the unit normal of the surface.
+struct Contact {
+  double time_s = 0;
+  Vec3 position_W = Vec3::Zero(), outward_W = Vec3::Zero();
+  double gap_m = 0;  // distance from contact in free motion
+  Vec3 force_N = Vec3::Zero();
+};
+
+Row row_of(const Contact& contact, const Settings& s) {
+  return {contact.time_s,
+          contact.position_W + (s.onset_distance_m + contact.gap_m) * contact.outward_W -
+              contact.force_N / s.stiffness_N_per_m,
+          contact.force_N};
+}
+
+}  // namespace
+
+Parameters parameters(ContactReplay::Settings& s) {
+  return {
+      {"stiffness_N_per_m", &s.stiffness_N_per_m, 1, 1e6,
+       "stiffness of the renderer under test; must be that of the renderer"},
+      {"onset_distance_m", &s.onset_distance_m, 0, 1,
+       "distance of the HIP from the surface at which the renderer's force begins: 0 for a proxy, contact_radius_m for penalty"},
+      {"file", &s.file, 0, 0,
+       "measured contact, .traj or .csv: time, position, force; empty: a contact on the true surface"},
+      {"columns", &s.columns, 0, 0,
+       "columns of a .traj file: time, x, y, z, fx, fy, fz with units (_s _ms _m _mm _N); others are not used"},
+      {"start_s", &s.start_s, 0, 1e6, "time that is left out at the begin of the file"},
+      {"scale", &s.scale, 1e-6, 1e6, "factor of the file's positions"},
+      {"rotation_deg", &s.rotation_deg, -360, 360,
+       "rotation vector (axis times angle) from the file's frame to the world"},
+      {"offset_m", &s.offset_m, -1000, 1000, "position of the file's origin in the world"},
+      {"force_on_object", &s.force_on_object, 0, 0,
+       "true: the file has the force on the object; false: the force on the hand"},
+      {"contact_force_N", &s.contact_force_N, 0, 1000, "smaller forces of the file count as free motion"},
+      {"from_m", &s.from_m, -100, 100,
+       "start of the line over which a generated contact moves; over a height field its height is not used"},
+      {"to_m", &s.to_m, -100, 100, "end of that line"},
+      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100,
+       "speed along that line, of the approach and of the retreat"},
+      {"clearance_m", &s.clearance_m, 0, 10, "distance from contact at the start and at the end"},
+      {"ramp_s", &s.ramp_s, 0, 100, "time in which the force rises from 0 and falls to 0"},
+      {"min_force_N", &s.min_force_N, 0, 1000, "minimum of the force while the contact moves"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum of the force; the minimum again: a constant force"},
+      {"force_period_s", &s.force_period_s, 1e-3, 1000, "period of the force"},
+  };
+}
+
+namespace {
+
+// The times at which the parts of a generated contact end.
+struct Timing {
+  explicit Timing(const Settings& s)
+      : approach_s(s.clearance_m / s.speed_m_per_s),
+        load_s(approach_s + s.ramp_s),
+        slide_s(load_s + (s.to_m - s.from_m).norm() / s.speed_m_per_s),
+        unload_s(slide_s + s.ramp_s),
+        retreat_s(unload_s + s.clearance_m / s.speed_m_per_s) {}
+  double approach_s, load_s, slide_s, unload_s, retreat_s;
+};
+
+}  // namespace
+
+std::string validate(const ContactReplay::Settings& s) {
+  if (!s.file.empty()) return {};
+  if (!((s.to_m - s.from_m).norm() > 0)) return "to_m: expected another position than from_m";
+  if (s.min_force_N > s.max_force_N)
+    return "min_force_N = " + std::to_string(s.min_force_N) + ": expected at most max_force_N";
+  if (!(s.max_force_N > 0)) return "max_force_N = 0: expected above 0";
+  const double duration_s = Timing(s).retreat_s;
+  return duration_s <= kMaxDuration_s
+             ? ""
+             : "speed_m_per_s = " + std::to_string(s.speed_m_per_s) + ": the motion lasts " +
+                   std::to_string(duration_s) + " s, expected at most " + std::to_string(kMaxDuration_s);
+}
+
+std::vector<RecordingPart> input_files(const ContactReplay::Settings& s) {
+  if (s.file.empty()) return {};
+  RecordingPart file;
+  file.path = s.file;
+  return {file};
+}
+
+namespace {
+
+// --- a contact from a file ---
+
+// Sets the outward normals: that of the true surface if it is known, else the direction of the force, else
+// that of the contact before, or of the first one after that has a direction. Throws InputError if no contact
+// has a force.
+void add_normals(const std::string& file, const Scenario& scenario, std::vector<Contact>& contacts) {
+  const auto touches = [](const Contact& contact) { return !contact.force_N.isZero(0); };
+  const auto first = std::find_if(contacts.begin(), contacts.end(), touches);
+  if (first == contacts.end())
+    throw InputError(file, "has no force above trajectory.contact_force_N: expected the forces of a contact");
+  Vec3 last_W = first->force_N.normalized();
+  for (Contact& contact : contacts) {
+    const Vec3 true_normal_W = scenario.true_normal(contact.position_W, contact.time_s);
+    if (true_normal_W.allFinite())
+      last_W = true_normal_W;
+    else if (touches(contact))
+      last_W = contact.force_N.normalized();
+    contact.outward_W = last_W;
+  }
+}
+
+Contact contact_of(const ForceTraceRow& row, double begins_s, const Settings& s) {
+  const Eigen::Quaterniond turn = rotation(kRadiansPerDegree * s.rotation_deg);
+  Contact contact{row.time_s - begins_s, s.offset_m + turn * Vec3(s.scale * row.contact_m)};
+  const Vec3 force_N = turn * row.force_N;
+  if (force_N.norm() >= s.contact_force_N) contact.force_N = s.force_on_object ? Vec3(-force_N) : force_N;
+  return contact;
+}
+
+std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenario, std::vector<Note>& notes) {
+  const std::string file = find_recording(s.file);
+  const ForceTrace trace = read_force_trace(file, s.columns);
+  const double start_s = trace.rows.front().time_s + s.start_s;
+  const auto first = std::find_if(trace.rows.begin(), trace.rows.end(),
+                                  [&](const ForceTraceRow& row) { return row.time_s >= start_s; });
+  if (trace.rows.end() - first < 2)
+    throw InputError("trajectory.start_s = " + std::to_string(s.start_s),
+                     "fewer than two rows of the file are left: expected a smaller value");
+  std::vector<Contact> contacts;
+  for (auto row = first; row != trace.rows.end(); ++row)
+    contacts.push_back(contact_of(*row, first->time_s, s));
+  add_normals(file, scenario, contacts);
+  if (!trace.unused.empty()) {
+    std::string names;
+    for (const std::string& name : trace.unused) names += (names.empty() ? "" : ", ") + name;
+    notes.push_back({"columns unused", s.file + ": columns that are not used: " + names});
+  }
+  return contacts;
+}
+
+// --- a generated contact ---
+
+// Returns the point of the true surface that is nearest to p; NaN if the surface is not known there.
+Vec3 nearest_on_surface(const Scenario& scenario, Vec3 p_W, double time_s) {
+  constexpr int kSteps = 8;  // one is enough for an exact distance; a search for it is repeated
+  constexpr double kOnSurface_m = 1e-10;
+  for (int step = 0; step < kSteps; ++step) {
+    const double distance_m = scenario.signed_distance(p_W, time_s);
+    if (std::isnan(distance_m)) return Vec3::Constant(distance_m);
+    if (std::abs(distance_m) <= kOnSurface_m) break;
+    const Vec3 normal_W = scenario.true_normal(p_W, time_s);
+    if (!normal_W.allFinite()) break;  // over an edge: p is the best guess
+    p_W -= distance_m * normal_W;
+  }
+  return p_W;
+}
+
+class GeneratedContact {
+ public:
+  GeneratedContact(const Settings& settings, const Scenario& scenario)
+      : s_(settings), scenario_(scenario), timing_(settings) {}
+
+  std::vector<Contact> contacts() {
+    // A rest of a millionth of a row is a rounding error and not one more row.
+    const int last = std::max(1, static_cast<int>(std::ceil(timing_.retreat_s * kRows_per_s - 1e-6)));
+    std::vector<Contact> all;
+    for (int i = 0; i <= last; ++i) all.push_back(at(i / kRows_per_s));
+    return all;
+  }
+
+ private:
+  Contact at(double time_s) {
+    Contact contact{time_s, nearest_on_surface(scenario_, on_line(time_s), time_s)};
+    if (!contact.position_W.allFinite()) refuse_surface(time_s);
+    const Vec3 normal_W = scenario_.true_normal(contact.position_W, time_s);
+    if (normal_W.allFinite()) outward_W_ = normal_W;  // at an edge it stays that of the row before
+    if (outward_W_.isZero(0)) refuse_surface(time_s);
+    contact.outward_W = outward_W_;
+    contact.gap_m = gap_m(time_s);
+    contact.force_N = force_N(time_s) * outward_W_;
+    return contact;
+  }
+
+  // Returns the point of the line at that time; over a height field it is moved vertically onto it.
+  Vec3 on_line(double time_s) const {
+    const double fraction =
+        std::clamp((time_s - timing_.load_s) / (timing_.slide_s - timing_.load_s), 0.0, 1.0);
+    Vec3 p_W = s_.from_m + fraction * (s_.to_m - s_.from_m);
+    const double height_m = scenario_.surface_height(p_W.x(), p_W.z(), time_s);
+    if (std::isfinite(height_m)) p_W.y() = height_m;
+    return p_W;
+  }
+
+  double gap_m(double time_s) const {
+    const double until_contact_s = std::max(timing_.approach_s - time_s, time_s - timing_.unload_s);
+    return std::clamp(s_.speed_m_per_s * until_contact_s, 0.0, s_.clearance_m);
+  }
+
+  double force_N(double time_s) const {
+    if (time_s <= timing_.approach_s || time_s >= timing_.unload_s) return 0;
+    if (time_s < timing_.load_s) return s_.min_force_N * (time_s - timing_.approach_s) / s_.ramp_s;
+    if (time_s <= timing_.slide_s) return force_while_sliding_N(time_s);
+    return force_while_sliding_N(timing_.slide_s) * (timing_.unload_s - time_s) / s_.ramp_s;
+  }
+
+  double force_while_sliding_N(double time_s) const {
+    const double periods = (time_s - timing_.load_s) / s_.force_period_s;
+    const double cosine = sin_cos(kFullTurn_rad * (periods - std::floor(periods))).second;
+    return 0.5 * (s_.min_force_N + s_.max_force_N) - 0.5 * (s_.max_force_N - s_.min_force_N) * cosine;
+  }
+
+  [[noreturn]] void refuse_surface(double time_s) const {
+    const Vec3 p = on_line(time_s);
+    throw InputError(kReplaySubject, "no true surface is known at " + std::to_string(p.x()) + ", " +
+                                         std::to_string(p.y()) + ", " + std::to_string(p.z()) +
+                                         ": expected a line from_m to to_m over a surface, or a file");
+  }
+
+  const Settings& s_;
+  const Scenario& scenario_;
+  const Timing timing_;
+  Vec3 outward_W_ = Vec3::Zero();  // normal of the row before
+};
+
+}  // namespace
+
+ContactReplay::ContactReplay(const Settings& settings, const Scenario& scenario) {
+  const std::vector<Contact> contacts = settings.file.empty()
+                                            ? GeneratedContact(settings, scenario).contacts()
+                                            : contacts_in_file(settings, scenario, notes_);
+  for (const Contact& contact : contacts) {
+    rows_.push_back(row_of(contact, settings));
+    if (!is_near_origin(rows_.back().hip_W))
+      throw InputError(far_from_origin(std::string(kReplaySubject) + ": the hand would be"));
+  }
+}
+
+ContactReplay::Row ContactReplay::row_at(double time_s) const {
+  const auto next = std::upper_bound(rows_.begin(), rows_.end(), time_s,
+                                     [](double time, const Row& row) { return time < row.time_s; });
+  if (next == rows_.end()) return rows_.back();
+  if (next == rows_.begin()) return rows_.front();
+  const Row &before = *(next - 1), &after = *next;
+  const double fraction = (time_s - before.time_s) / (after.time_s - before.time_s);
+  return {time_s, before.hip_W + fraction * (after.hip_W - before.hip_W),
+          before.force_N + fraction * (after.force_N - before.force_N)};
+}
+
+std::vector<Phase> ContactReplay::phases() const {
+  const auto touches = [](const Row& row) { return !row.force_N.isZero(0); };
+  const auto first = std::find_if(rows_.begin(), rows_.end(), touches);
+  const auto last = std::find_if(rows_.rbegin(), rows_.rend(), touches);
+  if (first == rows_.end()) return {};
+  return {{"the contact", first->time_s, last->time_s}};
+}
+
+}  // namespace remote_touch
