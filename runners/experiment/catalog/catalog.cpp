@@ -12,10 +12,12 @@
 #include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/mls_surface_renderer.h"
 #include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
 #include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/catalog/renderer_contacts.h"
+#include "runners/experiment/hand/contact_replay.h"
 #include "runners/experiment/hand/follow_surface.h"
 #include "runners/experiment/hand/image_press.h"
 #include "runners/experiment/hand/image_scan.h"
@@ -23,6 +25,8 @@
 #include "runners/experiment/hand/press.h"
 #include "runners/experiment/hand/random_motion.h"
 #include "runners/experiment/hand/waypoints.h"
+#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/recording_with_truth.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/tool_files/loaded_spheres.h"
 #include "runners/experiment/tool_files/loaded_tool.h"
@@ -30,7 +34,6 @@
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/recordings/image_mask.h"
-#include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "scenarios/synthetic/listed_points.h"
 #include "scenarios/synthetic/moving_lift.h"
@@ -72,7 +75,10 @@ std::vector<ScenarioEntry> built_in_scenarios() {
       scenario_entry<MovingPlane>("moving-plane",
                                   "a flat cloud with normals that waits, then rises and lifts a tool"),
       scenario_entry<SinglePanel>("panel", "one flat panel with normals that can be touched from both sides"),
-      scenario_entry<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
+      scenario_entry<RecordingWithTruth>("recording",
+                                         "a recorded sequence of depth images or organised clouds"),
+      scenario_entry<MeshSceneFromFiles>(
+          "mesh-scene", "a simulated depth camera looks at meshes of the user, at rest or on paths of poses"),
       scenario_entry<SessionScene>(
           "live-session",
           "the frames of a recorded live session, at the times when the live renderer received them"),
@@ -102,6 +108,8 @@ std::vector<TrajectoryEntry> built_in_trajectories() {
       trajectory_entry<Press>("press", "waits, then presses to a given depth below the surface, 4.3.2"),
       trajectory_entry<FollowSurface>("follow-surface",
                                       "moves along a line at a given depth below the true surface"),
+      trajectory_entry<ContactReplay>(
+          "contact-replay", "replays a contact whose force is known, from a file or over the true surface"),
       trajectory_entry<ImageScan>(
           "image-scan", "moves along an image row at a given depth behind the surface of the first frame"),
       trajectory_entry<ImagePress>(
@@ -125,6 +133,10 @@ std::vector<RendererEntry> built_in_renderers() {
       renderer_entry<SurfelRenderer, SurfelParameters>(
           "surfels", DegreesOfFreedom::three, ContactModel::oriented,
           "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]",
+          {FrameNeed::view}),
+      renderer_entry<MlsSurfaceRenderer, MlsSurfaceParameters>(
+          "mls-surface", DegreesOfFreedom::three, ContactModel::oriented,
+          "3-DOF method for comparison: a proxy on a moving least squares surface, Alexa 2003 and Adamson 2003",
           {FrameNeed::view}),
       renderer_entry<AveragedProxyRenderer, AveragedProxyParameters>(
           "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
@@ -153,6 +165,9 @@ std::vector<RendererEntry> built_in_renderers() {
       renderer_entry<LoadedToolGodObject, LoadedToolGodObject::Settings>(
           "tool-god-object", DegreesOfFreedom::six, ContactModel::resting_points,
           "6-DOF method for comparison: a god-object held by the contacts of its pose, Ortega, Redon and Coquillart 2007"),
+      renderer_entry<LoadedToolInnerSpheres, LoadedToolInnerSpheres::Settings>(
+          "tool-inner-spheres", DegreesOfFreedom::six, ContactModel::points,
+          "6-DOF method for comparison: the volume of inner spheres behind the points pushes a tool, Weller and Zachmann 2009, Kaluschke et al. 2017"),
       renderer_entry<LoadedSpheres, LoadedSpheres::Settings>(
           "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
           "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7",

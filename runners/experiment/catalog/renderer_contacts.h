@@ -9,6 +9,7 @@
 #include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/mls_surface_renderer.h"
 #include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
 #include "core/rivals/surfel_renderer.h"
@@ -41,6 +42,9 @@ inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
   return {p.proxy.contact_radius_m()};
 }
 inline RenderedContact rendered_contact(const SurfelParameters&) {
+  return {};
+}
+inline RenderedContact rendered_contact(const MlsSurfaceParameters&) {
   return {};
 }
 inline RenderedContact rendered_contact(const PenaltyParameters& p) {

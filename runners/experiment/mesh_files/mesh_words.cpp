@@ -52,7 +52,10 @@ void refuse_line(std::string_view text, std::size_t at, const std::string& probl
 
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t kMaxShown = 32;
-  return "'" + std::string(word.substr(0, kMaxShown)) + (word.size() > kMaxShown ? "...'" : "'");
+  std::string quoted = "'";
+  quoted += word.substr(0, kMaxShown);
+  quoted += word.size() > kMaxShown ? "...'" : "'";
+  return quoted;
 }
 
 }  // namespace remote_touch

@@ -29,6 +29,11 @@ std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion,
   return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
                                          std::make_unique<GodObjectMotion>(motion, *tool));
 }
+std::unique_ptr<Renderer> renderer_of(const InnerSphereParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         std::make_unique<InnerSphereMotion>(motion, *tool));
+}
 
 ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
   ToolSettings tool = settings;
@@ -39,6 +44,9 @@ ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters&
   return tool_for(settings, motion.tool);
 }
 ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
+  return settings;
+}
+ToolSettings tool_for(const ToolSettings& settings, const InnerSphereParameters&) {
   return settings;
 }
 ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameters&) {
@@ -57,5 +65,6 @@ template class ToolFromMesh<ToolParameters>;
 template class ToolFromMesh<TrackedToolParameters>;
 template class ToolFromMesh<ToolPenaltyParameters>;
 template class ToolFromMesh<ToolGodObjectParameters>;
+template class ToolFromMesh<InnerSphereParameters>;
 
 }  // namespace remote_touch

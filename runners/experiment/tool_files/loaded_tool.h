@@ -1,5 +1,6 @@
-// 6-DOF renderers for experiments: a tool made from a mesh, and one of four motions. These are the motion of
-// chapter 6, the same on tracked sheets, and two motions for comparison, penalty and god-object.
+// 6-DOF renderers for experiments: a tool made from a mesh, and one of five motions. These are the motion of
+// chapter 6, the same on tracked sheets, and three motions for comparison: penalty, god-object and inner
+// spheres.
 #pragma once
 
 #include <memory>
@@ -11,11 +12,13 @@
 #include "core/dissertation/tool/motion/god_object_motion.h"
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/rivals/inner_sphere_motion.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
-// MotionSettings: ToolParameters, TrackedToolParameters, ToolPenaltyParameters or ToolGodObjectParameters.
+// MotionSettings: ToolParameters, TrackedToolParameters, ToolPenaltyParameters, ToolGodObjectParameters or
+// InnerSphereParameters.
 template <class MotionSettings>
 struct MovedToolSettings {
   ToolSettings tool;
@@ -46,6 +49,7 @@ using LoadedTool = ToolFromMesh<ToolParameters>;
 using LoadedTrackedTool = ToolFromMesh<TrackedToolParameters>;
 using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
 using LoadedToolGodObject = ToolFromMesh<ToolGodObjectParameters>;
+using LoadedToolInnerSpheres = ToolFromMesh<InnerSphereParameters>;
 
 template <class MotionSettings>
 Parameters parameters(MovedToolSettings<MotionSettings>& s) {

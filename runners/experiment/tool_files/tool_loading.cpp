@@ -5,6 +5,7 @@
 #include "analysis/storage/sha256.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
+#include "runners/experiment/mesh_files/named_mesh.h"
 #include "runners/experiment/provenance/cache_folder.h"
 #include "runners/experiment/tool_files/spheres_cache.h"
 #include "runners/experiment/tool_files/tool_cache.h"
@@ -13,30 +14,10 @@ namespace remote_touch {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-std::string names_of_built_in() {
-  std::string names;
-  for (const GeneratedTool& tool : generated_tools())
-    names += std::string(names.empty() ? "" : ", ") + tool.name;
-  return names;
-}
-
-fs::path find_mesh(const std::string& name) {
-  try {
-    return find_recording(name);
-  } catch (const MissingRecording&) {
-    throw MissingRecording("renderer.tool_mesh = " + name, "no such tool: expected " + names_of_built_in() +
-                                                               ", or an OBJ, PLY or STL file " +
-                                                               recording_places());
-  }
-}
-
-}  // namespace
-
 Parameters parameters(ToolSettings& s) {
   return {
-      {"tool_mesh", &s.mesh, 0, 0, "tool: " + names_of_built_in() + "; or a closed mesh, OBJ, PLY or STL"},
+      {"tool_mesh", &s.mesh, 0, 0,
+       "tool: " + names_of_built_in_meshes() + "; or a closed mesh, OBJ, PLY or STL"},
       {"tool_size_m", &s.size_m, 0, 10, "longest side of the tool's bounding box; 0: the mesh is in metres"},
       {"tool_voxel_m", &s.voxel_m, 1e-5, 0.1, "size of the tool's voxels, 6.2.2"},
       {"tool_repair", &s.repair, 0, 0,
@@ -45,9 +26,7 @@ Parameters parameters(ToolSettings& s) {
 }
 
 std::string validate(const ToolSettings& s) {
-  if (find_generated_tool(s.mesh) == nullptr && !is_mesh_file(s.mesh))
-    return "tool_mesh = " + (s.mesh.empty() ? "\"\"" : s.mesh) + ": expected " + names_of_built_in() +
-           ", or an OBJ, PLY or STL file";
+  if (std::string problem = mesh_name_problem("tool_mesh", s.mesh); !problem.empty()) return problem;
   if (s.size_m > 0 && s.size_m < 2 * s.voxel_m)
     return "tool_size_m = " + std::to_string(s.size_m) +
            ": expected two voxels (tool_voxel_m = " + std::to_string(s.voxel_m) + ") or more, or 0";
@@ -55,8 +34,7 @@ std::string validate(const ToolSettings& s) {
 }
 
 std::vector<RecordingPart> input_files(const ToolSettings& s) {
-  if (find_generated_tool(s.mesh) != nullptr) return {};
-  return {{s.mesh}};
+  return mesh_files_of(s.mesh);
 }
 
 namespace {
@@ -69,7 +47,7 @@ struct KeyedTool {
 KeyedTool built_or_cached(const ToolSettings& s) {
   const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair, s.outer_field};
   const GeneratedTool* built_in = find_generated_tool(s.mesh);
-  const fs::path file = built_in != nullptr ? fs::path() : find_mesh(s.mesh);
+  const fs::path file = built_in != nullptr ? "" : find_mesh_file("renderer.tool_mesh", s.mesh);
   TriangleMesh mesh;
   if (built_in != nullptr) mesh = built_in->make();
   // The key of a mesh file comes from its bytes and not from its mesh, because reading the mesh takes longer

@@ -95,6 +95,10 @@ const char* runs_with(TracePart part) {
       return "a run with a tool";
     case TracePart::guidance:
       return "a run with guidance or a sequence";
+    case TracePart::replay:
+      return "a run that replays a known contact";
+    case TracePart::measured_surface:
+      return "a run with a measured surface beside the true one";
     case TracePart::hand:
       return "a run with an operator or a device";
   }

@@ -54,6 +54,7 @@ std::unique_ptr<DepthSource> open_simulated(const std::string& address, SensorCo
 std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorContext context) {
   RecordedScene::Settings settings;
   settings.path = address;
+  settings.truth = RecordedScene::Truth::measured;
   settings.playback = RecordedScene::Playback::ping_pong;
   auto scene = std::make_unique<RecordedScene>(settings, context.experiment.settings().key, context.kernels);
   return std::make_unique<ScenarioCamera>(

@@ -48,6 +48,7 @@ const Pressed kHeld[] = {
     {"god_object", R"({"name": "god-object"})", kDense_m, 0.01},
     {"god_object_above_the_points", R"({"name": "god-object", "surface_offset_m": 0.001})", kDense_m, 0.01},
     {"surfels", R"({"name": "surfels"})", kDense_m, 0.01},
+    {"mls_surface", R"({"name": "mls-surface"})", kReferenceSpacing_m, 0.01},
     {"averaged_proxy", R"({"name": "averaged-proxy"})", kDense_m, 0.01},
     {"averaged_proxy_by_mean", R"({"name": "averaged-proxy", "average": "mean"})", kDense_m, 0.01},
     {"density_proxy", R"({"name": "density-proxy"})", kDense_m, 0.01},

@@ -145,7 +145,7 @@ TEST_F(ToolCacheTest, ResultsHoldTheHashOfTheMesh) {
 
 TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
   EXPECT_HAS(refusal([] { load_tool({.mesh = "none.obj"}); }),
-             "renderer.tool_mesh = none.obj: no such tool: expected ball, bar, block, fork, husky");
+             "renderer.tool_mesh = none.obj: no such mesh: expected ball, bar, block, fork, husky");
   EXPECT_THROW(load_tool({.mesh = "none.obj"}), MissingRecording);
   folder_.write("open.obj", kCube.substr(0, kCube.size() - 10));
   EXPECT_HAS(refusal([] { load_tool({.mesh = "open.obj", .size_m = 0.02}); }),

@@ -1,0 +1,203 @@
+#include "runners/experiment/mesh_files/placed_mesh.h"
+
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "core/geometry/bounding_box.h"
+#include "core/geometry/rotation.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_repair.h"
+#include "runners/experiment/mesh_files/named_mesh.h"
+#include "scenarios/meshes/checked_object.h"
+#include "scenarios/meshes/pose_file.h"
+#include "scenarios/text_files/refuse.h"
+
+namespace remote_touch {
+
+namespace {
+
+// "#c08040" as 0xRRGGBB; nothing if it is no such text.
+std::optional<std::uint32_t> colour_in(const std::string& text) {
+  constexpr std::size_t kDigits = 6;
+  std::uint32_t colour = 0;
+  if (text.size() != 1 + kDigits || text[0] != '#') return {};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + 1, end, colour, 16);
+  return stop == end && error == std::errc() ? std::optional(colour) : std::nullopt;
+}
+
+std::string subject_of(const PlacedMesh& s, const std::string& prefix) {
+  return "scenario." + prefix + "mesh = " + s.mesh;
+}
+
+// Returns the box of the vertices that triangles use.
+BoundingBox box_of_triangles(const TriangleMesh& mesh, const RigidTransform& X_WO) {
+  BoundingBox box;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) box.extend(X_WO * mesh.vertices[static_cast<std::size_t>(corner)]);
+  return box;
+}
+
+void scale_to(double size_m, const std::string& subject, TriangleMesh& mesh) {
+  const double longest = box_of_triangles(mesh, RigidTransform::Identity()).sizes().maxCoeff();
+  if (!(longest > 0)) refuse(subject, "its bounding box has no size: expected a surface");
+  for (Vec3& vertex : mesh.vertices) vertex *= size_m / longest;
+}
+
+// Returns true if a part of the mesh has a negative volume and is not in the box of a solid part. Such a part
+// is no hollow.
+bool has_inverted_part(const TriangleMesh& mesh) {
+  int count = 0;
+  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
+  std::vector<double> volumes(static_cast<std::size_t>(count), 0);  // six times the volumes
+  std::vector<BoundingBox> boxes(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto part = static_cast<std::size_t>(part_of[i]);
+    const auto& [a, b, c] = mesh.triangles[i];
+    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    volumes[part] += p.dot(q.cross(r));
+    boxes[part].extend(p), boxes[part].extend(q), boxes[part].extend(r);
+  }
+  const auto least = [&](std::size_t i) {  // a part with less volume is a sheet with two sides
+    const double diagonal = boxes[i].diagonal().norm();
+    return 1e-6 * diagonal * diagonal * diagonal;
+  };
+  const auto is_in_solid = [&](const BoundingBox& box) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      if (volumes[i] > least(i) && boxes[i].contains(box)) return true;
+    return false;
+  };
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (volumes[i] < -least(i) && !is_in_solid(boxes[i])) return true;
+  return false;
+}
+
+TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {
+  TriangleMesh mesh = mesh_named("scenario." + prefix + "mesh", s.mesh);
+  const MeshCheck check = check_mesh(mesh);
+  if (!check.readable()) refuse(subject_of(s, prefix), text(check), ": expected a mesh of triangles");
+  MeshRepair repaired;
+  if (s.repair && (!check.closed() || has_inverted_part(mesh))) mesh = repair_mesh(mesh, repaired);
+  if (s.size_m > 0) scale_to(s.size_m, subject_of(s, prefix), mesh);
+  return mesh;
+}
+
+// Returns the displacement that puts the middle of the bottom of the bounding box at the origin.
+Vec3 to_bottom(const TriangleMesh& mesh, const RigidTransform& X_WO) {
+  const BoundingBox box = box_of_triangles(mesh, X_WO);
+  const Vec3 middle = box.center();
+  return {-middle.x(), -box.min().y(), -middle.z()};
+}
+
+constexpr std::size_t kMotionColumns = 7;
+
+// Returns the poses of the path; the identity without one.
+std::vector<StampedPose> poses_in(const PlacedMesh& s) {
+  if (s.path.empty()) return {StampedPose{}};
+  return read_stamped_poses(find_recording(s.path)).poses();
+}
+
+// Returns the displacements and turns of the motion; the identity without one.
+std::vector<StampedPose> motion_of(const PlacedMesh& s) {
+  if (s.motion.empty()) return {StampedPose{}};
+  std::vector<StampedPose> poses;
+  for (std::size_t i = 0; i + kMotionColumns <= s.motion.size(); i += kMotionColumns) {
+    const double* const row = s.motion.data() + i;
+    const Vec3 turn_deg(row[4], row[5], row[6]);
+    poses.push_back(
+        {row[0], Eigen::Translation3d(row[1], row[2], row[3]) * rotation(kRadiansPerDegree * turn_deg)});
+  }
+  return poses;
+}
+
+// Returns the path of the object in the world frame. At most one of `motion` and `path` has several poses.
+PosePath placed_path(const PlacedMesh& s, const TriangleMesh& mesh) {
+  const RigidTransform rotated(rotation(kRadiansPerDegree * s.rotation_deg));
+  const std::vector<StampedPose> path = poses_in(s), motion = motion_of(s);
+  Vec3 shift = Vec3::Zero();
+  if (s.origin == PlacedMesh::Origin::bottom) shift = to_bottom(mesh, rotated * path.front().X);
+  const RigidTransform outer(Eigen::Translation3d(s.position_m)),
+      inner = Eigen::Translation3d(shift) * rotated;
+  std::vector<StampedPose> poses;
+  for (const StampedPose& moved : motion)
+    for (const StampedPose& pose : path)
+      poses.push_back({moved.time_s + pose.time_s, outer * moved.X * inner * pose.X});
+  return PosePath(std::move(poses));
+}
+
+std::string motion_problem(const PlacedMesh& s, const std::string& prefix) {
+  const std::string name = prefix + "mesh_motion";
+  if (!s.motion.empty() && !s.path.empty())
+    return name + ": expected no motion beside " + prefix + "mesh_path = " + s.path;
+  for (std::size_t i = kMotionColumns; i + kMotionColumns <= s.motion.size(); i += kMotionColumns)
+    if (!(s.motion[i] > s.motion[i - kMotionColumns]))
+      return name + ": row " + std::to_string(i / kMotionColumns) +
+             ": expected a later time than in the row before";
+  return {};
+}
+
+}  // namespace
+
+Parameters parameters(PlacedMesh& s, const std::string& prefix) {
+  return {
+      {prefix + "mesh", &s.mesh, 0, 0,
+       "object: " + names_of_built_in_meshes() + "; or a mesh, OBJ, PLY or STL; empty: none"},
+      {prefix + "mesh_size_m", &s.size_m, 0, 10,
+       "longest side of the object's bounding box in its own frame; 0: the mesh is in metres"},
+      {prefix + "mesh_origin", choice(s.origin, {"bottom", "file"}), 0, 0,
+       "what is at the position: the middle of the bottom of the bounding box, or the origin of the file"},
+      {prefix + "mesh_position_m", &s.position_m, -10, 10, "position of the object at the start"},
+      {prefix + "mesh_rotation_deg", &s.rotation_deg, -360, 360,
+       "rotation vector of the object; -90,0,0 turns z up to y up"},
+      {prefix + "mesh_motion", Rows{{"time_s", "x_m", "y_m", "z_m", "rx_deg", "ry_deg", "rz_deg"}, &s.motion},
+       -1000, 1000,
+       "motion: times, displacements and rotation vectors, world frame, about the position; between "
+       "rows straight, by the smaller angle, and at constant rate"},
+      {prefix + "mesh_path", &s.path, 0, 0,
+       "file of poses over time instead, `t tx ty tz qx qy qz qw`, of the object in the frame that position "
+       "and rotation place; empty: none"},
+      {prefix + "mesh_colour", &s.colour, 0, 0, "colour of the object, #rrggbb; empty: none"},
+      {prefix + "mesh_sheet", &s.sheet, 0, 0,
+       "the mesh is an open surface, whose outside is the side of its normals"},
+      {prefix + "mesh_repair", &s.repair, 0, 0,
+       "repair a mesh that is not closed: weld vertices, orient faces, fill holes"},
+  };
+}
+
+std::string validate(const PlacedMesh& s, const std::string& prefix) {
+  if (s.mesh.empty()) return {};
+  if (!s.colour.empty() && !colour_in(s.colour))
+    return prefix + "mesh_colour = " + s.colour + ": expected # and six hexadecimal digits, or nothing";
+  if (s.sheet && s.repair)
+    return prefix + "mesh_repair = true: closes a mesh, expected " + prefix + "mesh_sheet = false";
+  if (std::string problem = motion_problem(s, prefix); !problem.empty()) return problem;
+  return mesh_name_problem(prefix + "mesh", s.mesh);
+}
+
+std::vector<RecordingPart> input_files(const PlacedMesh& s) {
+  std::vector<RecordingPart> files = mesh_files_of(s.mesh);
+  if (!s.mesh.empty() && !s.path.empty()) files.push_back({s.path});
+  return files;
+}
+
+SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
+  const TriangleMesh mesh = checked_mesh(s, prefix);
+  const std::string setting = "scenario." + prefix;
+  const std::string if_inverted = ", or " + setting + "mesh_repair=true";
+  const std::string if_open =
+      (s.repair ? " after its repair, or " : ", " + setting + "mesh_repair=true or ") + setting +
+      "mesh_sheet=true";
+  MeshObject object = checked_object(
+      std::filesystem::path(s.mesh).stem().string(), mesh, !s.sheet,
+      {subject_of(s, prefix), if_open, if_inverted, "; " + setting + "mesh_size_m scales the mesh"});
+  if (!s.sheet && has_inverted_part(mesh))
+    refuse(subject_of(s, prefix), "a part of the mesh is inside out: expected all faces to point outwards",
+           if_inverted);
+  PosePath path = placed_path(s, mesh);
+  return {std::move(object), std::move(path), colour_in(s.colour)};
+}
+
+}  // namespace remote_touch
