@@ -14,6 +14,7 @@
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/view/frames_again.h"
 #include "runners/presentation/view/shown_frames.h"
+#include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/shown_sensor.h"
 #include "runners/presentation/view/shown_tool.h"
 #include "runners/presentation/view/trace_event.h"
@@ -203,8 +204,14 @@ struct ShownRun::State {
     run["shown"] = shown = text_of(some);
     if (made.X_WC) run["sensor"] = sensor_json(*made.X_WC);
   }
-  void add_truth(Json& run, PackedArrays& numbers) const {
+  void add_truth(Json& run, PackedArrays& numbers) {
     const auto scenario = experiment.build_scenario(kernels);
+    if (!meshes) {
+      meshes = shown_meshes(*scenario, path.time_s);
+      add_note(note_on(*meshes));
+      run["note"] = note;
+    }
+    for (const ShownMesh& mesh : *meshes) run["true_meshes"].push_back(json_of(mesh, numbers));
     const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s);
     if (heights.empty()) return;
     run["truth"] = {{"columns", TrueHeights::kColumns},
@@ -223,7 +230,8 @@ struct ShownRun::State {
   const double r2_m, contact_radius_m;
   RunPath path;
   std::optional<ShownTool> tool;
-  ShownFrames made;  // frames with as many points as the first json() requested
+  std::optional<std::vector<ShownMesh>> meshes;  // nothing before the first json()
+  ShownFrames made;                              // frames with as many points as the first json() requested
   BoundingBox shown_box_W;
   std::optional<TraceEvent> divergence;
   std::string shown, note = source.note;

@@ -1,6 +1,7 @@
 // Pages of results, as people use them. Usage: node pages.mjs PROGRAM CHROMIUM [EXPERIMENT... | all]
 import assert from "node:assert/strict";
 import { execFile, execFileSync, spawnSync } from "node:child_process";
+import { existsSync } from "node:fs";
 import { test } from "node:test";
 import { promisify } from "node:util";
 import { goTo, noComplaints, openBrowser, openPage, picture, tick } from "./browser.mjs";
@@ -69,6 +70,21 @@ async function sheetIsWhereTheColumnMeasures(page, ticks) {
       return [1000 * proxy[1] - places.getY((places.count - 1) / 2), 1000 * runs[0].column("signed_distance").value(player.tick)];
     });
     assert.ok(Math.abs(drawnMm - storedMm) < 0.001, `tick ${t}: the sheet is ${drawnMm} mm below the proxy, the column says ${storedMm} mm`);
+  }
+}
+
+// The proxy is as far from the drawn cube, whose side is 85 mm, as the column says.
+async function cubeIsWhereTheColumnMeasures(page, ticks) {
+  for (const t of ticks) {
+    await goTo(page, t);
+    const [drawnMm, storedMm] = await page.evaluate(() => {
+      const { scene, runs, player } = window.remoteTouch, cube = scene.trueMeshes.object.getObjectByName("cube");
+      const place = cube.position.clone().set(...runs[0].vector("proxy_position", player.tick).map((x) => 1000 * x));
+      const beyond = cube.worldToLocal(place).toArray().map((x) => Math.max(Math.abs(x) - 42.5, 0));
+      return [Math.hypot(...beyond), 1000 * runs[0].column("signed_distance").value(player.tick)];
+    });
+    assert.ok(drawnMm > 0.1, `tick ${t}: the proxy is outside of the cube`);
+    assert.ok(Math.abs(drawnMm - storedMm) < 0.002, `tick ${t}: the cube is ${drawnMm} mm from the proxy, the column says ${storedMm} mm`);
   }
 }
 
@@ -163,6 +179,24 @@ test("a sweep: a click on its map shows another run", async () => {
     assert.equal(await proxyEnd(), before, "the click goes back to the first run");
     assert.equal(await page.locator("header").count(), 1);
     await showsMotion(page, [100, 700]);
+  });
+});
+
+const recording = `${process.env.REMOTE_TOUCH_DATA}/rgbd/visp_cube_dragon`;
+test("true meshes are drawn at their poses", { skip: !existsSync(recording) && "recorded data are missing" }, async () => {
+  remoteTouch("run", "fig4.16-moving", "--set", `scenario.path=${recording}`, "--set", "trajectory.row=310", "--set",
+    "trajectory.column=290", "-o", "cube.h5");
+  remoteTouch("view", "cube.h5", "-o", "cube.html");
+  await withPage("cube.html", {}, async (page) => {
+    assert.match(await page.textContent(".legend"), /true surface: cube, dragon, table/);
+    assert.match(await page.textContent("aside"), /distance to the true surface/);
+    await cubeIsWhereTheColumnMeasures(page, [300, 533, 567, 900, 1800]);
+    const shown = await picture(page);
+    await page.keyboard.press("t");
+    const hidden = await picture(page);
+    assert.ok(hidden.drawn < 0.7 * shown.drawn, `${shown.drawn} pixels with the meshes, ${hidden.drawn} without`);
+    await page.keyboard.press("t");
+    assert.equal((await picture(page)).hash, shown.hash);
   });
 });
 

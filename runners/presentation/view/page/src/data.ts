@@ -12,6 +12,9 @@ interface StoredFrame {
 }
 // stays: until the next of the times, at which there was a capture; otherwise it moves evenly between them.
 interface StoredTruth { columns: number; stays: boolean; low_m: Vector; high_m: Vector; time_s: Packed; height_m: Packed }
+// low + step * number is a vertex, in the frame of the object. A pose, 7 numbers: position and orientation w x y z, is that
+// of its time until the next of the times. NaN: not known.
+export interface StoredMesh { name: string; low_m: Vector; step_m: number; vertices: Packed; triangles: Packed; time_s: Packed; poses: Packed }
 interface StoredSensor { position_m: Vector; forward: Vector; up: Vector }
 
 export interface RunEvent { tick: number; kind: string; text: string }
@@ -22,7 +25,7 @@ export interface StoredRun {
   file: string; title: string; command: string; version: string; digest: string; note: string; configuration: unknown;
   haptic_rate_hz: number; contact_radius_m: number; shown: string;
   columns: StoredColumn[]; events: RunEvent[]; low_m: Vector; high_m: Vector; corner_m: Vector; step_m: number; frames: StoredFrame[];
-  claims?: Claim[]; truth?: StoredTruth; tool?: { vertices: Packed; triangles: Packed; spheres?: Packed }; sensor?: StoredSensor;
+  claims?: Claim[]; truth?: StoredTruth; true_meshes?: StoredMesh[]; tool?: { vertices: Packed; triangles: Packed; spheres?: Packed }; sensor?: StoredSensor;
 }
 
 export interface LiveParameter { name: string; meaning: string; value: number; low: number; high: number; is_switch: boolean }

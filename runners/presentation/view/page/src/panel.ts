@@ -49,6 +49,7 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   add(colours.touching, "points that touch");
   if (frames.length === 0 || frames.some((frame) => !frame.colours)) add(rampStyle(heights), frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
   if (run.stored.truth) add(colours.truth, run.truthName);
+  if (run.stored.true_meshes) add(colours.truth, `true surface: ${run.stored.true_meshes.map((mesh) => mesh.name).join(", ")}`);
   if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s`);
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");

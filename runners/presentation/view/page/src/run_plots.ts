@@ -11,10 +11,11 @@ import { TimeAxis } from "./time_axis";
 
 const zoomStep = 2;
 
-// The surface of a recording is what its camera measured. Of a tool the distance is that of its centre.
+// The surface of a recording without true meshes is what its camera measured. Of a tool the distance is that of its centre.
 function distanceLabel(run: Run): string {
   const { scenario } = run.stored.configuration as { scenario?: { name?: string } };
-  const surface = ["recording", "live-session"].includes(scenario?.name ?? "") ? "measured surface" : run.truthName;
+  const isMeasured = ["recording", "live-session"].includes(scenario?.name ?? "") && !run.stored.true_meshes;
+  const surface = isMeasured ? "measured surface" : run.truthName;
   return run.stored.tool ? `tool's centre to the ${surface}` : `distance to the ${surface}`;
 }
 

@@ -5,6 +5,7 @@ import { CloudView } from "./cloud";
 import { round125, type Run, type Vector } from "./data";
 import { DepthCue } from "./depth_cue";
 import { HandView, longestForce } from "./hand";
+import { TrueMeshesView } from "./true_meshes";
 import { TruthView } from "./truth";
 import { acrossForce, distanceOf } from "./viewpoint";
 
@@ -59,6 +60,7 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly hands: HandView[];
   private readonly truths: TruthView[];
+  private readonly trueMeshes: TrueMeshesView;
   private readonly cue: DepthCue;
   private readonly labels: THREE.Sprite[] = []; // of the axes
   private readonly middle = new THREE.Vector3();
@@ -90,8 +92,9 @@ export class SceneView {
     this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, pointMm));
     this.hands = runs.map((run, i) => new HandView(run, this.handSize, this.mmPerN, i > 0));
     this.truths = runs.slice(0, 1).map((run) => new TruthView(run));
+    this.trueMeshes = new TrueMeshesView(runs[0]);
     this.cue = new DepthCue(runs[0], runs[0].stored.tool ? 0.2 * this.proxyMm : this.proxyMm);
-    for (const part of [...this.truths, ...this.clouds, ...this.hands, this.cue]) this.scene.add(part.object);
+    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, ...this.hands, this.cue]) this.scene.add(part.object);
     this.light();
     this.scene.add(this.axes());
     this.controls = new OrbitControls(this.camera, canvas);
@@ -111,7 +114,7 @@ export class SceneView {
   }
   show(tick: number): void {
     this.tick = tick;
-    for (const part of [...this.truths, ...this.clouds, this.cue]) part.show(Math.min(tick, this.runs[0].ticks - 1));
+    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, this.cue]) part.show(Math.min(tick, this.runs[0].ticks - 1));
     this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
     if (this.follows) this.followProxy(tick);
     if (this.isLive) this.draw();
@@ -148,7 +151,10 @@ export class SceneView {
     if (what === "spheres") for (const hand of this.hands) hand.spheresVisible = visible;
     else if (what === "regions") for (const cloud of this.clouds) cloud.regionsVisible = visible;
     else if (what === "points") for (const cloud of this.clouds) cloud.object.visible = visible;
-    else if (what === "truth") for (const truth of this.truths) truth.object.visible = visible && truth.known;
+    else if (what === "truth") {
+      this.trueMeshes.object.visible = visible;
+      for (const truth of this.truths) truth.object.visible = visible && truth.known;
+    }
     else this.scene.getObjectByName("axes")?.traverse((o) => { o.visible = visible; });
     this.drawSoon();
   }

@@ -1,0 +1,160 @@
+#include "runners/presentation/view/shown_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+#include <utility>
+
+#include "core/geometry/bounding_box.h"
+#include "runners/presentation/view/shown_sensor.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kFinestGrid = 65535;      // steps along the longest side
+constexpr double kLeastStep_m = 1e-9;      // step for a mesh that is a single point
+constexpr double kVisibleStep_m = 0.0002;  // a finer grid cannot be told from the mesh itself
+
+// Numbers of a node along x, y and z, 16 bits each.
+std::uint64_t node_of(const Vec3& p_O, const MeshOnGrid& grid) {
+  std::uint64_t node = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double number = std::clamp((p_O[axis] - grid.low_O[axis]) / grid.step_m, 0.0, kFinestGrid);
+    node = node << 16 | static_cast<std::uint64_t>(std::lround(number));
+  }
+  return node;
+}
+
+MeshOnGrid moved_to_grid(const PosedMesh& mesh, const Vec3& low_O, double step_m) {
+  MeshOnGrid grid{low_O, step_m, {}, {}};
+  std::unordered_map<std::uint64_t, std::uint32_t> vertex_at;
+  std::vector<std::uint32_t> vertex_of;
+  vertex_of.reserve(mesh.vertices_O.size());
+  for (const Vec3& p_O : mesh.vertices_O) {
+    const std::uint64_t node = node_of(p_O, grid);
+    const auto [at, is_new] = vertex_at.try_emplace(node, static_cast<std::uint32_t>(vertex_at.size()));
+    vertex_of.push_back(at->second);
+    for (int shift = 32; is_new && shift >= 0; shift -= 16)
+      grid.vertices.push_back(static_cast<std::uint16_t>(node >> shift));
+  }
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const std::uint32_t a = vertex_of[static_cast<std::size_t>(i)],
+                        b = vertex_of[static_cast<std::size_t>(j)],
+                        c = vertex_of[static_cast<std::size_t>(k)];
+    if (a != b && b != c && c != a) grid.triangles.insert(grid.triangles.end(), {a, b, c});
+  }
+  return grid;
+}
+
+ShownPose shown_pose(const std::optional<RigidTransform>& X_WO) {
+  ShownPose pose;
+  pose.fill(std::numeric_limits<float>::quiet_NaN());
+  if (!X_WO) return pose;
+  const Eigen::Quaterniond q = Eigen::Quaterniond(X_WO->linear()).normalized();
+  const Vec3 p = X_WO->translation();
+  const double numbers[] = {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
+  std::transform(std::begin(numbers), std::end(numbers), pose.begin(),
+                 [](double number) { return static_cast<float>(number); });
+  return pose;
+}
+
+bool same_pose(const ShownPose& a, const ShownPose& b) {
+  return a == b || (std::isnan(a[0]) && std::isnan(b[0]));
+}
+
+// Returns the largest part that each of several may have, so that all together have at most `most`.
+std::size_t limit_of_each(std::vector<std::size_t> sizes, std::size_t most) {
+  std::sort(sizes.begin(), sizes.end());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const std::size_t share = most / (sizes.size() - i);
+    if (sizes[i] > share) return share;
+    most -= sizes[i];
+  }
+  return std::numeric_limits<std::size_t>::max();
+}
+
+std::size_t limit_of_triangles(const std::vector<PosedMesh>& meshes) {
+  std::vector<std::size_t> sizes;
+  for (const PosedMesh& mesh : meshes) sizes.push_back(mesh.triangles.size());
+  return limit_of_each(std::move(sizes), kMaxShownTriangles);
+}
+
+std::size_t limit_of_poses(const std::vector<ShownMesh>& meshes) {
+  std::vector<std::size_t> sizes;
+  for (const ShownMesh& mesh : meshes) sizes.push_back(mesh.poses.size());
+  return limit_of_each(std::move(sizes), kMaxShownPoses);
+}
+
+// Keeps every nth pose, beginning with the first, so that at most max_poses remain.
+void thin(ShownMesh& mesh, std::size_t max_poses) {
+  if (mesh.poses.size() <= max_poses) return;
+  const std::size_t n = (mesh.poses.size() + max_poses - 1) / max_poses;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.poses.size(); i += n, ++kept)
+    mesh.time_s[kept] = mesh.time_s[i], mesh.poses[kept] = mesh.poses[i];
+  mesh.time_s.resize(kept), mesh.poses.resize(kept);
+}
+
+}  // namespace
+
+MeshOnGrid mesh_on_grid(const PosedMesh& mesh, std::size_t max_triangles) {
+  BoundingBox box;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) box.extend(mesh.vertices_O[static_cast<std::size_t>(corner)]);
+  if (box.isEmpty()) return {};
+  double step_m = std::max(box.sizes().maxCoeff() / kFinestGrid, kLeastStep_m);
+  MeshOnGrid grid = moved_to_grid(mesh, box.min(), step_m);
+  while (grid.triangles.size() > 3 * max_triangles) grid = moved_to_grid(mesh, box.min(), step_m *= 2);
+  return grid;
+}
+
+std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const double> time_s) {
+  const std::vector<PosedMesh> meshes = scenario.true_meshes(time_s.front());
+  const std::size_t max_triangles = limit_of_triangles(meshes);
+  std::vector<ShownMesh> shown;
+  for (const PosedMesh& mesh : meshes)
+    shown.push_back({mesh.name, mesh_on_grid(mesh, max_triangles), {}, {}});
+  if (shown.empty()) return shown;
+  for (const double t : time_s) {
+    const std::vector<PosedMesh> now = scenario.true_meshes(t);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const ShownPose pose = shown_pose(now[i].X_WO);
+      if (!shown[i].poses.empty() && same_pose(shown[i].poses.back(), pose)) continue;
+      shown[i].time_s.push_back(t), shown[i].poses.push_back(pose);
+    }
+  }
+  const std::size_t max_poses = limit_of_poses(shown);
+  for (ShownMesh& mesh : shown) thin(mesh, max_poses);
+  return shown;
+}
+
+Json json_of(const ShownMesh& mesh, PackedArrays& numbers) {
+  std::vector<float> poses;
+  for (const ShownPose& pose : mesh.poses) poses.insert(poses.end(), pose.begin(), pose.end());
+  return {{"name", mesh.name},
+          {"low_m", json_of(mesh.mesh.low_O)},
+          {"step_m", mesh.mesh.step_m},
+          {"vertices", json_of(numbers.add(mesh.mesh.vertices))},
+          {"triangles", json_of(numbers.add(mesh.mesh.triangles))},
+          {"time_s", json_of(numbers.add(mesh.time_s))},
+          {"poses", json_of(numbers.add(poses))}};
+}
+
+std::string note_on(const std::vector<ShownMesh>& meshes) {
+  std::string note;
+  for (const ShownMesh& mesh : meshes) {
+    if (mesh.mesh.step_m <= kVisibleStep_m) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2g mm", 1000 * mesh.mesh.step_m);
+    note += (note.empty() ? "" : "; ") +
+            ("The mesh of " + mesh.name + " is drawn with vertices on a grid of ") + text +
+            ": it has too many triangles for a page";
+  }
+  return note;
+}
+
+}  // namespace remote_touch

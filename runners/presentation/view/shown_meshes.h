@@ -1,0 +1,52 @@
+// The true surface of a scene of meshes, as a page shows it: each mesh once, and its poses over time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runners/presentation/view/packed_arrays.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+// A mesh whose vertices are nodes of a grid in the frame O of the object: low + step * number.
+struct MeshOnGrid {
+  Vec3 low_O = Vec3::Zero();
+  double step_m = 0;
+  std::vector<std::uint16_t> vertices;  // three numbers for each vertex
+  std::vector<std::uint32_t> triangles;
+};
+
+// Moves every vertex to the nearest node of a grid, and merges those of one node. The grid is the finest one
+// with 65536 nodes along the longest side of the mesh, or with half of that again and again until at most
+// max_triangles have three different corners; the others are left out.
+MeshOnGrid mesh_on_grid(const PosedMesh& mesh, std::size_t max_triangles);
+
+// The pose of a mesh from one time to the next: position, then the orientation w, x, y, z, in the world
+// frame. All are NaN if it is not known.
+using ShownPose = std::array<float, 7>;
+
+struct ShownMesh {
+  std::string name;
+  MeshOnGrid mesh;
+  std::vector<double> time_s;  // as many as poses; the first is the first tick
+  std::vector<ShownPose> poses;
+};
+
+inline constexpr std::size_t kMaxShownTriangles = 200'000;  // limit for all meshes together
+inline constexpr std::size_t kMaxShownPoses = 20'000;       // limit for all meshes together
+
+// time_s: the times of the ticks, at least one. A mesh has a pose for each tick at which its pose changes, so
+// that the page shows the surface of signed_distance(). If that makes too many, the meshes with the most
+// poses keep every nth. Returns nothing if the true surface is not one of meshes.
+std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const double> time_s);
+
+Json json_of(const ShownMesh& mesh, PackedArrays& numbers);
+// A remark on the meshes that are drawn more coarsely than by 0.2 mm; empty: none is.
+std::string note_on(const std::vector<ShownMesh>& meshes);
+
+}  // namespace remote_touch
