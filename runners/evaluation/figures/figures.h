@@ -25,10 +25,15 @@ inline constexpr double kContactRadius_m = 0.005;
 // number of threads.
 class FigureContext {
  public:
-  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all.
+  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all. overrides: settings of the
+  // user, for a figure that takes them.
   FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, int coarse = 1,
-                SideBySide runs = side_by_side)
-      : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
+                SideBySide runs = side_by_side, std::vector<std::string> overrides = {})
+      : kernels_(kernels),
+        stop_(stop),
+        coarse_(coarse),
+        runs_(std::move(runs)),
+        overrides_(std::move(overrides)) {}
 
   Trace run(const Experiment& experiment);
   // Records an experiment whose frames are used without a run.
@@ -37,6 +42,16 @@ class FigureContext {
     inputs_.add(experiment.inputs());
   }
   const Kernels& kernels() const { return kernels_; }
+  // Settings "key=value" of the user; empty unless FigureEntry::takes_recording is set.
+  const std::vector<std::string>& overrides() const { return overrides_; }
+  // Returns work(i) for each i below count, in parallel. For work that is not a run; uses() records what it
+  // reads.
+  template <class Work>
+  auto collect(std::size_t count, Work&& work) const {
+    std::vector<decltype(work(std::size_t{}))> results(count);
+    runs_(count, [&](std::size_t i) { results[i] = work(i); });
+    return results;
+  }
   std::vector<Trace> run(const std::vector<Experiment>& experiments);  // parallel runs
   // Returns of(trace) for each run, in parallel. The first failure is thrown after all runs have ended.
   template <class Of>
@@ -75,12 +90,6 @@ class FigureContext {
  private:
   // Several threads call it at the same time: of the members it changes only notes_, which has a lock.
   Trace simulated(const Experiment& experiment);
-  template <class Work>
-  auto collect(std::size_t count, Work&& work) const {
-    std::vector<decltype(work(std::size_t{}))> results(count);
-    runs_(count, [&](std::size_t i) { results[i] = work(i); });
-    return results;
-  }
   void note(const std::string& configuration) { configurations_.push_back(configuration); }
 
   std::vector<std::string> configurations_;
@@ -90,6 +99,7 @@ class FigureContext {
   const std::atomic<bool>* stop_;
   int coarse_;
   SideBySide runs_;
+  std::vector<std::string> overrides_;
   std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
 
@@ -108,9 +118,10 @@ struct FigureEntry {
   const char* name;
   const char* summary;
   MakeFigure* make;
-  double expected_s;     // time on one thread, for the order of figures and the time left
-  bool has_map = false;  // the map needs most of that time
-  int quick_coarse = 1;  // value of coarse for a quick figure
+  double expected_s;             // time on one thread, for the order of figures and the time left
+  bool has_map = false;          // the map needs most of that time
+  int quick_coarse = 1;          // value of coarse for a quick figure
+  bool takes_recording = false;  // takes settings of its scenario, such as scenario.path=DIR
 };
 std::span<const FigureEntry> figures();
 
@@ -118,7 +129,8 @@ MakeFigure figure_4_10, figure_4_11, figure_4_12, figure_4_13, figure_4_13_repli
     figure_4_14, figure_4_15, figure_4_16, figure_4_16_recorded, figure_5_5, figure_5_6, figure_latency,
     figure_5_8, figure_5_8_recorded, figure_5_9, figure_6_2, figure_6_3, figure_6_3_angles, figure_6_4,
     figure_7_1_recorded, figure_7_4, figure_7_5, figure_7_5_guidance, figure_7_5_recorded, figure_bounds,
-    figure_eq4_15, figure_first_touch, figure_frame_rates, figure_proxy_rates, figure_tool_forces,
-    figure_tool_lifts, figure_tool_shapes, figure_tool_tracked, figure_turbidity;
+    figure_camera_error, figure_eq4_15, figure_first_touch, figure_frame_rates, figure_proxy_rates,
+    figure_sensor_models_recorded, figure_tool_forces, figure_tool_lifts, figure_tool_shapes,
+    figure_tool_tracked, figure_turbidity;
 
 }  // namespace remote_touch

@@ -55,6 +55,7 @@ struct FigureRequest {
   std::string folder;
   int coarse = 1;      // uses every coarse-th value of a map's axes
   bool quick = false;  // uses coarse maps where a map takes minutes
+  std::vector<std::string> overrides;
 };
 int command_figure(const CommandLine& line, const FigureRequest& request);
 

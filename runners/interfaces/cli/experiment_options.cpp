@@ -164,6 +164,9 @@ void add_figure(Subcommands& commands) {
       "figure", "reproduce figures and check their claims; writes HDF5 files and claims.json", make_figures);
   command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+  add_set(
+      command, figure->overrides,
+      "scenario.path=DIR: for camera-error, a recording with true objects; also other settings of the scenario");
   command
       ->add_option("--coarse", figure->coarse,
                    "maps: use only every Nth value of each axis; claims about a whole map then stay open")

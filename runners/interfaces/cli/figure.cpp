@@ -22,7 +22,11 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
   for (const FigureEntry& entry : figures()) {
     const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
     const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
-    if (std::any_of(request.names.begin(), request.names.end(), names_it)) chosen.push_back({&entry, coarse});
+    if (std::none_of(request.names.begin(), request.names.end(), names_it)) continue;
+    if (!request.overrides.empty() && !entry.takes_recording)
+      throw InputError("figure " + std::string(entry.name) + " --set " + request.overrides.front(),
+                       "this figure has no settings: expected camera-error");
+    chosen.push_back({&entry, coarse, request.overrides});
   }
   return quickest_first(chosen);
 }

@@ -76,7 +76,7 @@ FigureFolder::~FigureFolder() {
 
 void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure figure) {
   context.require_unchanged_inputs();
-  Recipe recipe{"figure", figure.name};
+  Recipe recipe{"figure", figure.name, runs_[run].overrides};
   if (context.made_runs_of_maps() < context.runs_of_maps()) {
     leave_unjudged(figure, context, runs_[run].coarse);
     recipe.coarse = runs_[run].coarse;

@@ -42,7 +42,7 @@ void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
     jobs.emplace_back([&, i] {
       try {
         if (line.stop && *line.stop) throw Interrupted{};
-        FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces);
+        FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces, runs[i].overrides);
         Figure figure = make(*runs[i].entry, context);
         const std::lock_guard lock(one_at_a_time);
         finish(i, context, std::move(figure));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "runners/evaluation/figures/figures.h"
@@ -12,7 +13,8 @@ namespace remote_touch {
 
 struct FigureRun {
   const FigureEntry* entry;
-  int coarse = 1;  // uses every coarse-th value of the axes of its maps
+  int coarse = 1;                           // uses every coarse-th value of the axes of its maps
+  std::vector<std::string> overrides = {};  // settings, for a figure that takes a recording
 
   double expected_s() const {
     return entry->has_map ? entry->expected_s / (coarse * coarse) : entry->expected_s;

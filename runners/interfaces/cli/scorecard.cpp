@@ -28,6 +28,7 @@ void print(const ScorecardReport& report) {
   const Scorecard& card = report.card;
   for (const SceneScore& scene : card.scenes) {
     std::printf("%s\n", scene.name.c_str());
+    if (!scene.truth.empty()) std::printf("  truth: %s\n", printable(scene.truth).c_str());
     for (std::size_t c = 0; c < card.methods.size(); ++c) {
       std::printf("  %-18s", card.methods[c].c_str());
       for (const Proportion& fraction : scene.success[c].at_level)

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/claims_file.h"
+#include "runners/evaluation/figures/tools/claims_file.h"
 
 #include <algorithm>
 #include <cmath>
