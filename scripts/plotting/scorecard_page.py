@@ -84,8 +84,10 @@ would send (IEEE 1918.1.1).</p>"""
 def scene_section(card, scene, link):
     name = esc(scene["name"])
     plot = noise_plot([one["levels"] for one in scene["success"]], level_heads(card, scene))
+    # Only recorded scenes state their truth, and only since cards of this version.
+    truth = f"<br>Truth: {esc(scene['truth'])}." if scene.get("truth") else ""
     return f"""<h2 id="{name}">{name}</h2>
-<p>{esc(scene["title"])}.<br>Success is {esc(scene["success_meaning"])}. <b>{esc(scene["verdict"])}</b></p>
+<p>{esc(scene["title"])}.{truth}<br>Success is {esc(scene["success_meaning"])}. <b>{esc(scene["verdict"])}</b></p>
 <div class="scene">{plot}<div>{measure_table(card, scene)}</div></div>
 {success_table(card, scene, link)}
 {level_tables(card, scene)}"""

@@ -65,6 +65,7 @@ METHODS = {
     "proxy-temporal-filter": ("proxy", 3, 3), "oracle-proxy": ("truth", 2, 4), "predecessor": ("measured", 0, 4),
     "god-object": ("rose", 0, 3), "finger-proxy": ("fixture", 0, 5), "penalty": ("points", 0, 4),
     "metaballs-tuned": ("region", 0, 1), "metaballs-wyvill": ("region", 1, 2), "surfels-wendland": ("fixture", 1, 3),
+    "mls-surface": ("rose", 3, 5), "inner-spheres": ("truth", 3, 4),
     "tracked-sheet": ("estimate", 0, 3), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
     "continuous": ("lavender", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
 }

@@ -40,7 +40,8 @@ bool has_known_contact(const Method& method) {
 bool judges_contact(const BenchmarkScene& scene) {
   const auto is_of_contact = [](const Bound& bound) {
     return std::any_of(measures().begin(), measures().end(), [&](const Measure& measure) {
-      return measure.name == bound.measure && measure.runs == MeasuredRuns::contact;
+      return measure.name == bound.measure &&
+             (measure.runs == MeasuredRuns::contact || measure.runs == MeasuredRuns::measured_surface);
     });
   };
   return std::any_of(scene.success.begin(), scene.success.end(), is_of_contact);

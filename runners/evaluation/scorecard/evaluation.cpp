@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/passivity.h"
 #include "runners/experiment/provenance/provenance.h"
 
@@ -22,6 +23,17 @@ SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>&
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
   return score(rules, results, scene.noise.empty());
+}
+
+// Returns the true surface of the sweep's scenario in words, see Scenario::truth_text(). Empty if the
+// scenario cannot be built: the sweep's file contains the error.
+std::string truth_of(const Sweep& sweep, const Kernels& kernels) {
+  if (sweep.inputs().empty()) return {};
+  try {
+    return sweep.experiment(0, 0).build_scenario(kernels)->truth_text();
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 // Returns the scene with measures that are only reported. A judged measure counts successful runs only, but
@@ -86,6 +98,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
     progress(report.card.scenes.size(), plan.scenes.size());
     const std::vector<StoredSweep> stored = read_all(one.sweeps);
     report.card.scenes.push_back(score_of(one.scene, stored));
+    report.card.scenes.back().truth = truth_of(one.sweeps.front().sweep, kernels);
     report.failures.emplace_back();
     for (std::size_t c = 0; c < stored.size(); ++c)
       report.failures.back().push_back(

@@ -108,6 +108,7 @@ Json scene_json(const ScorecardReport& report, std::size_t number) {
   return {{"name", scene.name},
           {"title", scene.title},
           {"success_meaning", scene.meaning},
+          {"truth", scene.truth.empty() ? Json() : Json(scene.truth)},
           {"verdict", verdict(report.card, scene)},
           {"noise_sigma_m", levels_json(scene.noise_m)},
           {"success", successes_json(report, number)},

@@ -162,8 +162,9 @@ Names lifts_and_presses() {
 }
 // More parts that only the experiments of lifts_and_presses() have.
 const std::vector<std::string> kScenes = {"scenario plates"};
-const std::vector<std::string> kRivals = {"renderer surfels", "renderer averaged-proxy",
-                                          "renderer density-proxy", "renderer oracle-proxy"};
+const std::vector<std::string> kRivals = {"renderer surfels", "renderer mls-surface",
+                                          "renderer averaged-proxy", "renderer density-proxy",
+                                          "renderer oracle-proxy"};
 Names without(Names names, const Names& gone) {
   std::erase_if(names, [&](const std::string& name) { return std::ranges::count(gone, name) > 0; });
   return names;

@@ -115,9 +115,10 @@ TEST(Benchmark, ToolsAreComparedWithTools) {
   EXPECT_EQ(all.scenes.size() + tools.scenes.size(), chosen_scenes({}).size());
   EXPECT_EQ(all.methods.size() + slot.methods.size(), chosen_methods({}).size());
   EXPECT_GE(tools.scenes.size(), 5u);
-  EXPECT_EQ(names(slot.methods),
-            (std::vector<std::string>{"tool-continuous", "tool-god-object", "tool-look-ahead", "tool-penalty",
-                                      "tool-tracked", "tool-voxels", "tool-voxmap"}));
+  EXPECT_EQ(
+      names(slot.methods),
+      (std::vector<std::string>{"tool-continuous", "tool-god-object", "tool-inner-spheres", "tool-look-ahead",
+                                "tool-penalty", "tool-tracked", "tool-voxels", "tool-voxmap"}));
   EXPECT_HAS(refusal([&] { chosen({"proxy"}, {"tool-slot"}); }),
              "scene tool-slot: expected only those for a HIP");
   EXPECT_HAS(refusal([&] {
