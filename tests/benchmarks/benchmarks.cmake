@@ -29,6 +29,12 @@ target_link_libraries(sphere_tree_benchmark PRIVATE core benchmark::benchmark)
 add_executable(tracked_sheet_benchmark benchmarks/checked_benchmark.cpp benchmarks/tracked_sheet_benchmark.cpp)
 target_link_libraries(tracked_sheet_benchmark PRIVATE core scenarios benchmark::benchmark)
 
+add_executable(raster_benchmark benchmarks/checked_benchmark.cpp benchmarks/raster_benchmark.cpp)
+target_link_libraries(raster_benchmark PRIVATE core scenarios benchmark::benchmark)
+
+add_executable(mesh_distance_benchmark benchmarks/checked_benchmark.cpp benchmarks/mesh_distance_benchmark.cpp)
+target_link_libraries(mesh_distance_benchmark PRIVATE runners benchmark::benchmark)
+
 add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/dissertation/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
