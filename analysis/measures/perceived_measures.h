@@ -5,7 +5,7 @@
 // - A constant force between 2.5 and 10 N must change by about 7 % before the change is noticed (X. D. Pang,
 //   H. Z. Tan, N. I. Durlach, "Manual discrimination of force using active finger motion", Perception &
 //   Psychophysics 49, 1991).
-// - Friction that a force-feedback device renders is told from another one if the coefficients differ by
+// - People distinguish two frictions of a force-feedback device if their coefficients differ by
 //   0.056 (at a coefficient of 0.2) to 0.150 (at 0.8) (W. R. Provancher, N. D. Sylvester, "Fingerpad skin
 //   stretch increases the perception of virtual friction", IEEE Trans. Haptics 2, 2009). A decrease of
 //   friction under a sliding finger is noticed from 11 % of the tangential force on (D. Gueorguiev et al.,

@@ -25,7 +25,7 @@
 //   there is no surface.
 // - t - r_k <= r + max(0, depth of the centre behind the plane), where t is the distance between the centres
 //   of the two spheres beside each other, in the plane, and r_k is the radius of the colliding sphere.
-// Of several planes a sphere takes the one with the smallest t - r_k.
+// A sphere takes the plane with the smallest t - r_k.
 //
 // The result does not depend on the order of the points: the sums over points are exact (exact_sum.h), and
 // spheres are visited in an order of their own.

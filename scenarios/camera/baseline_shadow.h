@@ -11,7 +11,7 @@ namespace remote_touch {
 // sees there. The device is at (baseline, 0, 0) in the camera frame, to the camera's right, so that shadows
 // lie to the left of near objects. They are baseline focal (1 / z_near - 1 / z_far) pixels wide.
 //
-// In coordinates of column u and disparity d = baseline focal / z every straight line is straight, and the
+// A straight line stays straight in coordinates of column u and disparity d = baseline focal / z. The
 // line from a point (u, d) to the device is (u + s, d + s), s > 0. The point is in the shadow if this line
 // meets the surfaces of its row. They are exactly known at the pixels. Between two neighbours the surface is
 // straight, unless their depths differ by more than edge_jump_m: then there is an edge in the middle between

@@ -1,4 +1,4 @@
-// Meshes by name: those that the program makes itself, and files.
+// Meshes that a user names: built-in ones and files.
 #pragma once
 
 #include <string>

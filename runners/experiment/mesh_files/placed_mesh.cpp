@@ -113,14 +113,20 @@ std::vector<StampedPose> motion_of(const PlacedMesh& s) {
   return poses;
 }
 
-// Returns the path of the object in the world frame. At most one of `motion` and `path` has several poses.
-PosePath placed_path(const PlacedMesh& s, const TriangleMesh& mesh) {
+// Returns the path of the object in the world frame. With a motion the mesh is moved to a frame whose origin
+// is at position_m, because a pose path moves the origin of its body on straight lines. At most one of
+// `motion` and `path` has several poses.
+PosePath placed_path(const PlacedMesh& s, TriangleMesh& mesh) {
   const RigidTransform rotated(rotation(kRadiansPerDegree * s.rotation_deg));
   const std::vector<StampedPose> path = poses_in(s), motion = motion_of(s);
   Vec3 shift = Vec3::Zero();
   if (s.origin == PlacedMesh::Origin::bottom) shift = to_bottom(mesh, rotated * path.front().X);
-  const RigidTransform outer(Eigen::Translation3d(s.position_m)),
-      inner = Eigen::Translation3d(shift) * rotated;
+  const RigidTransform outer(Eigen::Translation3d(s.position_m));
+  RigidTransform inner = Eigen::Translation3d(shift) * rotated;
+  if (!s.motion.empty()) {
+    for (Vec3& vertex : mesh.vertices) vertex = inner * vertex;
+    inner = RigidTransform::Identity();
+  }
   std::vector<StampedPose> poses;
   for (const StampedPose& moved : motion)
     for (const StampedPose& pose : path)
@@ -184,7 +190,8 @@ std::vector<RecordingPart> input_files(const PlacedMesh& s) {
 }
 
 SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
-  const TriangleMesh mesh = checked_mesh(s, prefix);
+  TriangleMesh mesh = checked_mesh(s, prefix);
+  PosePath path = placed_path(s, mesh);
   const std::string setting = "scenario." + prefix;
   const std::string if_inverted = ", or " + setting + "mesh_repair=true";
   const std::string if_open =
@@ -196,7 +203,6 @@ SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
   if (!s.sheet && has_inverted_part(mesh))
     refuse(subject_of(s, prefix), "a part of the mesh is inside out: expected all faces to point outwards",
            if_inverted);
-  PosePath path = placed_path(s, mesh);
   return {std::move(object), std::move(path), colour_in(s.colour)};
 }
 

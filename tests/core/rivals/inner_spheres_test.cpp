@@ -65,7 +65,7 @@ TEST(InnerSpheres, LieInsideAMeshThatIsNotConvex) {
   }
 }
 
-// In a cube of half side a the largest sphere has the radius a. The next eight touch it and three faces:
+// The largest sphere in a cube of half side a has the radius a. The next eight touch it and three faces:
 // r = a (sqrt 3 - 1) / (sqrt 3 + 1).
 TEST(InnerSpheres, AreTheLargestThatFitIntoACube) {
   constexpr double a = 0.01;

@@ -174,8 +174,8 @@ TEST(MlsSurfaceRenderer, EveryTickMakesProgressWithTheFewestSteps) {
 
 // --- the side ---
 
-// With the rule of the sensor, the HIP behind the sheet is drawn to the front. With the rule of the path, the
-// sheet has two sides.
+// The rule of the sensor draws a HIP behind the sheet to the front. The rule of the path gives the sheet two
+// sides.
 TEST(MlsSurfaceRenderer, TheRuleOfTheOutsideDecidesAtTheBackOfASheet) {
   const auto force_from_below = [](const Settings& p) {
     MlsSurfaceRenderer r = over(scenes::flat_grid(60), p);
