@@ -231,7 +231,7 @@ TEST(ChangedInputs, AreListedByPath) {
 TEST(NamedInputs, AreThoseOfTheScenario) {
   EXPECT_TRUE(Experiment::load("fig4.12").inputs().empty());
   EXPECT_EQ(Experiment::load("fig4.16-recorded").inputs(),
-            (std::vector<RecordingPart>{{"rgbd/visp_organ_table", 0, 4}}));
+            (std::vector<RecordingPart>{{"rgbd/visp_organ_table", 0, 4, true}}));
 }
 
 TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
@@ -241,7 +241,8 @@ TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
       "axes": [{"parameter": "scenario.path", "values": ["y", "x"]},
                {"parameter": "scenario.last_frame", "values": [2, 1]}, {"parameter": "seed", "values": [1, 2]}]})",
       "recordings");
-  EXPECT_EQ(sweep.inputs(), (std::vector<RecordingPart>{{"x", 0, 1}, {"x", 0, 2}, {"y", 0, 1}, {"y", 0, 2}}));
+  EXPECT_EQ(sweep.inputs(), (std::vector<RecordingPart>{
+                                {"x", 0, 1, true}, {"x", 0, 2, true}, {"y", 0, 1, true}, {"y", 0, 2, true}}));
 }
 
 // Runs on x are done, and those on y are not. Recording y may therefore be repaired.
