@@ -35,7 +35,7 @@ std::vector<std::string_view> words_in(std::string_view line) {
 // "file:line".
 template <class Use, class Comment>
 void for_each_line(const fs::path& file, const char* expected, Use&& use, Comment&& comment) {
-  const std::string text = read_text_file(file, expected);
+  const std::string text = read_input_text(file, expected);
   std::string_view rest = without_byte_order_mark(text);
   for (int number = 1; !rest.empty(); ++number) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());

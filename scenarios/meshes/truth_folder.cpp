@@ -78,7 +78,7 @@ TruthObjectFiles object_of(const fs::path& file, const std::string& where, const
 
 TruthFolder described_by(const fs::path& file) {
   static const Json kKeys = {"objects", "uncertainty_m"};
-  const Json json = parse_json(read_text_file(file, "expected an object with 'objects'"), file.string());
+  const Json json = parse_json(read_input_text(file, "expected an object with 'objects'"), file.string());
   require_keys(file, "", json, kKeys);
   const auto list = json.find("objects");
   if (list == json.end()) refuse(file, "has no key 'objects'");

@@ -41,7 +41,7 @@ constexpr CameraFile kTumCamera = {{640, 480, 525, 525, 319.5, 239.5}, 1.0 / 500
 Json parse_camera_file(const fs::path& file) {
   static const Json kKeys = {"width",         "height",           "fx", "fy", "cx", "cy", "depth_scale_m",
                              "frame_rate_hz", "colour_registered"};
-  Json json = parse_json(read_text_file(file, "expected an object of plain values"), file.string());
+  Json json = parse_json(read_input_text(file, "expected an object of plain values"), file.string());
   if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
   for (const auto& item : json.items()) {
     const std::string& key = item.key();

@@ -9,6 +9,7 @@
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -46,9 +47,14 @@ std::string recording_places() {
 }
 
 std::string find_recording(const std::string& path) {
-  if (fs::exists(path)) return path;
   const fs::path below = fs::path(data_folder) / path;
-  if (!data_folder.empty() && fs::path(path).is_relative() && fs::exists(below)) return below.string();
+  const bool may_be_below = !data_folder.empty() && fs::path(path).is_relative();
+  for (const fs::path& found : {fs::path(path), may_be_below ? below : fs::path()}) {
+    std::error_code unreachable;
+    if (found.empty() || !fs::exists(found, unreachable)) continue;
+    require_file_or_folder(found);
+    return found.string();
+  }
   throw MissingRecording(path,
                          "no such recording, image or mesh: expected a folder or file " + recording_places());
 }
@@ -62,7 +68,9 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
   return {part.first_frame, last};
 }
 
-std::vector<InputFile> files_of(const RecordingPart& part) {
+namespace {
+
+std::vector<InputFile> listed_files(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);
   if (is_single_file(found)) return {{found.filename().generic_string(), found}};
   if (is_bag(found)) return bag_files(found);
@@ -87,6 +95,14 @@ std::vector<InputFile> files_of(const RecordingPart& part) {
   std::vector<InputFile> list;
   for (const auto& [name, file] : files) list.push_back({name, file});
   return list;
+}
+
+}  // namespace
+
+std::vector<InputFile> files_of(const RecordingPart& part) {
+  std::vector<InputFile> files = listed_files(part);
+  for (const InputFile& input : files) require_file(input.file);
+  return files;
 }
 
 }  // namespace remote_touch

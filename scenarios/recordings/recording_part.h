@@ -36,7 +36,7 @@ class MissingRecording : public InputError {
 void set_data_folder(const std::string& folder);
 
 // Returns the path itself if it exists, else the path below the data folder. Throws MissingRecording if
-// neither exists.
+// neither exists or can be reached, and InputError for a pipe or a device, which would never end.
 std::string find_recording(const std::string& path);
 
 // Returns the searched locations, in the words of the command line: "here or below REMOTE_TOUCH_DATA =
@@ -54,7 +54,8 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 // images or PCD files of the part, the colour images registered to them, those of camera.json, depth.txt and
 // rgb.txt that are used, the poses of the camera, and the files of the truth. For a bag they are all its
 // files, because its frames are not counted here. Throws InputError if the recording is not there, its lists
-// or camera.json cannot be used, or it has fewer frames. Images and PCD files are not opened.
+// or camera.json cannot be used, it has fewer frames, or one of the files is a folder, a pipe or a device.
+// Images and PCD files are not opened.
 struct InputFile {
   std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
   std::filesystem::path file;  // path with which the file is opened

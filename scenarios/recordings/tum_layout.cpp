@@ -26,7 +26,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 }  // namespace
 
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
-  const std::string text = read_text_file(list, "expected lines 'timestamp filename'");
+  const std::string text = read_input_text(list, "expected lines 'timestamp filename'");
   std::istringstream stream{std::string(without_byte_order_mark(text))};
   stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would otherwise pass for the end
   std::vector<StampedFile> files;

@@ -54,6 +54,25 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   }
 }
 
+void require_file_or_folder(const std::filesystem::path& path) {
+  std::error_code unreachable;
+  const std::filesystem::file_status status = std::filesystem::status(path, unreachable);
+  if (std::filesystem::exists(status) && std::filesystem::is_other(status))
+    refuse(path.string(), "cannot be read (a pipe or a device): expected a file");
+}
+
+void require_file(const std::filesystem::path& file) {
+  require_file_or_folder(file);
+  std::error_code unreachable;
+  if (std::filesystem::is_directory(file, unreachable))
+    refuse(file.string(), "cannot be read (a folder): expected a file");
+}
+
+std::string read_input_text(const std::filesystem::path& file, const std::string& expected) {
+  require_file(file);
+  return read_text_file(file, expected);
+}
+
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;

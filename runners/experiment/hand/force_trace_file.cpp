@@ -198,7 +198,7 @@ class TraceReader {
 ForceTrace read_force_trace(const std::filesystem::path& file, const std::string& traj_columns) {
   if (!has_ending(file, ".csv") && !has_ending(file, ".traj"))
     refuse(file.string(), "expected a file that ends in .csv or .traj");
-  const std::string text = read_text_file(file, "expected rows of time, position and force");
+  const std::string text = read_input_text(file, "expected rows of time, position and force");
   TraceReader reader(file, traj_columns);
   std::string_view rest = without_byte_order_mark(text);
   for (std::size_t number = 1; !rest.empty(); ++number) {

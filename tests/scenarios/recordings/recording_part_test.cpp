@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <filesystem>
 
@@ -38,6 +40,41 @@ TEST_F(FindRecording, ReportsTheSearchedFolders) {
   EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA = /data");
   EXPECT_EQ(recording_places(), "here or below REMOTE_TOUCH_DATA = /data");
   EXPECT_THROW(find_recording("/a.png"), MissingRecording);
+}
+
+TEST_F(FindRecording, RefusesPipesAndDevices) {
+  set_data_folder((folder_ / "data").string());
+  folder_.write("data/trace.csv", "");
+  fs::create_symlink("/dev/zero", folder_ / "data/zero.csv");
+  ASSERT_EQ(::mkfifo((folder_ / "here/pipe.csv").c_str(), 0600), 0);
+  for (const char* name : {"pipe.csv", "zero.csv"}) {
+    EXPECT_HAS(refusal([&] { find_recording(name); }),
+               "cannot be read (a pipe or a device): expected a file");
+    EXPECT_HAS(refusal([&] { files_of({name}); }), "cannot be read (a pipe or a device): expected a file");
+  }
+  EXPECT_EQ(find_recording("trace.csv"), (folder_ / "data/trace.csv").string());
+}
+
+TEST_F(FindRecording, ANameThatNoFileCanHaveIsMissing) {
+  set_data_folder((folder_ / "data").string());
+  EXPECT_THROW(find_recording(std::string(5000, 'x')), MissingRecording);
+}
+
+// Their digest would never end.
+TEST_F(FindRecording, RefusesPartsThatAreNoFiles) {
+  folder_.write("here/scan/camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 20, "cx": 1, "cy": 0.5,
+                                             "depth_scale_m": 0.001, "frame_rate_hz": 20})");
+  folder_.write("here/scan/depth/0000.png", "");
+  EXPECT_EQ(files_of({"scan"}).size(), 2u);
+  fs::create_symlink("/dev/zero", folder_ / "here/scan/depth/0001.png");
+  EXPECT_HAS(refusal([] { files_of({"scan"}); }), "0001.png: cannot be read (a pipe or a device)");
+  fs::remove(folder_ / "here/scan/depth/0001.png"), fs::remove(folder_ / "here/scan/camera.json");
+  ASSERT_EQ(::mkfifo((folder_ / "here/scan/camera.json").c_str(), 0600), 0);
+  EXPECT_HAS(refusal([] { files_of({"scan"}); }), "camera.json: cannot be read (a pipe or a device)");
+  for (const char* name : {"mesh.obj", "poses.txt", "session.h5", "trace.csv"}) {
+    fs::create_directory(name);
+    EXPECT_HAS(refusal([&] { files_of({name}); }), "cannot be read (a folder): expected a file") << name;
+  }
 }
 
 TEST_F(FindRecording, BagsAreReadAsAWhole) {

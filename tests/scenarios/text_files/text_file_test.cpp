@@ -39,6 +39,30 @@ TEST(TextFile, IsRefusedIfItIsTooLongOrNoFile) {
   EXPECT_HAS(refused(folder / "none"), "none: cannot be read (No such file or directory): expected a list");
 }
 
+// A reader of a pipe that nobody writes to would wait for ever.
+TEST(TextFile, AnInputIsNeitherPipeNorDeviceNorFolder) {
+  const TestFolder folder("text_file_test");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder / "zero");
+  const auto refused_input = [](const fs::path& file) {
+    EXPECT_EQ(refusal([&] { require_file(file); }), refusal([&] { read_input_text(file, ""); }));
+    return refusal([&] { require_file(file); });
+  };
+  for (const char* name : {"pipe", "zero"}) {
+    const std::string expected =
+        (folder / name).string() + ": cannot be read (a pipe or a device): expected a file";
+    EXPECT_EQ(refused_input(folder / name), expected);
+    EXPECT_EQ(refusal([&] { require_file_or_folder(folder / name); }), expected);
+  }
+  EXPECT_EQ(refused_input(folder.path()),
+            folder.path().string() + ": cannot be read (a folder): expected a file");
+  require_file_or_folder(folder.path());
+  fs::create_symlink(folder.write("text", "a list"), folder / "link");
+  EXPECT_EQ(read_input_text(folder / "link", ""), "a list");
+  require_file(folder / "none");
+  EXPECT_HAS(refusal([&] { read_input_text(folder / "none", "expected a list"); }), "No such file");
+}
+
 TEST(TextFile, AMarkOfTheOrderOfBytesIsNoText) {
   EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF# x"), "# x");
   for (const char* text : {"", "\xEF\xBB", "x\xEF\xBB\xBF"}) EXPECT_EQ(without_byte_order_mark(text), text);
