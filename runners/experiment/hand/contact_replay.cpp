@@ -7,6 +7,7 @@
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/hand/force_trace_file.h"
+#include "scenarios/text_files/file_ending.h"
 
 namespace remote_touch {
 
@@ -17,6 +18,8 @@ using Row = ContactReplay::Row;
 
 constexpr double kRows_per_s = 1000;     // rows of a generated contact; the usual haptic rate
 constexpr double kMaxDuration_s = 1000;  // longest generated contact
+// Longest contact of a file. Times of this size in a file are often milliseconds.
+constexpr double kMaxFileDuration_s = 1e4;
 constexpr double kFullTurn_rad = 6.283185307179586;
 
 const char* const kReplaySubject = "trajectory.name = contact-replay";
@@ -85,7 +88,10 @@ struct Timing {
 }  // namespace
 
 std::string validate(const ContactReplay::Settings& s) {
-  if (!s.file.empty()) return {};
+  if (!s.file.empty()) {
+    const bool is_trace = has_ending(s.file, ".csv") || has_ending(s.file, ".traj");
+    return is_trace ? "" : "file = " + s.file + ": expected a file that ends in .csv or .traj";
+  }
   if (!((s.to_m - s.from_m).norm() > 0)) return "to_m: expected another position than from_m";
   if (s.min_force_N > s.max_force_N)
     return "min_force_N = " + std::to_string(s.min_force_N) + ": expected at most max_force_N";
@@ -144,6 +150,11 @@ std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenari
   if (trace.rows.end() - first < 2)
     throw InputError("trajectory.start_s = " + std::to_string(s.start_s),
                      "fewer than two rows of the file are left: expected a smaller value");
+  const double duration_s = trace.rows.back().time_s - first->time_s;
+  if (!(duration_s <= kMaxFileDuration_s))
+    throw InputError(file, "lasts " + std::to_string(duration_s) + " s: expected at most " +
+                               std::to_string(kMaxFileDuration_s) +
+                               " s; times in milliseconds need a column time_ms");
   std::vector<Contact> contacts;
   for (auto row = first; row != trace.rows.end(); ++row)
     contacts.push_back(contact_of(*row, first->time_s, s));

@@ -68,8 +68,8 @@ class ContactReplay final : public Trajectory {
     double force_period_s = 1;
   };
 
-  // Throws InputError if the file cannot be read or has no force, if no surface is known along the path, or
-  // if the device would be too far from the origin.
+  // Throws InputError if the file cannot be read, has no force or lasts longer than 10000 s, if no surface is
+  // known along the path, or if the device would be too far from the origin.
   ContactReplay(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override { return {row_at(time_s).hip_W}; }
   double duration_s() const override { return rows_.back().time_s; }

@@ -187,6 +187,8 @@ TEST(GeneratedContact, RefusesWhatItCannotFollow) {
   EXPECT_HAS(validate(s), "speed_m_per_s = 0.000010: the motion lasts");
   s.file = "a.traj";
   EXPECT_EQ(validate(s), "");
+  s.file = "traces";
+  EXPECT_EQ(validate(s), "file = traces: expected a file that ends in .csv or .traj");
 }
 
 class ContactFile : public testing::Test {
@@ -312,6 +314,9 @@ TEST_F(ContactFile, RefusesAFileWithoutForces) {
   const ContactReplay::Settings none =
       settings("in.traj", "0 0 0 0 0 0 0\n1 0 0 0 0 0 0\n");  // as the in-trajectories of the paper
   EXPECT_HAS(refusal([&] { ContactReplay(none, Plane()); }), "in.traj: has no force above");
+  const ContactReplay::Settings in_ms = settings("ms.traj", "0 0 0 0 0 0 0\n10001 0 0 0 0 1 0\n");
+  EXPECT_HAS(refusal([&] { ContactReplay(in_ms, Plane()); }),
+             "ms.traj: lasts 10001.000000 s: expected at most 10000.000000 s; times in milliseconds need");
   ContactReplay::Settings far = settings("a.traj", kTraj);
   far.offset_m = {1000, 0, 0};
   EXPECT_HAS(refusal([&] { ContactReplay(far, Unknown()); }), "more than 1000 m from the origin");
