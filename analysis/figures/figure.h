@@ -45,23 +45,27 @@ struct Panel {
   std::optional<Scene> scene = {};                              // drawn instead of curves, without axes
 };
 
-// open: measured, but only on a part of the claim's range. differs: the paper prints another value than the
-// one measured here, and the measured value is in its known range.
+// open: measured, but only on a part of the claim's range. differs: the source of the figure has another
+// value than the one measured here, and the measured value is in its known range.
 enum class Verdict { pass, fail, open, differs, not_run };
 const char* verdict_name(Verdict verdict);  // the name in claims.json: "pass", "not run"
 
-// One statement of the paper, or of this project, compared with a measurement. A claim that fails stays in
+// The source of figures that do not name another one.
+inline constexpr const char* kDissertation = "the dissertation";
+
+// One statement of a source, or of this project, compared with a measurement. A claim that fails stays in
 // the list. claim: a sentence that is understood without the other claims, a colon, and the measured
 // quantity: "without noise, no lift pops through: fraction of 16 that do not".
 struct Claim {
   std::string figure, claim;
-  std::string paper;  // the paper's value as text; "-" if it has none
+  std::string paper;  // the value of the source as text; "-" if it has none
   double measured = 0;
   std::string criterion;  // text, with numbers
   std::string unit;
   Verdict verdict = Verdict::not_run;
   bool of_map = false;  // is about a whole map, so a part of the map cannot decide it
   bool set_up = false;  // checks only that the run was set up as intended; is listed apart from the claims
+  std::string source = kDissertation;  // what `paper` is from, that of its figure
 };
 
 // Passes if measured is within [low, high]. NaN fails.
@@ -72,7 +76,7 @@ Claim claim_at_most(const std::string& figure, const std::string& claim, const s
                     double measured, double limit, const std::string& unit);
 Claim claim_at_least(const std::string& figure, const std::string& claim, const std::string& paper,
                      double measured, double limit, const std::string& unit);
-// The paper prints another value than the one measured. The verdict is `differs` if measured is within [low,
+// The source has another value than the one measured. The verdict is `differs` if measured is within [low,
 // high], its known range in this program, else `fail`.
 Claim claim_differs(const std::string& figure, const std::string& claim, const std::string& paper,
                     double measured, double low, double high, const std::string& unit);
@@ -85,6 +89,7 @@ struct Figure {
   std::vector<Table> tables = {};
   std::vector<Panel> panels = {};
   std::vector<Claim> claims = {};
+  std::string source = kDissertation;  // what the figure is compared with, with its article
 };
 
 }  // namespace remote_touch

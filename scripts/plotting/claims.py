@@ -8,6 +8,7 @@ import urllib.parse
 from plotting.plot_error import PlotError
 from plotting.typeset import typeset_html
 
+DISSERTATION = "the dissertation"
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
 NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty
 SHORT = 24  # a cell of so few characters stays on one line
@@ -72,9 +73,21 @@ def claim_row(anchor, claim):
     return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{esc(word)}</td></tr>'
 
 
-def table(rows):
-    head = "".join(f"<th{' class=number' if name == 'measured' else ''}>{words}</th>"
-                   for name, words in [*COLUMNS.items(), ("verdict", "Verdict")])
+def source(claim):
+    """Files of earlier versions name no source."""
+    return str(claim.get("source", DISSERTATION))
+
+
+def source_heading(name):
+    """Heading of a column: the source without its article."""
+    words = name.removeprefix("the ")
+    return words[:1].upper() + words[1:]
+
+
+def table(rows, sources=(DISSERTATION,)):
+    names = {**COLUMNS, "paper": ", ".join(source_heading(name) for name in sources)}
+    head = "".join(f"<th{' class=number' if name == 'measured' else ''}>{esc(words)}</th>"
+                   for name, words in [*names.items(), ("verdict", "Verdict")])
     body = "\n".join(rows)
     return f"<div class=table><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>"
 
@@ -83,28 +96,42 @@ def claim_table(anchored):
     """The claims of a figure; below them, apart, what only says that its runs are what they were meant to be."""
     claims = [claim_row(anchor, claim) for anchor, claim in anchored if not is_set_up(claim)]
     checks = [claim_row(anchor, claim) for anchor, claim in anchored if is_set_up(claim)]
-    parts = [table(claims) if claims else "<p class=none>No claims.</p>"]
+    sources = sorted({source(claim) for _, claim in anchored}) or [DISSERTATION]
+    parts = [table(claims, sources) if claims else "<p class=none>No claims.</p>"]
     if checks:
-        parts.append(f"<p class=none>Checks of the set-up, no claims:</p>\n{table(checks)}")
+        parts.append(f"<p class=none>Checks of the set-up, no claims:</p>\n{table(checks, sources)}")
     return "\n".join(parts)
 
 
-def differing(anchored):
-    """What the dissertation prints and this program does not give, before everything else."""
+def differing_from(name, anchored):
+    """The values of one source that this program does not give."""
     rows = []
     for anchor, claim in anchored:
-        if verdict(claim)[1] != "differs":
-            continue
         unit = "" if claim.get("unit") in NOTHING["unit"] else f" {claim['unit']}"
         rows.append(f'<tr><td class=short><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}</a></td>'
                     f'<td>{typeset_html(claim.get("claim", ""))}</td><td>{typeset_html(claim.get("paper", ""))}</td>'
                     f'<td class=number>{typeset_html(value_text(claim.get("measured")) + unit)}</td></tr>')
-    if not rows:
-        return ""
     body = "\n".join(rows)
-    return (f"<h2 id=differs>What the dissertation prints and this program does not give</h2>\n<div class=table><table>"
-            f"<thead><tr><th>Figure</th><th>What</th><th>Dissertation</th><th class=number>Measured here</th></tr></thead>"
+    heading = ("<h2 id=differs>What the dissertation prints and this program does not give</h2>" if name == DISSERTATION
+               else f"<h2>Values of {esc(name)} that differ here</h2>")
+    return (f"{heading}\n<div class=table><table>"
+            f"<thead><tr><th>Figure</th><th>What</th><th>{esc(source_heading(name))}</th><th class=number>Measured here</th></tr></thead>"
             f"<tbody>\n{body}\n</tbody></table></div>")
+
+
+def by_source(anchored):
+    """The claims that differ, of each source; the dissertation comes first."""
+    lists = {}
+    for anchor, claim in anchored:
+        if verdict(claim)[1] == "differs":
+            lists.setdefault(source(claim), []).append((anchor, claim))
+    return dict(sorted(lists.items(), key=lambda item: (item[0] != DISSERTATION, item[0])))
+
+
+def differing_words(lists):
+    """The dissertation is named even if no claim differs from it."""
+    counts = {DISSERTATION: 0} | {name: len(claims) for name, claims in lists.items()}
+    return "".join(f", {count} differ from {esc(name)}" for name, count in counts.items())
 
 
 def overview(anchored):
@@ -112,14 +139,16 @@ def overview(anchored):
     words = [verdict(claim)[1] for _, claim in claims]
     failed = [(anchor, claim) for anchor, claim in anchored if verdict(claim)[1] == "FAIL"]
     style = "fail" if failed else "pass"
+    lists = by_source(anchored)
     lines = [f'<p class="count"><span class="{style}">{words.count("pass")} of {len(words)} claims pass</span>'
-             f', {words.count("differs")} differ from the dissertation, {words.count("FAIL")} failed, '
+             f'{differing_words(lists)}, {words.count("FAIL")} failed, '
              f'{words.count("open")} open, {words.count("not run")} not run.</p>',
-             "<p class=none>A claim is a statement about a figure with a criterion for a measured number. Differs: the dissertation "
-             "prints another value. Open: measured on a part of the runs only. Not run: a recording is missing.</p>"]
+             "<p class=none>A claim is a statement about a figure with a criterion for a measured number. Differs: the source of "
+             "the figure, which is the dissertation unless another one is named, has another value. Open: measured on a part "
+             "of the runs only. Not run: a recording is missing.</p>"]
     if failed:
         items = "\n".join(f'<li><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}: '
                           f'{typeset_html(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)
         lines.append(f"<p class=fail>Failed:</p>\n<ul>\n{items}\n</ul>")
-    lines.append(differing(anchored))
+    lines.extend(differing_from(name, claims) for name, claims in lists.items())
     return "\n".join(line for line in lines if line)

@@ -119,7 +119,7 @@ void add_active_stereo_claims(Figure& figure, const MeasuredSensor& sensor, cons
   claims.differs(
       "steps of depth show that the images were warped from a camera of shorter focal length: 1/32 px / "
       "(50 mm x step of 1 / z)",
-      sensor.comparison.own_focal_px, 375, 390, "px", "published model: 607");
+      sensor.comparison.own_focal_px, 375, 390, "px", "607");
   claims.differs(
       "with the focal length of the images the model has too little noise over time: simulated / "
       "recorded at 0.6 to 0.8 m",
@@ -149,10 +149,9 @@ void add_active_stereo_claims(Figure& figure, const MeasuredSensor& sensor, cons
   claims.between(
       "holes left of near surfaces widen with the jump of 1 / z as by the baseline: recorded slope "
       "/ focal length",
-      shadow_baseline_m(widths, "left_recorded", sensor.comparison.focal_px), 0.04, 0.06, "m",
-      "published model: 0.05");
+      shadow_baseline_m(widths, "left_recorded", sensor.comparison.focal_px), 0.04, 0.06, "m", "0.05");
   claims.differs("the sensor also has holes right of near surfaces: recorded fraction of holes 3 px away",
-                 beside_right(sensor, kRecordedSensor), 0.65, 0.69, "fraction", "published model: 0");
+                 beside_right(sensor, kRecordedSensor), 0.65, 0.69, "fraction", "0");
 }
 
 void add_structured_light_claims(Figure& figure, const MeasuredSensor& sensor, const Table& widths) {
@@ -169,17 +168,17 @@ void add_structured_light_claims(Figure& figure, const MeasuredSensor& sensor, c
   claims.differs("holes left of near surfaces are wider in the model: median width, simulated / recorded",
                  width_ratio(sensor), 1.57, 1.66, "ratio", "1 (equal)");
   claims.differs("the sensor also has holes right of near surfaces: recorded fraction of holes 3 px away",
-                 beside_right(sensor, kRecordedSensor), 0.94, 0.97, "fraction", "published model: 0");
+                 beside_right(sensor, kRecordedSensor), 0.94, 0.97, "fraction", "0");
   claims.differs(
       "holes left of near surfaces widen with the jump of 1 / z less than by the baseline: recorded "
       "slope / focal length",
-      left_m, 0.057, 0.061, "m", "published model: 0.075");
+      left_m, 0.057, 0.061, "m", "0.075");
   claims.differs("holes right of near surfaces widen with the jump of 1 / z: recorded slope / focal length",
-                 right_m, 0.023, 0.026, "m", "published model: 0");
+                 right_m, 0.023, 0.026, "m", "0");
   claims.between(
       "holes on both sides together widen with the jump of 1 / z as by the baseline: sum of the "
       "recorded slopes / focal length",
-      left_m + right_m, 0.064, 0.087, "m", "published model: 0.075");
+      left_m + right_m, 0.064, 0.087, "m", "0.075");
 }
 
 void add_truth_claims(Figure& figure, const Table& truth) {
@@ -241,6 +240,7 @@ Figure figure_sensor_models_recorded(FigureContext& context) {
       "the near surface; their edges have jumps of 0.4 to 0.7 per m. What the models lack: pixels with "
       "far more noise than the median, an error that drifts, holes right of near surfaces, and the margin "
       "of holes around the shadow of active stereo."};
+  figure.source = "the published models";
   int column = 0;
   for (const RecordedSensor& recorded : kRecordedSensors) {
     const ComparedSensor& compared = recorded.shown.compared;

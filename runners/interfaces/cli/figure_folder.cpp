@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 // No buffer of fixed size is used for the line, because a claim may have any length.
 std::string line_of(const Claim& claim) {
   const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
-  const std::string paper =
-      claim.verdict == Verdict::differs ? ", the dissertation prints: " + claim.paper : "";
+  const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
   char measured[40];
   std::snprintf(measured, sizeof measured, "%.6g", claim.measured);
   return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +

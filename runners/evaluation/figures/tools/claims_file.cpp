@@ -17,6 +17,7 @@ Json claim_json(const Claim& claim) {
   return {{"figure", claim.figure},
           {"claim", claim.claim},
           {"paper", claim.paper},
+          {"source", claim.source},
           {"measured", std::isfinite(claim.measured) ? Json(claim.measured) : none},
           {"criterion", claim.criterion},
           {"unit", claim.unit},

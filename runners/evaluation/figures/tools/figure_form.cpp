@@ -30,6 +30,7 @@ void place_in_rows(Figure& figure, std::size_t columns) {
 
 void Claims::add(Claim claim) const {
   if (mark_) claim.*mark_ = true;
+  claim.source = figure_.source;
   figure_.claims.push_back(std::move(claim));
 }
 

@@ -79,7 +79,7 @@ Panel plot(const std::string& title, const std::string& x_label, const std::stri
 void place_in_rows(Figure& figure, std::size_t columns);
 
 // Adds claims to a figure, in the order of the calls. Every text begins with the opening, and every claim
-// gets the mark: of_map or set_up. paper: the value of the paper as text.
+// gets the mark: of_map or set_up, and the source of the figure. paper: the value of the source as text.
 class Claims {
  public:
   explicit Claims(Figure& figure, std::string opening = "", bool Claim::*mark = nullptr)

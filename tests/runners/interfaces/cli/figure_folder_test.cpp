@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/kernels/isa.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::figure_folder_test {
@@ -86,6 +87,20 @@ TEST(FigureFolder, ALongClaimKeepsTheEndOfItsLine) {
   is_long.claim = std::string(3000, 'x');
   const Told all = told(folder.path(), {{"4.11", {is_long}}, {"4.12", {claim("4.12", true)}}});
   EXPECT_HAS(all.out, std::string(3000, 'x') + ": 1 m (at most 2)\nfigure 4.12 -> ");
+}
+
+TEST(FigureFolder, AClaimThatDiffersNamesItsSource) {
+  const TestFolder folder("figure_folder_test");
+  Figure models{"4.12", "", ""};
+  models.source = "the published models";
+  remote_touch::Claims(models).differs("width: ratio", 1.5, 1, 2, "1", "1 (equal)");
+  const Told all = told(folder.path(), {{"4.11", {claim_differs("4.11", "speed", "16", 29, 28, 30, "m/s")}},
+                                        {"4.12", models.claims}});
+  EXPECT_HAS(all.out, "speed: 29 m/s (expected here: from 28 to 30, the dissertation: 16)\n");
+  EXPECT_HAS(all.out, "width: ratio: 1.5 1 (expected here: from 1 to 2, the published models: 1 (equal))\n");
+  const std::string claims = bytes_of(folder / "claims.json");
+  EXPECT_HAS(claims, "\"source\": \"the dissertation\"");
+  EXPECT_HAS(claims, "\"source\": \"the published models\"");
 }
 
 // The exit code reports a failed claim, whatever else is claimed before or after it.
