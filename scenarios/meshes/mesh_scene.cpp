@@ -61,10 +61,19 @@ double MeshScene::moving_time_s(double time_s) const {
   return std::min(time_s, motion_ends_s_);
 }
 
-PointCloud MeshScene::cloud(int frame) const {
+PointCloud MeshScene::made(int frame) const {
   const double time_s = moving_time_s(captured_s(frame));
   return still_view_ ? camera_.cloud(*still_view_, frame, time_s)
                      : camera_.cloud(camera_.view(meshes_, time_s), frame, time_s);
+}
+
+std::shared_ptr<const NeighbourSearch> MeshScene::points(int frame) const {
+  return frames_.get(static_cast<std::size_t>(frame), [&] { return make_search(made(frame)); });
+}
+
+// The search of an image stores its points in their order.
+PointCloud MeshScene::cloud(int frame) const {
+  return dynamic_cast<const CloudSearch&>(*points(frame)).cloud();
 }
 
 // Returns the poses of all objects, object to world frame.

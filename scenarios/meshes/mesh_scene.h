@@ -1,11 +1,13 @@
 // A scene of triangle meshes, at rest or moving as rigid bodies, before a simulated depth sensor.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/parameters/parameter.h"
+#include "scenarios/interface/kept_frames.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_camera.h"
 
@@ -33,8 +35,9 @@ class MeshScene : public Scenario {
   // noise changes in every frame.
   int frame_count() const override;
   std::vector<Phase> phases() const override;
-  // Has colours if any object has one.
+  // Has colours if any object has one. The frames that were used last are kept, see KeptFrames.
   PointCloud cloud(int frame) const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Distance to the nearest object, see nearest_on_objects(); exact outside of closed objects. Inside of
   // several objects it is the depth below the surface of the deepest. NaN farther than 1 m from every object
   // and beyond the border of an open one.
@@ -47,6 +50,7 @@ class MeshScene : public Scenario {
   }
 
  private:
+  PointCloud made(int frame) const;
   double moving_time_s(double time_s) const;
   std::vector<std::optional<RigidTransform>> poses(double time_s) const;
   NearestOnObjects nearest(const Vec3& p_W, double time_s) const;
@@ -57,6 +61,8 @@ class MeshScene : public Scenario {
   MeshCamera camera_;
   double motion_ends_s_ = 0;             // 0: nothing moves
   std::optional<SceneView> still_view_;  // view of a scene in which nothing moves
+  // 12 MB each. A hand uses a frame from its capture on, and the renderer when it arrives: up to 0.1 s later.
+  mutable KeptFrames frames_{4};
 };
 
 Parameters parameters(MeshScene::Settings& s);

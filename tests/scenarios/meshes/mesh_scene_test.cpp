@@ -113,6 +113,21 @@ TEST(MeshScene, TheTrueNormalIsThatOfTheNearestFace) {
   EXPECT_FALSE(scene.true_normal({0.06 + 0.01, 0.01, 0}, 0).allFinite());
 }
 
+// Hand and renderer use the same frame.
+TEST(MeshScene, AFrameIsMadeOnceAndKeepsItsPoints) {
+  const MeshScene scene = made(small(), {object(box(), rise()), table(0x102030)});
+  const std::shared_ptr<const NeighbourSearch> points = scene.points(3);
+  const PointCloud cloud = scene.cloud(3);
+  EXPECT_EQ(scene.points(3), points);
+  scene.cloud(2), scene.cloud(4), scene.cloud(5);
+  EXPECT_EQ(scene.points(3), points) << "frames that are in transit";
+  const PointCloud& kept = dynamic_cast<const CloudSearch&>(*points).cloud();
+  const MeshScene other = made(small(), {object(box(), rise()), table(0x102030)});
+  EXPECT_TRUE(scenes::same_clouds(kept, cloud));
+  EXPECT_TRUE(scenes::same_clouds(other.cloud(3), cloud));
+  EXPECT_FALSE(scenes::same_clouds(scene.cloud(2), cloud));
+}
+
 TEST(MeshScene, FramesEndWithTheMotion) {
   constexpr int kForEver = std::numeric_limits<int>::max();
   EXPECT_EQ(made(ideal(), {table()}).frame_count(), 1);
