@@ -148,6 +148,9 @@ const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   if (ending == ".obj") bytes = only_shape(bytes);
   if (ending == ".ply") bytes = with_vertices_first(bytes);
   if (ending == ".stl" && is_stl_text(bytes)) bytes = plain_stl(bytes);
+  // The library has no message of its own for this.
+  if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw std::runtime_error("it has neither vertices nor faces");
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
 }
 
@@ -200,6 +203,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
     throw InputError(file.string(), std::string("no such file: ") + allowed);
   TriangleMesh mesh;
   try {
+    if (std::filesystem::file_size(file) == 0) throw std::runtime_error("it is empty");
     if (ending_of(file) == ".ply")
       if (const std::string problem = ply_problem(file); !problem.empty()) throw std::runtime_error(problem);
     mesh = mesh_in_child(file, run);

@@ -326,7 +326,10 @@ TEST_F(MeshFileTest, BinaryPlyMayBeginWithALineFeed) {
 TEST_F(MeshFileTest, RefusalsNameTheFile) {
   EXPECT_HAS(refusal([&] { read_mesh(folder_ / "none.obj"); }), "none.obj: no such file: expected an OBJ");
   EXPECT_HAS(refused("a.txt", "v 0 0 0\n"), "a.txt: not a mesh");
-  EXPECT_HAS(refused("empty.obj", ""), "empty.obj: cannot be read");
+  for (const std::string name : {"empty.obj", "empty.ply", "empty.stl"})
+    EXPECT_HAS(refused(name, ""), name + ": cannot be read (it is empty); expected an OBJ, PLY or STL file");
+  for (const char* bytes : {"\n", "\xEF\xBB\xBF", "  \n\t\n", "mtllib a.mtl\nvn 0 0 1\n"})
+    EXPECT_HAS(refused("no.obj", bytes), "no.obj: cannot be read (it has neither vertices nor faces)");
   EXPECT_HAS(refused("bad.ply", "ply\nformat nothing\n"), "bad.ply: cannot be read");
   EXPECT_HAS(refused("points.obj", kVertices + "p 1\np 2\n"), "points.obj: ");
   EXPECT_HAS(refused("cut.stl", std::string(84, '\1')), "cut.stl: ");
