@@ -115,9 +115,11 @@ constexpr Row kMeasures[] = {
      contact_force_fraction},
     {"contact_known_fraction", "1", "fraction of the settled ticks with a known truth", contact, neither,
      contact_known_fraction},
+    // Without a direction: a renderer that follows a bad measurement exactly is not better, and a filter that
+    // corrects the measurement is not worse. rms_contact_error judges both by the truth.
     {"rms_renderer_error", "m",
      "rms distance of the contact point from the measured surface, in settled ticks", measured_surface,
-     smaller, rms_renderer_error_m},
+     neither, rms_renderer_error_m},
     {"rms_camera_error", "m",
      "rms distance between the measured and the true surface at the contact point, in settled ticks",
      measured_surface, neither, rms_camera_error_m},

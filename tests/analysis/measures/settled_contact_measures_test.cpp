@@ -101,6 +101,7 @@ TEST(SettledContact, PartsOfTheErrorApplyToRunsWithAMeasuredSurface) {
   for (const Measure& measure : built_in_measures()) {
     if (measure.runs != MeasuredRuns::measured_surface) continue;
     ++found;
+    EXPECT_EQ(measure.better, Better::neither) << measure.name << " is no error from the truth";
     EXPECT_TRUE(applies(measure, with)) << measure.name;
     EXPECT_FALSE(applies(measure, settled({{0.003}}))) << measure.name;
     EXPECT_TRUE(needs_true_contact(measure)) << measure.name;
