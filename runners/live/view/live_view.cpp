@@ -4,6 +4,7 @@
 
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/presentation/view/page_file.h"
+#include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/shown_sensor.h"
 #include "runners/presentation/view/shown_tool.h"
 #include "scenarios/interface/scenario.h"
@@ -22,15 +23,19 @@ double length_m(const Json& renderer, const char* name) {
   return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
 }
 
-// Adds the start position of the hand, and the pose of the camera in the first frame, if there is one.
-void add_start(Json& run, const Experiment& experiment, const LiveViewSource& source,
-               const Kernels& kernels) {
+// Adds the start position of the hand. If the camera is simulated, also its pose in the first frame, and the
+// meshes of the true surface.
+void add_scene(Json& run, const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels,
+               PackedArrays& numbers) {
   const auto scenario = experiment.build_scenario(kernels);
   run["start_m"] = json_of(experiment.build_trajectory(*scenario)->at(0).position_W);
   if (source.depth != "sim:") return;  // the sensor has its own camera
   PointCloud buffer;
   const PointCloud& first = scenario->points(0)->every_point(kernels, buffer);
   if (first.image) run["sensor"] = sensor_json(first.image->X_WC);
+  const std::vector<ShownMesh> meshes = shown_meshes_of_live(*scenario, experiment.settings().haptic_rate_hz);
+  for (const ShownMesh& mesh : meshes) run["true_meshes"].push_back(json_of(mesh, numbers));
+  run["note"] = note_on(meshes);
 }
 
 Json parameters_json(const LiveControls& controls) {
@@ -65,7 +70,7 @@ LivePageFile page_of(const Experiment& experiment, const LiveViewSource& source,
            {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
            {"contact_radius_m", contact_radius_m},
            {"touch_radius_m", length_m(renderer, "r2_m")}};
-  add_start(run, experiment, source, kernels);
+  add_scene(run, experiment, source, kernels, numbers);
   run["parameters"] = parameters_json(controls);
   if (renderer.contains("tool_mesh")) {
     const ShownTool tool = shown_tool(renderer);

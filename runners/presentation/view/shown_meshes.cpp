@@ -132,6 +132,28 @@ std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const do
   return shown;
 }
 
+namespace {
+
+// Returns the time from which a simulated scene rests; 0 if it does not move.
+double end_of_motion_s(const Scenario& scenario) {
+  double end_s = 0;
+  for (const Phase& phase : scenario.phases())
+    end_s = std::max(end_s, std::isfinite(phase.ends_s) ? phase.ends_s : phase.begins_s);
+  return end_s;
+}
+
+}  // namespace
+
+std::vector<ShownMesh> shown_meshes_of_live(const Scenario& scenario, double haptic_rate_hz) {
+  constexpr double kMaxTimes = 2000;
+  if (scenario.has_measured_distance()) return {};
+  const double end_s = end_of_motion_s(scenario);
+  const double steps = std::clamp(std::ceil(end_s * haptic_rate_hz), 1.0, kMaxTimes);
+  std::vector<double> time_s;
+  for (double i = 0; i <= steps; ++i) time_s.push_back(i / steps * end_s);
+  return shown_meshes(scenario, time_s);
+}
+
 Json json_of(const ShownMesh& mesh, PackedArrays& numbers) {
   std::vector<float> poses;
   for (const ShownPose& pose : mesh.poses) poses.insert(poses.end(), pose.begin(), pose.end());

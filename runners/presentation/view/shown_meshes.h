@@ -45,6 +45,11 @@ inline constexpr std::size_t kMaxShownPoses = 20'000;       // limit for all mes
 // poses keep every nth. Returns nothing if the true surface is not one of meshes.
 std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const double> time_s);
 
+// The same for a live run, whose end is not known: from time 0 to the end of the scene's motion, at ticks of
+// this rate or at 2000 times. The last pose holds from then on. Returns nothing for a recording, whose poses
+// may be repeated without an end, and which would have to be read as a whole.
+std::vector<ShownMesh> shown_meshes_of_live(const Scenario& scenario, double haptic_rate_hz);
+
 Json json_of(const ShownMesh& mesh, PackedArrays& numbers);
 // A remark on the meshes that are drawn more coarsely than by 0.2 mm; empty: none is.
 std::string note_on(const std::vector<ShownMesh>& meshes);

@@ -178,8 +178,34 @@ TEST(ShownMeshes, KeepTheirFewPosesBesideOneWithMany) {
   EXPECT_FALSE(drawn_pose(meshes[1], 1.5));
 }
 
+// A live run may last longer than the motion of the scene.
+TEST(ShownMeshes, OfALiveRunMoveUntilTheSceneRests) {
+  const MeshScene scene = two_boxes();
+  const std::vector<ShownMesh> meshes = shown_meshes_of_live(scene, 1000);
+  ASSERT_EQ(meshes.size(), 2u);
+  EXPECT_GE(meshes[0].poses.size(), 299u);
+  EXPECT_LE(meshes[0].poses.size(), 302u);
+  EXPECT_EQ(meshes[1].poses.size(), 1u);
+  for (const double t : {0.0, 0.2 + 1e-9, 0.35 + 1e-9, 0.4, 1.0, 1e4})
+    for (const ShownMesh& mesh : meshes)
+      ASSERT_NO_FATAL_FAILURE(expect_vertices_on_the_surface(scene, mesh, t));
+}
+
+TEST(ShownMeshes, OfALongMotionOfALiveRunEndAtItsLastPose) {
+  const PosePath slow(
+      std::vector<StampedPose>{{0, pose({0, 0, 0}, {0, 0, 0})}, {500, pose({0.5, 0, 0}, {0, 0, 0})}});
+  const auto shape = std::make_shared<const MeshDistance>(box_mesh({0.1, 0.1, 0.1}, {0, 0, 0}));
+  const MeshScene scene({}, {{{"slow", shape}, slow}}, {}, NoiseKey{}, scenes::kernels());
+  const std::vector<ShownMesh> meshes = shown_meshes_of_live(scene, 1000);
+  ASSERT_EQ(meshes.size(), 1u);
+  EXPECT_LE(meshes[0].poses.size(), 2001u);
+  EXPECT_NEAR(drawn_pose(meshes[0], 600)->translation().x(), 0.5, 1e-6);
+  EXPECT_NEAR(drawn_pose(meshes[0], 250)->translation().x(), 0.25, 0.0003);
+}
+
 TEST(ShownMeshes, AreNoneIfTheSurfaceIsNotOneOfMeshes) {
   EXPECT_TRUE(shown_meshes(Moving(0), ticks(1)).empty());
+  EXPECT_TRUE(shown_meshes_of_live(Moving(0), 1000).empty());
 }
 
 TEST(ShownMeshes, ANoteSaysWhichAreCoarse) {
@@ -208,6 +234,7 @@ TEST(RecordedData, TrueMeshesAreAtTheirPosesInEveryFrame) {
   const std::vector<double> times = ticks(0.4);
   const std::vector<ShownMesh> meshes = shown_meshes(scene, times);
   ASSERT_EQ(meshes.size(), 3u);
+  EXPECT_TRUE(shown_meshes_of_live(scene, 1000).empty()) << "a recording may be repeated";
   for (const ShownMesh& mesh : meshes) {
     EXPECT_GE(mesh.poses.size(), 5u) << "one for each frame in which it moves";
     EXPECT_LE(mesh.poses.size(), 10u);
