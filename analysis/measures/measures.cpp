@@ -15,6 +15,7 @@
 #include "analysis/measures/perceived_measures.h"
 #include "analysis/measures/replay_measures.h"
 #include "analysis/measures/settled_contact_measures.h"
+#include "analysis/measures/slave_measures.h"
 #include "analysis/measures/stiffness_measures.h"
 #include "analysis/measures/surface_side.h"
 #include "analysis/measures/tool_measures.h"
@@ -229,6 +230,22 @@ constexpr Row kMeasures[] = {
     {"max_tool_lag_angle", "rad", "maximum angle between tool and device", tool, neither,
      tool_max<tool_lag_rad>},
 
+    {"max_slave_force", "N", "maximum force of the scene on the slave", slave, neither, max_slave_force_N},
+    {"slave_contact_fraction", "1", "fraction of ticks with a force on the slave", slave, neither,
+     slave_contact_fraction},
+    {"min_slave_clearance", "m", "minimum distance of the slave's ball from the true surface", slave, neither,
+     min_slave_clearance_m},
+    {"rms_slave_lag", "m", "rms distance of the slave from the commanded position at that time", slave,
+     smaller, rms_slave_lag_m},
+    {"first_slave_contact_time", "s", "time of the first tick with a force on the slave", slave, neither,
+     first_slave_contact_time_s},
+    {"slave_anticipation", "s", "time by which the hand feels a force before the slave does", slave, larger,
+     slave_anticipation_s},
+    {"command_packet_rate", "1/s", "mean number of commands sent in a second", slave, neither,
+     command_packet_rate_per_s},
+    {"force_packet_rate", "1/s", "mean number of forces sent in a second", slave, neither,
+     force_packet_rate_per_s},
+
     {"guidance_fraction", "1", "fraction of ticks with active guidance to a visible target", guidance,
      neither, guidance_fraction},
     {"guidance_error", "m", "distance of tool or proxy from the goal at the last tick with guidance",
@@ -264,6 +281,8 @@ const char* name_of(MeasuredRuns runs) {
       return "runs with an expected force";
     case measured_surface:
       return "runs with a measured surface beside the true one";
+    case slave:
+      return "runs with a slave";
     default:
       return "all runs";
   }
@@ -286,6 +305,8 @@ bool applies(const Measure& measure, const Trace& trace) {
       return trace.has_replay();
     case measured_surface:
       return !trace.has_tool() && trace.has_contact() && trace.has_measured_surface();
+    case slave:
+      return trace.has_slave();
     default:
       return true;
   }

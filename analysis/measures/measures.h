@@ -43,8 +43,8 @@ double max_force_N(const Trace& trace);
 // a point proxy for which Trace::contact was computed. tool: runs with a tool. guidance: runs with guidance.
 // true_normal: runs for which Trace::true_normal was computed and is known in at least one tick. replay: runs
 // that replay a contact whose force is known (Trace::expected_force_N). measured_surface: runs of `contact`
-// with a measured surface beside the true one (Trace::measured_distance_m).
-enum class MeasuredRuns { all, proxy, contact, tool, guidance, true_normal, replay, measured_surface };
+// with a measured surface beside the true one (Trace::measured_distance_m). slave: runs with a slave.
+enum class MeasuredRuns { all, proxy, contact, tool, guidance, true_normal, replay, measured_surface, slave };
 
 // A measure that needs only a trace, by name: for summaries and for sweeps.
 struct Measure {

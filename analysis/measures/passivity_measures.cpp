@@ -15,12 +15,13 @@ namespace {
 
 // Work that the device does on the hand from tick i to tick i + 1.
 double work_J(const Trace& trace, std::size_t i) {
+  const auto& position_m = trace.has_rounded_hand() ? trace.hand_position_m : trace.hip_position_m;
   const Vec3& force_N = trace.has_hand() ? trace.device_force_N[i] : trace.force_N[i];
-  const double by_force = force_N.dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
+  const double by_force = force_N.dot(position_m[i + 1] - position_m[i]);
   if (!trace.has_tool()) return by_force;
+  const auto& orientation = trace.has_rounded_hand() ? trace.hand_orientation : trace.hip_orientation;
   const Vec3& torque_Nm = trace.has_hand() ? trace.device_torque_Nm[i] : trace.torque_Nm[i];
-  return by_force +
-         torque_Nm.dot(rotation_vector(trace.hip_orientation[i + 1] * trace.hip_orientation[i].conjugate()));
+  return by_force + torque_Nm.dot(rotation_vector(orientation[i + 1] * orientation[i].conjugate()));
 }
 
 // True if the hand feels a wrench in tick i. It feels no command for which the device has no motor.

@@ -16,20 +16,25 @@ struct TraceTick {
   const RenderOutput& out;
   const Trace::Truth& truth;
   const std::optional<HandState>& hand;
+  const std::optional<SlaveState>& slave;
 };
 
 bool has(const TraceTick& tick, TracePart part) {
   return part == TracePart::always || (part == TracePart::tool && tick.out.tool) ||
          (part == TracePart::guidance && tick.out.guidance) || (part == TracePart::hand && tick.hand) ||
          (part == TracePart::replay && tick.truth.expected_force_N) ||
-         (part == TracePart::measured_surface && tick.truth.measured_distance_m);
+         (part == TracePart::measured_surface && tick.truth.measured_distance_m) ||
+         (part == TracePart::rounded_hand && tick.hand && tick.hand->true_pose) ||
+         (part == TracePart::slave && tick.slave);
 }
 
 bool has(const Trace& trace, TracePart part) {
   return part == TracePart::always || (part == TracePart::tool && trace.has_tool()) ||
          (part == TracePart::guidance && trace.has_guidance()) ||
          (part == TracePart::hand && trace.has_hand()) || (part == TracePart::replay && trace.has_replay()) ||
-         (part == TracePart::measured_surface && trace.has_measured_surface());
+         (part == TracePart::measured_surface && trace.has_measured_surface()) ||
+         (part == TracePart::rounded_hand && trace.has_rounded_hand()) ||
+         (part == TracePart::slave && trace.has_slave());
 }
 
 template <class Number>
@@ -127,8 +132,8 @@ void Trace::reserve(std::size_t ticks) {
 }
 
 void Trace::append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
-                   const std::optional<HandState>& hand) {
-  const TraceTick t{time, device, out, truth, hand};
+                   const std::optional<HandState>& hand, const std::optional<SlaveState>& slave) {
+  const TraceTick t{time, device, out, truth, hand, slave};
 #define TRACE_COLUMN(member, Row, name, unit, part, value, ...) \
   if (has(t, TracePart::part)) member.push_back(static_cast<Row>(value));
 #include "analysis/trace/trace_columns.h"

@@ -10,6 +10,7 @@
 
 #include "analysis/trace/column.h"
 #include "analysis/trace/hand_state.h"
+#include "analysis/trace/slave_state.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 
@@ -43,11 +44,13 @@ struct Trace {
     std::optional<double> measured_distance_m = {};
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
-              const std::optional<HandState>& hand = {});
+              const std::optional<HandState>& hand = {}, const std::optional<SlaveState>& slave = {});
 
   bool has_tool() const { return !tool_orientation.empty(); }
   bool has_guidance() const { return !guidance_goal_m.empty(); }
   bool has_hand() const { return !intended_position_m.empty(); }
+  bool has_rounded_hand() const { return !hand_position_m.empty(); }
+  bool has_slave() const { return !slave_position_m.empty(); }
   bool has_replay() const { return !expected_force_N.empty(); }
   bool has_measured_surface() const { return !measured_distance_m.empty(); }
   bool has_contact() const { return !contact.empty(); }
@@ -75,8 +78,8 @@ struct Trace {
 
 // The runs that have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
 // simulated operator or device, those that replay a contact whose force is known, those with a measured
-// surface beside the true one.
-enum class TracePart { always, tool, guidance, hand, replay, measured_surface };
+// surface beside the true one, those whose device rounds the pose of the hand, those with a slave.
+enum class TracePart { always, tool, guidance, hand, replay, measured_surface, rounded_hand, slave };
 
 struct TraceColumn {
   const char* name;

@@ -106,3 +106,23 @@ TRACE_COLUMN(measured_distance_m, double, "measured_distance", "m", measured_sur
              *t.truth.measured_distance_m,
              proxy_or_tool("distance of the proxy's centre to the surface that the camera measured",
                            "distance of the tool's centre of mass to the surface that the camera measured"))
+
+TRACE_COLUMN(hand_position_m, Vec3, "hand_position", "m", rounded_hand, t.hand->true_pose->position_W,
+             "position of the hand, which the device measures as hip_position")
+TRACE_COLUMN(hand_orientation, Eigen::Quaterniond, "hand_orientation", "1", rounded_hand,
+             t.hand->true_pose->orientation_W, "orientation of the hand, quaternion w x y z")
+
+TRACE_COLUMN(received_command_m, Vec3, "received_command", "m", slave, t.slave->command_W,
+             "command that the slave has received last, world frame")
+TRACE_COLUMN(slave_position_m, Vec3, "slave_position", "m", slave, t.slave->position_W,
+             "centre of the slave's ball, world frame")
+TRACE_COLUMN(slave_force_N, Vec3, "slave_force", "N", slave, t.slave->force_N,
+             "mean force of the scene on the slave in the last tick, world frame")
+TRACE_COLUMN(slave_peak_force_N, double, "slave_peak_force", "N", slave, t.slave->peak_force_N,
+             "largest magnitude of this force in the last tick")
+TRACE_COLUMN(slave_clearance_m, double, "slave_clearance", "m", slave, t.slave->clearance_m,
+             "distance of the slave's ball from the true surface, negative in contact")
+TRACE_COLUMN(command_packets, std::int32_t, "command_packets", "1", slave, t.slave->command_packets,
+             "number of commands that were sent to the slave so far")
+TRACE_COLUMN(force_packets, std::int32_t, "force_packets", "1", slave, t.slave->force_packets,
+             "number of forces that the slave has sent so far")

@@ -51,7 +51,7 @@ struct ExperimentConfiguration {
   std::vector<RendererChange> changes;
   Part<TrajectoryEntry> trajectory;
   std::optional<OperatorSettings> operator_settings;
-  std::optional<MotorSettings> device;
+  std::optional<DeviceSettings> device;
   std::optional<LiveSettings> live;
   std::optional<SafetyLimits> safety;
 

@@ -130,4 +130,18 @@ void check_sequence(ExperimentConfiguration& configuration) {
           "expected a button of operator.presses (any button in experiments with a section live)");
 }
 
+void check_device(ExperimentConfiguration& configuration) {
+  if (!configuration.device || configuration.operator_settings) return;
+  const DeviceResistance& r = configuration.device->resistance;
+  const std::pair<const char*, double> without_effect[] = {
+      {"friction_N", r.friction_N},
+      {"friction_torque_Nm", r.friction_torque_Nm},
+      {"damping_Ns_per_m", r.damping_Ns_per_m},
+      {"rotational_damping_Nms_per_rad", r.rotational_damping_Nms_per_rad}};
+  for (const auto& [name, value] : without_effect)
+    if (value > 0)
+      throw InputError(std::string("device.") + name + " = " + shown(value),
+                       "expected 0 in an experiment without the section operator, whose hand has a mass");
+}
+
 }  // namespace remote_touch

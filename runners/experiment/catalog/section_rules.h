@@ -12,6 +12,8 @@ void check_fixtures(ExperimentConfiguration& configuration);
 void complete_guidance(ExperimentConfiguration& configuration);
 void check_changes(ExperimentConfiguration& configuration);
 void check_sequence(ExperimentConfiguration& configuration);
+// Friction and damping of the device need a hand with a mass.
+void check_device(ExperimentConfiguration& configuration);
 
 // Returns the largest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
 double max_renderer_stiffness(const ExperimentConfiguration& configuration);

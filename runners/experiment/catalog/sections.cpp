@@ -283,7 +283,8 @@ const Section kSections[] = {
     required<&C::trajectory, trajectories>("trajectory", "trajectories", "how the hand moves"),
     optional<&C::operator_settings>(
         "operator", "a simulated hand with mass that follows the trajectory and feels the force"),
-    optional<&C::device>("device", "actuated axes and maximum force of the haptic device"),
+    optional<&C::device>("device", "motors, friction, resolution and delay of the haptic device",
+                         check_device),
     optional<&C::live>("live", "poses of device and camera in the world, for real-time runs"),
     optional<&C::safety>("safety",
                          "limits of force, torque and speed of a real haptic device, for real-time runs"),

@@ -17,9 +17,6 @@ struct MotorSettings {
 };
 
 Parameters parameters(MotorSettings& s);
-inline std::string validate(const MotorSettings&) {
-  return {};
-}
 
 // Returns the wrench that the device exerts on the hand for a commanded one. Forces act along the base axes,
 // and torques about the axes of the handle, which are those of the tool. Components on axes without a motor

@@ -98,6 +98,7 @@ Responses responses(double w, double d, double duration_s, Squares squares) {
 StepEnergy& StepEnergy::operator+=(const StepEnergy& other) {
   force_work_J += other.force_work_J, path_work_J += other.path_work_J;
   path_damper_J += other.path_damper_J, ground_damper_J += other.ground_damper_J;
+  dry_friction_J += other.dry_friction_J;
   kinetic_J += other.kinetic_J, potential_J += other.potential_J;
   return *this;
 }

@@ -23,11 +23,12 @@ struct StepEnergy {
   double path_work_J = 0;      // done by what moves the path
   double path_damper_J = 0;    // dissipated; negative by rounding only
   double ground_damper_J = 0;  // dissipated; negative by rounding only
+  double dry_friction_J = 0;   // dissipated; see DryFrictionStep
   double kinetic_J = 0;        // gained by the mass
   double potential_J = 0;      // gained by the spring
 
   double supplied_J() const { return force_work_J + path_work_J; }
-  double dissipated_J() const { return path_damper_J + ground_damper_J; }
+  double dissipated_J() const { return path_damper_J + ground_damper_J + dry_friction_J; }
   double gained_J() const { return kinetic_J + potential_J; }
   StepEnergy& operator+=(const StepEnergy& other);
 };

@@ -56,8 +56,21 @@ std::string validate(const OperatorSettings& s) {
   return {};
 }
 
-OperatorModel::OperatorModel(const OperatorSettings& settings, double tick_s)
-    : s_(settings), tick_s_(tick_s) {}
+OperatorModel::Step::Step(const MassOnSpring& system, double friction, double duration_s)
+    : without_friction(system, duration_s) {
+  if (friction > 0) with_friction.emplace(system, friction, duration_s);
+}
+
+HeldForceStep::Motion OperatorModel::Step::motion(const HeldForceStep::Start& start) const {
+  return with_friction ? with_friction->motion(start) : without_friction.motion(start);
+}
+
+StepEnergy OperatorModel::Step::energy(const HeldForceStep::Start& start) const {
+  return with_friction ? with_friction->energy(start) : without_friction.energy(start);
+}
+
+OperatorModel::OperatorModel(const OperatorSettings& settings, double tick_s, const DeviceResistance& device)
+    : s_(settings), device_(device), tick_s_(tick_s) {}
 
 std::uint32_t OperatorModel::buttons(double time_s) const {
   std::uint32_t down = 0;
@@ -74,12 +87,13 @@ void OperatorModel::prepare(double grip, double duration_s) {
   grip_ = grip, duration_s_ = duration_s;
   const double open = 1 - grip;
   step_.emplace(MassOnSpring{s_.mass_kg, grip * s_.stiffness_N_per_m, grip * s_.damping_Ns_per_m,
-                             open * s_.damping_Ns_per_m},
-                duration_s);
+                             open * s_.damping_Ns_per_m + device_.damping_Ns_per_m},
+                device_.friction_N, duration_s);
   turning_step_.emplace(
       MassOnSpring{s_.inertia_kg_m2, grip * s_.rotational_stiffness_Nm_per_rad,
-                   grip * s_.rotational_damping_Nms_per_rad, open * s_.rotational_damping_Nms_per_rad},
-      duration_s);
+                   grip * s_.rotational_damping_Nms_per_rad,
+                   open * s_.rotational_damping_Nms_per_rad + device_.rotational_damping_Nms_per_rad},
+      device_.friction_torque_Nm, duration_s);
 }
 
 DeviceState OperatorModel::move(const DeviceState& intended, double time_s, const Wrench& device_wrench) {

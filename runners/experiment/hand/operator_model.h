@@ -10,6 +10,8 @@
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/wrench.h"
+#include "runners/experiment/hand/device_settings.h"
+#include "runners/experiment/hand/dry_friction_step.h"
 #include "runners/experiment/hand/held_force_step.h"
 
 namespace remote_touch {
@@ -28,18 +30,20 @@ struct OperatorSettings {
 Parameters parameters(OperatorSettings& s);
 std::string validate(const OperatorSettings& s);
 
-// m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
-// grip. The hand's spring and damper to the intended position are g k and g c, and (1 - g) c damps the motion
-// of a hand that opens. Rotations have the same form. They are rotation vectors in world axes relative to the
+// m x'' = f + g k (x_i - x) + c (g x_i' - x') - b x' - F_c sign(x'), with f the device's force, x_i the
+// intended position, g the grip, and b and F_c the damping and the dry friction of the device. The hand's
+// spring and damper to the intended position are g k and g c, and (1 - g) c damps the motion of a hand that
+// opens. Rotations have the same form. They are rotation vectors in world axes relative to the
 // pose at the beginning of the tick, and the inertia is inertia_kg_m2 about every axis.
 //
-// f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep). The
+// f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep, and
+// DryFrictionStep with friction; friction acts along every axis by itself). The
 // device is a zero-order hold, which adds energy to a hand that a spring pushes. So a stiff device can make
 // the hand unstable.
 class OperatorModel {
  public:
   // pre: validate(settings) is empty.
-  OperatorModel(const OperatorSettings& settings, double tick_s);
+  OperatorModel(const OperatorSettings& settings, double tick_s, const DeviceResistance& device = {});
 
   // Returns the hand's pose at time_s. intended: the path's pose at time_s. device_wrench: the wrench that
   // the device has exerted since the last call. If the last call was n ticks ago, the hand makes one step of
@@ -52,17 +56,26 @@ class OperatorModel {
   StepEnergy last_energy() const;
 
  private:
+  // The step of the translation, or of the rotation, with the friction of the device.
+  struct Step {
+    Step(const MassOnSpring& system, double friction, double duration_s);
+    HeldForceStep::Motion motion(const HeldForceStep::Start& start) const;
+    StepEnergy energy(const HeldForceStep::Start& start) const;
+    HeldForceStep without_friction;
+    std::optional<DryFrictionStep> with_friction;  // none: the device has no dry friction
+  };
   void prepare(double grip, double duration_s);
   std::uint32_t buttons(double time_s) const;
 
   const OperatorSettings s_;
+  const DeviceResistance device_;
   const double tick_s_;
   ToolPose pose_, intended_;  // poses at the last call
   Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
   std::optional<double> last_time_s_;
 
   // The last step, for translation and rotation, and the grip, duration and start for which it was computed.
-  std::optional<HeldForceStep> step_, turning_step_;
+  std::optional<Step> step_, turning_step_;
   double grip_ = 0, duration_s_ = 0;
   HeldForceStep::Start start_, turning_start_;
 };

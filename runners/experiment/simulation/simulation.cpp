@@ -7,6 +7,7 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
+#include "core/rendering/rendered_wrench.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/fixture_notes.h"
@@ -168,7 +169,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    hand.apply(device, out);
+    hand.apply(rendered_wrench(out));
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
     if (finds_contact)
       known.contact =

@@ -99,6 +99,10 @@ const char* runs_with(TracePart part) {
       return "a run that replays a known contact";
     case TracePart::measured_surface:
       return "a run with a measured surface beside the true one";
+    case TracePart::slave:
+      return "a run with a slave";
+    case TracePart::rounded_hand:
+      return "a run whose device rounds the pose of the hand";
     case TracePart::hand:
       return "a run with an operator or a device";
   }

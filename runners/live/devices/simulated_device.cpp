@@ -50,10 +50,7 @@ DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept try {
 DeviceFault SimulatedDevice::write(const Wrench& wrench) noexcept {
   const Wrench device_wrench =
       armed_.load(std::memory_order_relaxed) ? placement_.in_world(wrench) : Wrench{};
-  RenderOutput out;
-  out.force_N = device_wrench.force_N;
-  out.tool.emplace().torque_Nm = device_wrench.torque_Nm;
-  hand_.apply(state_, out);
+  hand_.apply(device_wrench);
   return {};
 }
 

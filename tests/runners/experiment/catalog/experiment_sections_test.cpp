@@ -127,6 +127,19 @@ TEST(ExperimentSections, RefuseSettingsThatContradictEachOther) {
     EXPECT_HAS(why(std::string("fixtures.1.radius_m=") + radius), "expected above 0 for role = guidance");
 }
 
+TEST(ExperimentSections, RefuseADeviceThatNeedsAHandWithAMass) {
+  for (const std::string name :
+       {"friction_N", "friction_torque_Nm", "damping_Ns_per_m", "rotational_damping_Nms_per_rad"}) {
+    EXPECT_EQ(resolved({"device." + name + "=0.5"})["device"][name], 0.5);
+    EXPECT_HAS(refusal([&] { Experiment::load("fig4.11", {"device." + name + "=0.5"}); }),
+               "device." + name + " = 0.5: expected 0 in an experiment without the section operator");
+  }
+  EXPECT_HAS(why("device.velocity_ticks=2"), "device.velocity_ticks = 2: expected 1 without");
+  EXPECT_EQ(
+      resolved({"device.velocity_ticks=2", "device.contact_damping_Ns_per_m=1"})["device"]["velocity_ticks"],
+      2);
+}
+
 TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
   EXPECT_EQ(why("sequence.1.fixture=knob"),
             "sequence.1.fixture = \"knob\": expected the label of a fixture: \"table\", \"valve\"");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rotation.h"
+#include "core/rendering/rendered_wrench.h"
 
 namespace remote_touch::simulated_hand_test {
 namespace {
@@ -25,22 +26,22 @@ TEST(SimulatedHand, FollowsTheScriptExactlyIfThereIsNoOperator) {
     EXPECT_EQ(d.position_W, path.position_W);
     EXPECT_EQ(d.orientation_W.coeffs(), path.orientation_W.coeffs());
     EXPECT_EQ(d.buttons, 5u);
-    hand.apply(d, out);
+    hand.apply(rendered_wrench(out));
     EXPECT_FALSE(hand.state());
   }
 }
 
 // The force of one tick moves the hand in the next, as far as the device has motors.
 TEST(SimulatedHand, FeelsWhatTheDeviceExerts) {
-  MotorSettings motors;
-  motors.force_y = motors.torque_x = false;
-  SimulatedHand hand(OperatorSettings{}, motors, kTick_s);
+  DeviceSettings device;
+  device.motors.force_y = device.motors.torque_x = false;
+  SimulatedHand hand(OperatorSettings{}, device, kTick_s);
   RenderOutput out;
   out.force_N = {1, 2, 0};
   out.tool.emplace().torque_Nm = {0.1, 0, 0.2};
   const DeviceState first = hand.move(at({0, 0, 0}), 0);
   EXPECT_EQ(hand.state()->force_N, Vec3::Zero());
-  hand.apply(first, out);
+  hand.apply(rendered_wrench(out));
   EXPECT_EQ(hand.state()->force_N, Vec3(1, 0, 0));
   EXPECT_EQ(hand.state()->torque_Nm, Vec3(0, 0, 0.2));
   EXPECT_EQ(hand.state()->intended_W, Vec3::Zero());
@@ -58,9 +59,9 @@ TEST(SimulatedHand, FeelsNoTorqueWithoutATool) {
   const DeviceState d = hand.move(at({0, 0, 0}), 0);
   RenderOutput out;
   out.tool.emplace().torque_Nm = {1, 0, 0};
-  hand.apply(d, out);
+  hand.apply(rendered_wrench(out));
   EXPECT_EQ(hand.state()->torque_Nm, Vec3(1, 0, 0));
-  hand.apply(d, {});
+  hand.apply({});
   EXPECT_EQ(hand.state()->torque_Nm, Vec3::Zero());
 }
 

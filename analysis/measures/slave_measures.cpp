@@ -1,0 +1,70 @@
+#include "analysis/measures/slave_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/measures/no_value.h"
+#include "analysis/statistics/mean.h"
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Time of the first tick for which happens() is true; NaN if there is none.
+template <class Event>
+double first_time_s(const Trace& trace, Event&& happens) {
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (happens(i)) return trace.time_s[i];
+  return kNoValue;
+}
+
+double rate_per_s(const Trace& trace, const std::vector<std::int32_t>& sent) {
+  if (sent.size() < 2) return kNoValue;
+  return (sent.back() - sent.front()) / (trace.time_s.back() - trace.time_s.front());
+}
+
+}  // namespace
+
+double max_slave_force_N(const Trace& trace) {
+  const std::vector<double>& peaks = trace.slave_peak_force_N;
+  return peaks.empty() ? kNoValue : *std::max_element(peaks.begin(), peaks.end());
+}
+
+double slave_contact_fraction(const Trace& trace) {
+  return mean_where(
+      trace.slave_peak_force_N.size(), [](std::size_t) { return true; },
+      [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; });
+}
+
+double min_slave_clearance_m(const Trace& trace) {
+  double least = kNoValue;
+  for (const double clearance : trace.slave_clearance_m) least = std::fmin(least, clearance);  // ignores NaN
+  return least;
+}
+
+double rms_slave_lag_m(const Trace& trace) {
+  return std::sqrt(mean_where(
+      trace.slave_position_m.size(), [&](std::size_t i) { return trace.slave_command_m[i].allFinite(); },
+      [&](std::size_t i) { return (trace.slave_position_m[i] - trace.slave_command_m[i]).squaredNorm(); }));
+}
+
+double first_slave_contact_time_s(const Trace& trace) {
+  return first_time_s(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; });
+}
+
+double slave_anticipation_s(const Trace& trace) {
+  return first_slave_contact_time_s(trace) -
+         first_time_s(trace, [&](std::size_t i) { return !trace.device_force_N[i].isZero(0); });
+}
+
+double command_packet_rate_per_s(const Trace& trace) {
+  return rate_per_s(trace, trace.command_packets);
+}
+
+double force_packet_rate_per_s(const Trace& trace) {
+  return rate_per_s(trace, trace.force_packets);
+}
+
+}  // namespace remote_touch

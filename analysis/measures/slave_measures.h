@@ -1,0 +1,27 @@
+// Measures of a run with a slave: what the remote scene feels of it, how late it is, and what was sent.
+#pragma once
+
+namespace remote_touch {
+
+struct Trace;
+
+// Maximum of Trace::slave_peak_force_N, N: forces between the ticks count.
+double max_slave_force_N(const Trace& trace);
+// Fraction of the ticks with a force on the slave.
+double slave_contact_fraction(const Trace& trace);
+// Minimum of Trace::slave_clearance_m, m, over the ticks in which it is known; NaN if there is no such tick.
+double min_slave_clearance_m(const Trace& trace);
+// Root mean square of the distance of the slave from Trace::slave_command_m of the same tick, m: delay,
+// limited bandwidth and contact together. Ticks without a command that is finite do not count; NaN if there
+// are no others.
+double rms_slave_lag_m(const Trace& trace);
+// Time of the first tick with a force on the slave, s; NaN if there is none.
+double first_slave_contact_time_s(const Trace& trace);
+// Time of first contact of the slave less that of the first tick in which the device exerts a force on the
+// hand, s. Positive: the hand is warned. NaN if one of them never happens.
+double slave_anticipation_s(const Trace& trace);
+// Packets per second of the run. NaN for a run of one tick.
+double command_packet_rate_per_s(const Trace& trace);
+double force_packet_rate_per_s(const Trace& trace);
+
+}  // namespace remote_touch

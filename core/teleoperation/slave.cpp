@@ -1,0 +1,98 @@
+#include "core/teleoperation/slave.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/geometry/limited_length.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
+
+Vec3 cut(const Vec3& v, double max_length) {
+  return max_length > 0 ? limited_length(v, max_length) : v;
+}
+
+double angular_frequency(const SlaveSettings& s) {
+  return 2 * std::numbers::pi * s.natural_frequency_hz;
+}
+
+}  // namespace
+
+Parameters parameters(SlaveSettings& s) {
+  return {
+      {"mass_kg", &s.mass_kg, 0.01, 1000, "mass of the slave"},
+      {"natural_frequency_hz", &s.natural_frequency_hz, 0.1, 100,
+       "natural frequency with which the slave follows its command"},
+      {"damping_ratio", &s.damping_ratio, 0.05, 10, "damping of this motion; 1: critical"},
+      {"max_speed_m_per_s", &s.max_speed_m_per_s, 0, 100,
+       "largest speed of the reference that the slave follows; 0: no limit"},
+      {"max_acceleration_m_per_s2", &s.max_acceleration_m_per_s2, 0, 1000,
+       "largest acceleration that the drive can give to the slave; 0: no limit"},
+      {"radius_m", &s.radius_m, 1e-4, 1, "radius of the ball with which the slave touches the scene"},
+      {"contact_stiffness_N_per_m", &s.contact_stiffness_N_per_m, 0, 1e6,
+       "stiffness of the contact of ball and scene; 0: the ball feels nothing"},
+      {"contact_damping_Ns_per_m", &s.contact_damping_Ns_per_m, 0, 10000, "damping of this contact"},
+      {"steps_per_tick", &s.steps_per_tick, 1, 1000, "steps of the slave's motion in a tick"},
+  };
+}
+
+std::string validate(const SlaveSettings& s) {
+  // The rule is stable for w T < 2 without damping; half of that leaves room for the dampers.
+  const double step_s = kMaxTick_s / s.steps_per_tick;
+  const double w = angular_frequency(s);
+  const double stiffness = w * w + s.contact_stiffness_N_per_m / s.mass_kg;
+  const double damping = 2 * s.damping_ratio * w + s.contact_damping_Ns_per_m / s.mass_kg;
+  if (stiffness * step_s * step_s + damping * step_s <= 1) return {};
+  return "steps_per_tick = " + std::to_string(s.steps_per_tick) + ": expected more, or a larger mass_kg";
+}
+
+Slave::Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene)
+    : s_(settings), tick_s_(tick_s), scene_(std::move(scene)) {}
+
+Vec3 Slave::contact_force(double before_s, double now_s) {
+  const double depth_before = depth_m_;
+  depth_m_ = s_.radius_m - scene_.signed_distance(state_.position_W, now_s);
+  if (!(depth_m_ > 0) || s_.contact_stiffness_N_per_m == 0) return Vec3::Zero();
+  // A ball that the scene reaches from an unknown distance has no known speed of approach.
+  const double speed = std::isnan(depth_before) ? 0 : (depth_m_ - depth_before) / (now_s - before_s);
+  const double force = s_.contact_stiffness_N_per_m * depth_m_ + s_.contact_damping_Ns_per_m * speed;
+  const Vec3 normal = scene_.normal(state_.position_W, now_s);
+  if (!(force > 0) || !normal.allFinite()) return Vec3::Zero();
+  return force * normal;
+}
+
+void Slave::step(const Vec3& reference_velocity, double before_s, double now_s) {
+  const double w = angular_frequency(s_), step_s = tick_s_ / s_.steps_per_tick;
+  const Vec3 drive = cut(w * w * (reference_W_ - state_.position_W) +
+                             2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W),
+                         s_.max_acceleration_m_per_s2);
+  const Vec3 force = contact_force(before_s, now_s);
+  state_.velocity_W += step_s * (drive + force / s_.mass_kg);
+  state_.position_W += step_s * state_.velocity_W;
+  reference_W_ += step_s * reference_velocity;
+  state_.force_N += force / s_.steps_per_tick;
+  state_.peak_force_N = std::max(state_.peak_force_N, force.norm());
+}
+
+const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
+  if (!is_placed_) {
+    state_.position_W = reference_W_ = command_W;
+    depth_m_ = s_.radius_m - scene_.signed_distance(command_W, time_s);
+    is_placed_ = true;
+  } else {
+    const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
+    state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
+    const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
+    for (int i = 0; i < s_.steps_per_tick; ++i)
+      step(reference_velocity, begin_s + (i - 1) * step_s, begin_s + i * step_s);
+  }
+  state_.clearance_m = scene_.signed_distance(state_.position_W, time_s) - s_.radius_m;
+  return state_;
+}
+
+}  // namespace remote_touch

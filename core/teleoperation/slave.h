@@ -1,0 +1,76 @@
+// A slave robot in contact with the true scene: a ball on a carriage that follows a commanded position.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+struct SlaveSettings {
+  double mass_kg = 2;
+  double natural_frequency_hz = 5;
+  double damping_ratio = 1;
+  double max_speed_m_per_s = 0;
+  double max_acceleration_m_per_s2 = 0;
+  double radius_m = 0.005;
+  double contact_stiffness_N_per_m = 30000;
+  double contact_damping_Ns_per_m = 20;
+  int steps_per_tick = 10;
+};
+
+Parameters parameters(SlaveSettings& s);
+std::string validate(const SlaveSettings& s);
+
+// The scene that the ball touches: the true surface, not the measured points.
+struct SlaveScene {
+  // Distance of a point from the surface at a time, m, positive outside; NaN where it is not known.
+  std::function<double(const Vec3& p_W, double time_s)> signed_distance;
+  // Unit normal towards the outside at the surface point that is nearest; NaN where it is not known.
+  std::function<Vec3(const Vec3& p_W, double time_s)> normal;
+};
+
+// m x'' = m w^2 (c - x) + 2 zeta w m (c' - x') + f along every axis, with x the centre of the ball, c the
+// reference, w = 2 pi natural_frequency_hz and f the contact force of the scene. In each tick the reference
+// moves at constant velocity, not faster than max_speed_m_per_s, and reaches the command at the end. The
+// drive, which is the first two terms divided by m, is limited to max_acceleration_m_per_s2 in magnitude.
+//
+// f = max(0, K d + B d') n, with d = radius_m - signed distance of the centre, where d > 0; n is the normal
+// of the true surface. d' includes the motion of the surface. There is no friction, and no contact where the
+// distance is not known.
+//
+// The motion is integrated in steps of a tick / steps_per_tick by the semi-implicit rule. Its error is of
+// the order of w T and sqrt(K / m) T, where T is the duration of a step.
+class Slave {
+ public:
+  // pre: validate(settings) is empty, tick_s > 0.
+  Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene);
+
+  struct State {
+    Vec3 position_W = Vec3::Zero();
+    Vec3 velocity_W = Vec3::Zero();
+    Vec3 force_N = Vec3::Zero();  // mean force of the scene on the ball in the last tick
+    double peak_force_N = 0;      // largest magnitude of the force in the last tick
+    double clearance_m = 0;  // distance of the ball from the surface; negative in contact; NaN: not known
+  };
+  // Moves the slave from time_s - tick to time_s. command_W: the position that it has received last. In the
+  // first call the slave is put at the command, at rest.
+  const State& move(const Vec3& command_W, double time_s);
+  const State& state() const { return state_; }
+
+ private:
+  Vec3 contact_force(double before_s, double now_s);
+  void step(const Vec3& reference_velocity, double before_s, double now_s);
+
+  const SlaveSettings s_;
+  const double tick_s_;
+  const SlaveScene scene_;
+  State state_;
+  Vec3 reference_W_ = Vec3::Zero();
+  double depth_m_ = 0;  // d after the last step; NaN: not known
+  bool is_placed_ = false;
+};
+
+}  // namespace remote_touch

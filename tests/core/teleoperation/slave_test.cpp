@@ -1,0 +1,162 @@
+// The slave robot: closed forms of its free motion, of its limits and of its contact.
+#include "core/teleoperation/slave.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace remote_touch::slave_test {
+namespace {
+
+constexpr double kTick_s = 0.001;
+
+// A horizontal plane at a height that may change with time.
+SlaveScene plane(std::function<double(double)> height = [](double) { return 0.0; }) {
+  return {[height](const Vec3& p, double t) { return p.y() - height(t); },
+          [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+}
+
+SlaveScene nothing() {
+  return {[](const Vec3&, double) { return std::numeric_limits<double>::quiet_NaN(); },
+          [](const Vec3&, double) { return Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())); }};
+}
+
+TEST(Slave, StartsAtTheFirstCommandAtRest) {
+  Slave slave({}, kTick_s, plane());
+  const Slave::State& state = slave.move({1, 2, 3}, 0.5);
+  EXPECT_EQ(state.position_W, Vec3(1, 2, 3));
+  EXPECT_EQ(state.velocity_W, Vec3::Zero());
+  EXPECT_NEAR(state.clearance_m, 1.995, 1e-15);
+}
+
+// A sine in free space: the response of (2 zeta w s + w^2) / (s^2 + 2 zeta w s + w^2), without further delay.
+TEST(Slave, FollowsASineWithTheResponseOfItsOrder) {
+  for (const double natural_hz : {1.0, 5.0, 20.0})
+    for (const double zeta : {0.5, 1.0})
+      for (const double signal_hz : {0.5, 2.0, 8.0}) {
+        SlaveSettings s;
+        s.natural_frequency_hz = natural_hz, s.damping_ratio = zeta, s.steps_per_tick = 20;
+        Slave slave(s, kTick_s, nothing());
+        const double w = 2 * std::numbers::pi * natural_hz, u = 2 * std::numbers::pi * signal_hz;
+        std::complex<double> sum = 0;
+        const int settle = 8000, periods = 4;
+        const int window = static_cast<int>(std::lround(periods / signal_hz / kTick_s));
+        for (int tick = 0; tick < settle + window; ++tick) {
+          const double t = tick * kTick_s;
+          const double x = slave.move({std::sin(u * t), 0, 0}, t).position_W.x();
+          if (tick >= settle) sum += x * std::exp(std::complex<double>(0, -u * t)) * (2.0 / window);
+        }
+        const std::complex<double> i(0, 1), measured = sum * i;  // of a sine
+        const std::complex<double> expected =
+            (w * w + i * 2.0 * zeta * w * u) / (w * w - u * u + i * 2.0 * zeta * w * u);
+        EXPECT_NEAR(std::abs(measured), std::abs(expected), 0.01 * std::abs(expected) + 1e-3)
+            << natural_hz << " " << zeta << " " << signal_hz;
+        const double late = -std::arg(measured / expected) / u;
+        EXPECT_NEAR(late, 0, 0.05 * kTick_s) << natural_hz << " " << zeta << " " << signal_hz;
+      }
+}
+
+// Static: m w^2 (c - x) + K d = 0 with d = r - x.
+TEST(Slave, PressesWithTheForceOfItsDrive) {
+  SlaveSettings s;
+  Slave slave(s, kTick_s, plane());
+  for (int tick = 0; tick < 5000; ++tick) slave.move({0, tick == 0 ? 0.01 : -0.01, 0}, tick * kTick_s);
+  const double w = 2 * std::numbers::pi * s.natural_frequency_hz, drive = s.mass_kg * w * w;
+  const double k = s.contact_stiffness_N_per_m;
+  const double depth = drive * (s.radius_m + 0.01) / (drive + k);
+  EXPECT_NEAR(slave.state().clearance_m, -depth, 1e-9);
+  EXPECT_NEAR(slave.state().force_N.y(), k * depth, 1e-5);
+  EXPECT_NEAR(slave.state().peak_force_N, k * depth, 1e-5);
+}
+
+TEST(Slave, KeepsItsLimits) {
+  SlaveSettings s;
+  s.max_speed_m_per_s = 0.2, s.max_acceleration_m_per_s2 = 3;
+  Slave slave(s, kTick_s, nothing());
+  slave.move({0, 0, 0}, 0);
+  Vec3 before = Vec3::Zero();
+  double fastest = 0, hardest = 0;
+  for (int tick = 1; tick < 4000; ++tick) {
+    const Slave::State& state = slave.move({0.3, 0.4, 0}, tick * kTick_s);
+    fastest = std::max(fastest, state.velocity_W.norm());
+    hardest = std::max(hardest, (state.velocity_W - before).norm() / kTick_s);
+    before = state.velocity_W;
+  }
+  EXPECT_NEAR(hardest, 3, 1e-9);
+  // The slave is late at first and catches up faster than the reference, which arrives after 2.5 s.
+  EXPECT_GT(fastest, 0.2);
+  EXPECT_LT(fastest, 0.3);
+  EXPECT_NEAR((slave.state().position_W - Vec3(0.3, 0.4, 0)).norm(), 0, 1e-6);
+}
+
+// A slave without a drive to speak of bounces off an undamped surface with the speed of its arrival, and
+// never with more.
+TEST(Slave, GainsNoEnergyInAnUndampedContact) {
+  for (const double stiffness : {1e4, 3e4, 1e5}) {
+    SlaveSettings s;
+    s.natural_frequency_hz = 0.1, s.damping_ratio = 0.05, s.contact_stiffness_N_per_m = stiffness;
+    s.contact_damping_Ns_per_m = 0, s.steps_per_tick = 20;
+    Slave slave(s, kTick_s, plane());
+    double arriving = 0, leaving = 0, work = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      const double v = slave.state().velocity_W.y();
+      const Vec3 at = slave.state().position_W;
+      const Slave::State& state = slave.move({0, tick == 0 ? 0.02 : -2, 0}, tick * kTick_s);
+      if (state.clearance_m > 0 && leaving == 0 && v < 0) arriving = v;
+      if (state.peak_force_N > 0) work += state.force_N.dot(state.position_W - at);
+      if (state.clearance_m > 0 && arriving != 0 && state.velocity_W.y() > 0) {
+        leaving = state.velocity_W.y();
+        break;
+      }
+    }
+    ASSERT_LT(arriving, 0) << stiffness;
+    EXPECT_NEAR(leaving, -arriving, 0.05 * -arriving) << stiffness;
+  }
+}
+
+// The peak of an impact at v under a constant push F is F + sqrt(F^2 + K m v^2).
+TEST(Slave, StrikesWithThePeakOfAFreeMass) {
+  SlaveSettings s;
+  s.natural_frequency_hz = 0.1, s.damping_ratio = 0.05, s.contact_damping_Ns_per_m = 0, s.steps_per_tick = 20;
+  Slave slave(s, kTick_s, plane());
+  double peak = 0, speed = 0;
+  for (int tick = 0; tick < 3000 && !(peak > 0 && slave.state().clearance_m > 0); ++tick) {
+    if (peak == 0) speed = -slave.state().velocity_W.y();
+    peak = std::max(peak, slave.move({0, tick == 0 ? 0.02 : -2, 0}, tick * kTick_s).peak_force_N);
+  }
+  ASSERT_GT(speed, 0.05);
+  const double w = 2 * std::numbers::pi * s.natural_frequency_hz, push = s.mass_kg * w * w * 2;
+  EXPECT_NEAR(peak, push + std::sqrt(push * push + s.contact_stiffness_N_per_m * s.mass_kg * speed * speed),
+              0.01 * peak);
+}
+
+// A surface that rises into a ball at rest pushes it, with the damper against its own speed.
+TEST(Slave, IsPushedByASurfaceThatRises) {
+  SlaveSettings s;
+  s.contact_damping_Ns_per_m = 100;
+  Slave slave(s, kTick_s, plane([](double t) { return t < 0.1 ? 0 : 0.05 * (t - 0.1); }));
+  double first = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    const Slave::State& state = slave.move({0, 0.006, 0}, tick * kTick_s);
+    if (first == 0 && state.peak_force_N > 0) first = state.peak_force_N;
+  }
+  // The surface reaches the ball with 0.05 m/s: the first force is that of the damper, 5 N, and little more.
+  EXPECT_GT(first, 5);
+  EXPECT_LT(first, 10);
+  EXPECT_GT(slave.state().position_W.y(), 0.045);
+}
+
+TEST(Slave, NeedsMoreStepsForAStifferContact) {
+  SlaveSettings s;
+  EXPECT_EQ(validate(s), "");
+  s.contact_stiffness_N_per_m = 1e6, s.mass_kg = 0.1;
+  EXPECT_NE(validate(s).find("steps_per_tick = 10"), std::string::npos);
+  s.steps_per_tick = 1000;
+  EXPECT_EQ(validate(s), "");
+}
+
+}  // namespace
+}  // namespace remote_touch::slave_test
