@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include "analysis/measures/segmentation.h"
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "scenarios/camera/valve_tank.h"
 

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/figures/figure.h"
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
-#include "runners/evaluation/figures/figures.h"
+#include "core/geometry/point_cloud.h"
+#include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/hue_masks.h"
+#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 #include <nlohmann/json.hpp>
