@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 
@@ -18,6 +19,21 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string data_folder;
+
+// The largest sizes of files that are read whole. Without a limit here the digest of a larger file is
+// computed first, which can take minutes.
+void require_readable_size(const fs::path& file) {
+  constexpr std::uintmax_t kMaxMeshBytes = std::uintmax_t{2} << 30;  // 5 million triangles as text
+  std::error_code unreachable;
+  const std::uintmax_t size = fs::file_size(file, unreachable);
+  if (unreachable) return;  // the reader refuses it
+  for (const char* ending : {".obj", ".ply", ".stl"})
+    if (has_ending(file, ending) && size > kMaxMeshBytes)
+      refuse(file.string(), "is larger than 2 GiB: expected a mesh of at most 5 million triangles");
+  for (const char* ending : {".csv", ".traj", ".txt", ".tum"})
+    if (has_ending(file, ending) && size > kMaxTextBytes)
+      refuse(file.string(), "is longer than ", kMaxTextBytes >> 20, " MiB: expected a shorter text");
+}
 
 // True for images, meshes, paths of poses, measured contacts and live sessions. A recording of frames is not
 // made from such files.
@@ -101,7 +117,7 @@ std::vector<InputFile> listed_files(const RecordingPart& part) {
 
 std::vector<InputFile> files_of(const RecordingPart& part) {
   std::vector<InputFile> files = listed_files(part);
-  for (const InputFile& input : files) require_file(input.file);
+  for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
   return files;
 }
 

@@ -54,8 +54,8 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 // images or PCD files of the part, the colour images registered to them, those of camera.json, depth.txt and
 // rgb.txt that are used, the poses of the camera, and the files of the truth. For a bag they are all its
 // files, because its frames are not counted here. Throws InputError if the recording is not there, its lists
-// or camera.json cannot be used, it has fewer frames, or one of the files is a folder, a pipe or a device.
-// Images and PCD files are not opened.
+// or camera.json cannot be used, it has fewer frames, or one of the files is a folder, a pipe or a device,
+// a text above 16 MiB or a mesh above 2 GiB. Images and PCD files are not opened.
 struct InputFile {
   std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
   std::filesystem::path file;  // path with which the file is opened

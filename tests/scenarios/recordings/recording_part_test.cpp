@@ -77,6 +77,26 @@ TEST_F(FindRecording, RefusesPartsThatAreNoFiles) {
   }
 }
 
+// The digest of such a file would take minutes, only for the reader to refuse it.
+TEST_F(FindRecording, RefusesFilesThatNoReaderAccepts) {
+  const auto refused = [&](const std::string& name, std::uintmax_t bytes) {
+    folder_.write("here/" + name, "");
+    fs::resize_file(name, bytes);  // without blocks on the disk
+    return refusal([&] { files_of({name}); });
+  };
+  const std::uintmax_t text = 16 << 20, mesh = std::uintmax_t{2} << 30;
+  for (const std::string name : {"a.csv", "a.traj", "a.txt", "a.tum"}) {
+    EXPECT_EQ(refused(name, text), "no InputError");
+    EXPECT_HAS(refused(name, text + 1), name + ": is longer than 16 MiB: expected a shorter text");
+  }
+  for (const std::string name : {"a.obj", "a.PLY", "a.stl"}) {
+    EXPECT_EQ(refused(name, mesh), "no InputError");
+    EXPECT_HAS(refused(name, mesh + 1),
+               name + ": is larger than 2 GiB: expected a mesh of at most 5 million");
+  }
+  EXPECT_EQ(refused("session.h5", mesh + 1), "no InputError");
+}
+
 TEST_F(FindRecording, BagsAreReadAsAWhole) {
   for (const char* name :
        {"bag/metadata.yaml", "bag/bag_0.mcap", "bag/bag_1.mcap", "bag/notes.txt", "one.bag"})
