@@ -8,6 +8,8 @@
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <cctype>
+#include <cstdint>
+#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -137,6 +139,20 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 namespace {
 
+// Throws std::runtime_error unless a binary STL file has as many bytes as its count of facets needs. The
+// library refuses other sizes too, but not in plain words.
+void require_whole_facets(const std::string& stl) {
+  constexpr std::size_t kCountAt = 80, kHeader = 84, kFacet = 50;
+  if (stl.size() < kHeader)
+    throw std::runtime_error("it neither begins with the word solid nor has the 84 bytes of a binary header");
+  std::uint32_t facets = 0;
+  std::memcpy(&facets, stl.data() + kCountAt, sizeof facets);
+  const std::size_t needed = kHeader + kFacet * std::size_t{facets};
+  if (stl.size() != needed)
+    throw std::runtime_error("its header claims " + std::to_string(facets) + " facets, which need " +
+                             std::to_string(needed) + " bytes: it has " + std::to_string(stl.size()));
+}
+
 // Returns the scene, which the importer owns; null if the library cannot read the file. The library receives
 // the bytes without a byte order mark and without the parts that it reads wrongly. A text that it could
 // misread is refused before, by std::runtime_error.
@@ -147,7 +163,10 @@ const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
   if (bytes.starts_with(kMark)) bytes.erase(0, kMark.size());
   if (ending == ".obj") bytes = only_shape(bytes);
   if (ending == ".ply") bytes = with_vertices_first(bytes);
-  if (ending == ".stl" && is_stl_text(bytes)) bytes = plain_stl(bytes);
+  if (ending == ".stl" && is_stl_text(bytes))
+    bytes = plain_stl(bytes);
+  else if (ending == ".stl")
+    require_whole_facets(bytes);
   // The library has no message of its own for this.
   if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
     throw std::runtime_error("it has neither vertices nor faces");

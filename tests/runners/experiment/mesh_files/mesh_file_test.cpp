@@ -354,8 +354,11 @@ TEST_F(MeshFileTest, FilesThatClaimMoreThanTheyHoldAreRefused) {
              "list.ply: cannot be read (");
   EXPECT_HAS(refused("list.ply", ply("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n4294967295 0 1 2\n"),
              "list.ply: cannot be read (");
-  EXPECT_HAS(refused("many.stl", std::string(80, ' ') + raw(4'000'000'000u) + std::string(50, '\0')),
-             "many.stl: cannot be read (");
+  EXPECT_HAS(
+      refused("many.stl", std::string(80, ' ') + raw(4'000'000'000u) + std::string(50, '\0')),
+      "many.stl: cannot be read (its header claims 4000000000 facets, which need 200000000084 bytes: it "
+      "has 134); expected");
+  EXPECT_HAS(refused("short.stl", "abc"), "short.stl: cannot be read (it neither begins with the word solid");
 }
 
 TEST_F(MeshFileTest, CornersThatAreNoVerticesAreRefusedOrCounted) {
