@@ -57,6 +57,9 @@ FrameImage first_image(const Scenario& scenario, const std::string& subject) {
   if (cloud.size() != cloud.image->camera.pixels())
     throw InputError(subject, "frame 0 has " + std::to_string(cloud.size()) + " points: expected " +
                                   size_text(cloud.image->camera));
+  if (!cloud.has_measured_point())
+    throw InputError(subject,
+                     "no pixel of the first frame has a depth: expected a camera that sees a surface");
   return {*cloud.image, depth_of(cloud, *cloud.image)};
 }
 

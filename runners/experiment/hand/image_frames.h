@@ -16,7 +16,8 @@ struct FrameImage {
 };
 
 // Returns frame 0. subject: the subject of error messages, such as "trajectory.name = image-press". Throws
-// InputError if the frame is not an image, or if the number of its points is not the number of its pixels.
+// InputError if the frame is not an image, if the number of its points is not the number of its pixels, or if
+// no pixel has a depth.
 FrameImage first_image(const Scenario& scenario, const std::string& subject);
 
 // Returns a frame as an image of the camera that took `first`. The camera may have moved: the layout has the

@@ -98,6 +98,15 @@ TEST(ImageFrames, AFrameWithoutPointsIsAnImageOfHoles) {
   }
 }
 
+// A camera on a path, or a scene beyond the range of the sensor, may see nothing.
+TEST(ImageFrames, RefusesAFirstFrameWithoutADepth) {
+  EXPECT_EQ(refusal([&] {
+              ImagePress({}, Frames({plane(kNaN), plane(0.5)}));
+            }),
+            "trajectory.name = image-press: no pixel of the first frame has a depth: expected a camera that "
+            "sees a surface");
+}
+
 // A camera that is carried along faces the ray of the pixel from its new position.
 TEST(ImageFrames, TheCameraMayMove) {
   RigidTransform X_WC = RigidTransform::Identity();
