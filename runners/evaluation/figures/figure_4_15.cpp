@@ -1,9 +1,13 @@
-// Fig 4.15 b: the points that the depth camera of 4.16 measures. The photo of 4.15 a has no counterpart.
+// Fig 4.15 b: the points that the depth camera of 4.16 measures; and such a scene as meshes with colours,
+// with the proxy's path over the true profile. The photo of 4.15 a has no counterpart.
 #include <cmath>
 
+#include "core/geometry/colour.h"
 #include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/truth/ball_gaps.h"
 #include "scenarios/camera/camera_scene.h"
 
 namespace remote_touch {
@@ -63,6 +67,157 @@ Figure figure_4_15(FigureContext& context) {
       "the points lie on the true surface within the sensor's error: rms distance, in standard "
       "deviations of that error along the ray",
       error_in_sigmas(*scenario, cloud), 1.01, "1");
+  return figure;
+}
+
+namespace {
+
+constexpr double kSlice_m = 0.0015;      // half width of the slice below the path
+constexpr std::size_t kStride_4_15 = 4;  // ticks, in tables
+
+MeshRun ramp_run(FigureContext& context, const std::vector<std::string>& overrides) {
+  Experiment experiment = Experiment::load("fig4.15", overrides);
+  Trace trace = context.run(experiment);
+  return mesh_run(std::move(experiment), std::move(trace), kContactRadius_m, context.kernels());
+}
+
+bool is_in_slice(const PointCloud& cloud, std::size_t i) {
+  const Vec3 p = cloud.point(i);  // a point that is NaN fails the test
+  return std::abs(p.x()) < kSlice_m && p.z() > kFrom_4_15_m && p.z() < kTo_4_15_m;
+}
+
+// True for points of the slice on surfaces that the HIP follows, which face up, and not on walls.
+bool is_below_path(const MeshRun& run, std::size_t i) {
+  constexpr double kFacesUp = 0.5;
+  return is_in_slice(run.cloud, i) && run.scenario->true_normal(run.cloud.point(i), 0).y() > kFacesUp;
+}
+
+// Returns the height of the true surface over z in the plane of the path, seen from above.
+double true_height(const Scenario& scenario, double z) {
+  constexpr double kAbove_m = 0.2, kOnSurface_m = 1e-7;
+  constexpr int kMostSteps = 1000;
+  double y = kAbove_m;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double distance_m = scenario.signed_distance({0, y, z}, 0);  // no surface is nearer
+    if (!(distance_m > kOnSurface_m)) break;
+    y -= distance_m;
+  }
+  return y;
+}
+
+Table profile_table(const Scenario& scenario) {
+  constexpr double kStep_m = 0.001;
+  TableRows rows;
+  for (double z = kFrom_4_15_m + 0.5 * kStep_m; z < kTo_4_15_m; z += kStep_m)
+    rows.push_back({z, true_height(scenario, z)});
+  return table_of("profile", "true surface in the plane of the path",
+                  {{"along", "m", "along the path"}, {"up", "m", "height over the table"}}, rows);
+}
+
+Table path_table(const MeshRun& run, const MeshRun& exact) {
+  const Trace& t = run.trace;
+  TableRows rows;
+  for (std::size_t i = 0; i < t.length(); i += kStride_4_15) {
+    const Vec3 &hip = t.hip_position_m[i], &proxy = t.proxy_position_m[i];
+    rows.push_back({t.time_s[i], hip.z(), hip.y(), proxy.z(), proxy.y(), run.gaps[i].now_m,
+                    exact.gaps[i].now_m, t.force_N[i].norm()});
+  }
+  return table_of("path", "paths of HIP and proxy, gap of the proxy's ball, and force",
+                  {{"time", "s", "simulated time"},
+                   {"hip_along", "m", "HIP along the path"},
+                   {"hip_up", "m", "height of the HIP"},
+                   {"proxy_along", "m", "proxy along the path"},
+                   {"proxy_up", "m", "height of the proxy"},
+                   {"gap", "m", "from the proxy's ball to the true surface; NaN: no contact"},
+                   {"exact_gap", "m", "the same with a camera without noise and rounding"},
+                   {"force", "N", "magnitude of the force"}},
+                  rows);
+}
+
+Table slice_of_points(const PointCloud& cloud) {
+  TableRows rows;
+  for (const std::size_t i : chosen_points(cloud, [&](std::size_t i) { return is_in_slice(cloud, i); }))
+    rows.push_back({cloud.point(i).z(), cloud.point(i).y()});
+  return table_of("slice", "points of the first frame within 1.5 mm of the path",
+                  {{"along", "m", "along the path"}, {"up", "m", "height over the table"}}, rows);
+}
+
+Table coloured_points(PointCloud cloud) {
+  for (std::uint32_t& colour : cloud.colour) colour = shown_colour(colour);
+  return cloud_table("scene_cloud", "points of the first frame", cloud, points_of_4_15(cloud));
+}
+
+double rms_point_distance_m(const MeshRun& run) {
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < run.cloud.size(); ++i) {
+    if (!is_below_path(run, i)) continue;
+    const double distance_m = run.scenario->signed_distance(run.cloud.point(i), 0);
+    squares += distance_m * distance_m, ++count;
+  }
+  return count == 0 ? kNoValue : std::sqrt(squares / count);
+}
+
+void add_claims(Figure& figure, const MeshRun& run, const MeshRun& exact) {
+  add_side_claim(figure, "", run.trace);
+  add_sound_claims(figure, "", run.trace);
+  const Claims claims(figure);
+  claims.at_most(
+      "the proxy stays on the true surface within the largest error of a depth (three standard deviations and "
+      "half a step): largest gap between its ball and the surface",
+      max_gap_m(run.gaps, &BallGap::now_m), error_at_proxy(run).largest_m(), "m");
+  claims.between(
+      "the proxy rests on the points that noise brings nearest to the camera: its rms gap, divided by the rms "
+      "distance of the points below the path from the true surface",
+      rms_gap_m(run.gaps, &BallGap::now_m) / rms_point_distance_m(run), 1, 1.5, "1");
+  claims.at_most(
+      "with a camera without noise and rounding, the ball only sinks between the points: largest gap",
+      max_gap_m(exact.gaps, &BallGap::now_m),
+      deepest_sink_m(exact.cloud, kContactRadius_m, [&](std::size_t i) { return is_below_path(exact, i); }),
+      "m");
+  claims.at_most(
+      "nearly all of the error is the camera's: rms gap without its errors, divided by that with them",
+      rms_gap_m(exact.gaps, &BallGap::now_m) / rms_gap_m(run.gaps, &BallGap::now_m), 0.1, "1");
+}
+
+void add_panels(Figure& figure, double largest_m) {
+  ScenePart points{ScenePart::Kind::points, "scene_cloud", 0x808080, 0.002};
+  figure.panels = {
+      scene_panel("The point cloud", 0, 0,
+                  {{0.55, 0.45, 0.62}, {-0.01, -0.04, -0.03}, Vec3::UnitY(), 0.8, 0.58, {points}}),
+      plot("Paths over the table", "z (m)", "y (m)",
+           {{"slice", "along", "up", CurveStyle::dots, "points, first frame"},
+            {"profile", "along", "up", CurveStyle::line, "true surface"},
+            {"path", "hip_along", "hip_up", CurveStyle::dashed, "HIP"},
+            {"path", "proxy_along", "proxy_up", CurveStyle::line, "proxy"}},
+           {.x_range = {{kFrom_4_15_m, kTo_4_15_m}}, .equal_aspect = true}),
+      plot("Gap between the proxy's ball and the true surface", "z (m)", "gap (m)",
+           {{"bounds", "along", "high", CurveStyle::line, "bound: 3 sigma and half a step"},
+            {"bounds", "along", "low", CurveStyle::line, "bound: 3 sigma and half a step"},
+            {"path", "hip_along", "gap", CurveStyle::line, "structured light"},
+            {"path", "hip_along", "exact_gap", CurveStyle::line, "no noise, no rounding"}},
+           {.x_range = {{kFrom_4_15_m, kTo_4_15_m}}})};
+  figure.tables.push_back(
+      table_of("bounds", "largest error of a depth at the largest depth of the path",
+               {{"along", "m", "along the path"},
+                {"high", "m", "upper bound of the gap"},
+                {"low", "m", "lower bound of the gap"}},
+               {{kFrom_4_15_m, largest_m, -largest_m}, {kTo_4_15_m, largest_m, -largest_m}}));
+}
+
+}  // namespace
+
+Figure figure_4_15_meshes(FigureContext& context) {
+  const MeshRun run = ramp_run(context, {}), exact = ramp_run(context, exact_sensor());
+  Figure figure{"4.15-meshes", "Ramp and box as meshes with colours, simulated Kinect",
+                "A structured-light camera above the scene, on the right, sees a ramp (behind) and a box (in "
+                "front) on a table: meshes with colours, as in Fig 4.15 b. The ramp is a tilted cube, partly "
+                "below the table. Middle: the HIP moves along z, 10 mm below the true surface, and lifts off "
+                "over the steps. Bottom: the gap between the proxy's ball and the true surface, and the same "
+                "with a camera without noise and rounding, which shows the error of the renderer alone."};
+  figure.tables = {coloured_points(run.cloud), profile_table(*run.scenario), path_table(run, exact),
+                   slice_of_points(run.cloud)};
+  add_panels(figure, error_at_proxy(run).largest_m());
+  add_claims(figure, run, exact);
   return figure;
 }
 
