@@ -29,6 +29,8 @@ enum class NoiseUse : std::uint32_t {
   sensor_point = 6,
   sensor_frame = 7,
   sensor_ray = 8,
+  command_channel = 9,
+  force_channel = 10,
 };
 
 // The upper bound of the magnitude of every standard normal of this generator: sqrt(64 ln 2), rounded up.

@@ -1,0 +1,66 @@
+#include "core/teleoperation/dead_band.h"
+
+#include <algorithm>
+
+namespace remote_touch {
+
+namespace {
+
+// Times are sums of ticks and rounded. The same tolerance decides whether a packet has arrived.
+constexpr double kSameSilence_s = 5e-7;
+
+}  // namespace
+
+Parameters parameters(DeadBandSettings& s) {
+  return {
+      {"weber_fraction", &s.weber_fraction, 0, 1,
+       "a sample is sent if it differs from the shown value by more than this fraction of it (Weber)"},
+      {"least", &s.least, 0, 100,
+       "least difference that is sent, in the unit of the signal; 0 with weber_fraction 0: all are sent"},
+      {"predicts", &s.predicts, 0, 1,
+       "the shown value continues linearly between packets; otherwise it is held"},
+      {"longest_silence_s", &s.longest_silence_s, 0, 10,
+       "a sample is sent at the latest after this time; 0: no limit"},
+  };
+}
+
+// A fraction of 1 would never send the end of a force: |0 - x^| is not larger than |x^|.
+std::string validate(const DeadBandSettings& s) {
+  if (s.weber_fraction < 1) return {};
+  return "weber_fraction = " + std::to_string(s.weber_fraction) + ": expected less than 1";
+}
+
+bool DeadBandSender::must_send(const Vec3& value, double time_s) const {
+  if (!last_ || (s_.weber_fraction == 0 && s_.least == 0)) return true;
+  const double silence_s = time_s - last_->sent_s;
+  if (s_.longest_silence_s > 0 && silence_s >= s_.longest_silence_s - kSameSilence_s) return true;
+  const Vec3 shown = shown_value(*last_, silence_s);
+  return (value - shown).norm() > std::max(s_.weber_fraction * shown.norm(), s_.least);
+}
+
+std::optional<DeadBandSample> DeadBandSender::send(const Vec3& value, double time_s) {
+  ++samples_;
+  if (!must_send(value, time_s)) return {};
+  DeadBandSample sample{value, Vec3::Zero(), time_s};
+  if (s_.predicts && last_ && time_s > last_->sent_s)
+    sample.slope_per_s = (value - last_->value) / (time_s - last_->sent_s);
+  last_ = sample;
+  ++packets_;
+  return sample;
+}
+
+std::optional<Vec3> DeadBandSender::shown(double time_s) const {
+  if (!last_) return {};
+  return shown_value(*last_, time_s - last_->sent_s);
+}
+
+void DeadBandReceiver::receive(const DeadBandSample& sample, double time_s) {
+  last_ = sample, arrived_s_ = time_s;
+}
+
+std::optional<Vec3> DeadBandReceiver::shown(double time_s) const {
+  if (!last_) return {};
+  return shown_value(*last_, time_s - arrived_s_);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,88 @@
+// Perceptual dead-band: samples of a signal that differ too little from what the other side has to be felt
+// are not sent.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+// The threshold is max(weber_fraction |x^|, least). If both settings are 0, every sample is sent.
+//
+// A fraction suits forces and velocities. The magnitude of a position depends on the origin, so a signal of
+// positions needs weber_fraction 0 and a length as `least`.
+struct DeadBandSettings {
+  double weber_fraction = 0;
+  double least = 0;  // in the unit of the signal
+  bool predicts = false;
+  double longest_silence_s = 0;
+};
+
+Parameters parameters(DeadBandSettings& s);
+std::string validate(const DeadBandSettings& s);
+
+// The content of a packet. The receiver needs no other packet to show it, so a lost packet does not change
+// how later ones are shown.
+struct DeadBandSample {
+  Vec3 value = Vec3::Zero();
+  Vec3 slope_per_s = Vec3::Zero();  // zero unless the sender predicts
+  double sent_s = 0;
+};
+
+// The value x^ that is shown for a sample, at a time after its arrival.
+inline Vec3 shown_value(const DeadBandSample& sample, double age_s) {
+  return sample.value + age_s * sample.slope_per_s;
+}
+
+// Sends a sample x if |x - x^| > max(weber_fraction |x^|, least), where x^ is what a receiver would show now
+// that got all packets without a delay (Hinterseer, Hirche, Chaudhuri, Steinbach and Buss 2008; for vectors
+// the dead-band is a ball around x^). The first sample is always sent. With longest_silence_s, a sample is
+// also sent if the last packet is at least as old. This bounds how long a loss has an effect.
+//
+// Without prediction x^ is the value sent last. With prediction x^ continues linearly, through the last two
+// values sent. The sender computes the slope, and the packet carries it.
+class DeadBandSender {
+ public:
+  // pre: validate(settings) is empty.
+  explicit DeadBandSender(const DeadBandSettings& settings) : s_(settings) {}
+
+  // Returns the packet to be sent, or nothing. Must be called for every sample, in the order of time.
+  // pre: the value is finite.
+  std::optional<DeadBandSample> send(const Vec3& value, double time_s);
+
+  // Returns x^ at a time that is not before the last packet; nothing before the first packet.
+  std::optional<Vec3> shown(double time_s) const;
+
+  std::uint64_t samples() const { return samples_; }  // number of calls of send()
+  std::uint64_t packets() const { return packets_; }  // number of them that returned a packet
+
+ private:
+  bool must_send(const Vec3& value, double time_s) const;
+
+  const DeadBandSettings s_;
+  std::optional<DeadBandSample> last_;
+  std::uint64_t samples_ = 0, packets_ = 0;
+};
+
+// Shows the sample that was received last. With a slope it predicts from the arrival of the sample, not from
+// the time when it was sent. After a constant delay it therefore shows x^ of the sender, delayed, and the
+// dead-band bounds its error relative to the delayed signal. It does not extrapolate over the delay, which
+// would amplify noise and is a method of its own.
+class DeadBandReceiver {
+ public:
+  // pre: time_s is not smaller than in earlier calls.
+  void receive(const DeadBandSample& sample, double time_s);
+
+  // Returns the value shown at a time that is not before the last arrival; nothing before the first.
+  std::optional<Vec3> shown(double time_s) const;
+
+ private:
+  std::optional<DeadBandSample> last_;
+  double arrived_s_ = 0;
+};
+
+}  // namespace remote_touch
