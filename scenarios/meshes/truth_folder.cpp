@@ -122,8 +122,11 @@ TruthFolder truth_in(const fs::path& folder) {
   const bool is_described = fs::exists(fs::symlink_status(description));
   TruthFolder truth = is_described ? described_by(description) : meshes_in(folder);
   require_different_names(is_described ? description : folder, truth.objects);
-  if (!fs::is_directory(folder / "mask")) return truth;
-  truth.masks = folder / "mask";
+  const fs::path masks = folder / "mask";
+  if (!fs::exists(fs::symlink_status(masks))) return truth;
+  if (!fs::is_directory(masks))
+    refuse(masks, "is not a folder: expected the masks of the frames, or nothing");
+  truth.masks = masks;
   if (mask_files(truth).empty()) refuse(truth.masks, "has no .png file: expected masks of the frames");
   return truth;
 }

@@ -36,7 +36,7 @@ struct TruthFolder {
 //
 // Throws InputError about the file or folder if truth.json is not as above (other keys are refused), if a
 // file does not exist, if two objects have the same name, if truth/ has neither truth.json nor poses.txt with
-// a mesh, and if truth/mask/ exists and has no PNG file.
+// a mesh, and if truth/mask exists and is no folder with PNG files.
 std::optional<TruthFolder> find_truth(const std::filesystem::path& recording);
 
 // Returns the PNG files of the folder of masks in the order of sort_by_name(); none without that folder.

@@ -146,6 +146,17 @@ TEST_F(TruthFolders, AreRefusedWithAnEmptyFolderOfMasks) {
   expect_refused("mask", "has no .png file");
 }
 
+// Without its masks the truth would hold at all pixels.
+TEST_F(TruthFolders, AreRefusedIfTheMasksAreNoFolder) {
+  write("cube.obj"), write("poses.txt"), write("mask");
+  expect_refused("mask", "is not a folder");
+  for (const char* target : {"/dev/zero", "nowhere"}) {
+    fs::remove(in_truth("mask"));
+    fs::create_symlink(target, in_truth("mask"));
+    expect_refused("mask", "is not a folder");
+  }
+}
+
 TEST_F(TruthFolders, AreRefusedIfTheDescriptionIsOfAnotherForm) {
   write("cube.obj"), write("poses.txt");
   expect_json_refused("", "expected JSON");
