@@ -6,6 +6,7 @@
 
 #include "analysis/scorecard/card_numbers.h"
 #include "analysis/scorecard/overview.h"
+#include "analysis/scorecard/threshold_summary.h"
 #include "analysis/statistics/proportion.h"
 #include "analysis/statistics/student.h"
 
@@ -61,16 +62,19 @@ std::vector<Level> noisy(const std::vector<Level>& levels, const std::vector<dou
   return list;
 }
 
+// Counts the values that are 1 among those that are a number.
 Successes counted(const PairedValues& success, const std::vector<double>& noise_m) {
   Successes result;
   int events = 0, runs = 0;
   for (std::size_t i = 0; i < success.size(); ++i) {
     const auto won = static_cast<int>(std::count(success[i].begin(), success[i].end(), 1.0));
-    result.at_level.push_back(fraction_of(won, static_cast<int>(success[i].size())));
+    const auto known = static_cast<int>(
+        std::count_if(success[i].begin(), success[i].end(), [](double value) { return !std::isnan(value); }));
+    result.at_level.push_back(fraction_of(won, known));
     if (!has_noise(noise_m[i]))
       result.noise_free = result.at_level.back();
     else
-      events += won, runs += static_cast<int>(success[i].size());
+      events += won, runs += known;
   }
   result.noisy = fraction_of(events, runs);
   return result;
@@ -110,6 +114,19 @@ std::vector<Successes> counts_of(const Runs& runs, const std::vector<PairedValue
   return list;
 }
 
+// Returns the measure's values of method c by level. NaN in the runs that do not count: those without
+// success, if successful_only.
+PairedValues values_in(const Runs& runs, std::size_t c, const std::string& name, bool successful_only,
+                       const PairedValues& won) {
+  const std::vector<double>& all = runs.sweeps[c].measure(name);
+  PairedValues values = by_level(runs.sweeps[c], [&](std::size_t run) { return all[run]; });
+  if (!successful_only) return values;
+  for (std::size_t i = 0; i < won.size(); ++i)
+    for (std::size_t k = 0; k < won[i].size(); ++k)
+      if (won[i][k] == 0) values[i][k] = kNone;
+  return values;
+}
+
 // A method that loses the surface early has a short and quiet run. So judged measures count successes only.
 JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
                      const std::vector<PairedValues>& won) {
@@ -118,18 +135,26 @@ JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
     if (column.name == name) measure.units = column.units;
   std::vector<PairedValues> values;
   for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
-    const std::vector<double>& all = runs.sweeps[c].measure(name);
-    values.push_back(by_level(runs.sweeps[c], [&](std::size_t run) { return all[run]; }));
-    if (better != Better::neither)
-      for (std::size_t i = 0; i < won[c].size(); ++i)
-        for (std::size_t k = 0; k < won[c][i].size(); ++k)
-          if (won[c][i][k] == 0) values.back()[i][k] = kNone;
+    values.push_back(values_in(runs, c, name, better != Better::neither, won[c]));
     measure.at_level.emplace_back();
     for (const auto& level : distinct(values.back(), runs.repeats[c]))
       measure.at_level.back().push_back(student_mean({level}, {level.size() == 1}));
   }
   measure.ranking = ranking(runs.noisy_levels(values), better, false, runs.noisy_repeats());
   return measure;
+}
+
+SceneThreshold below(const PerceptionThreshold& threshold, const Runs& runs,
+                     const std::vector<PairedValues>& won) {
+  SceneThreshold scene{threshold.measure, {}};
+  for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
+    PairedValues values = values_in(runs, c, threshold.measure, true, won[c]);
+    for (std::vector<double>& level : values)
+      for (double& value : level)
+        if (!std::isnan(value)) value = is_below(threshold, value) ? 1 : 0;
+    scene.below.push_back(counted(distinct(values, runs.repeats[c]), runs.noise_m));
+  }
+  return scene;
 }
 
 }  // namespace
@@ -144,6 +169,10 @@ SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps
   if (!rules.old_success.empty()) scene.old_success = counts_of(runs, won_by(runs, rules.old_success));
   scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.noisy_repeats());
   for (const auto& [name, better] : rules.measures) scene.measures.push_back(judged(name, better, runs, won));
+  for (const PerceptionThreshold& threshold : perception_thresholds())
+    if (std::any_of(rules.measures.begin(), rules.measures.end(),
+                    [&](const auto& measure) { return measure.first == threshold.measure; }))
+      scene.thresholds.push_back(below(threshold, runs, won));
   return scene;
 }
 
@@ -238,7 +267,7 @@ Figure scorecard_figure(const Scorecard& card) {
       "Scorecard of 3-DOF renderers",
       "Share of successful runs over noise, scene by scene. All methods were run with the same noise.",
       {success_table(card, numbers), means_table(numbers), ranking_table(card), overview_table(card),
-       behind_table(card)}};
+       behind_table(card), thresholds_table(card)}};
   for (std::size_t i = 0; i < card.scenes.size(); ++i) add_panel(card, i, figure);
   return figure;
 }

@@ -40,6 +40,13 @@ struct Successes {
   std::optional<Proportion> noise_free;  // absent in a scene with its own noise
 };
 
+// The runs of a scene in which a measure is below its published threshold, see perception_thresholds.h. Only
+// successful runs in which the measure is a number count.
+struct SceneThreshold {
+  std::string measure;
+  std::vector<Successes> below;  // one entry per method: its events are the runs below the threshold
+};
+
 struct SceneScore {
   std::string name, title, meaning;    // meaning: the condition for success, in words
   std::vector<double> noise_m;         // one per level; a single NaN: the scene's own
@@ -48,6 +55,8 @@ struct SceneScore {
   Ranking ranking;                     // ranking by success, over all levels with noise
   std::vector<JudgedMeasure> measures;
   std::string truth = {};  // the true surface of a recorded scene, in words; empty for a simulated scene
+  // One entry for each measure of the scene that has a threshold of perception.
+  std::vector<SceneThreshold> thresholds = {};
 };
 
 struct Scorecard {
@@ -73,8 +82,8 @@ void correct(Scorecard& card);
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
 // Returns the figure of the result file. Its tables are success, measures and standings, with a row for each
-// scene, method, and level or measure; overview and behind, see overview.h; and the curves of every scene's
-// panel.
+// scene, method, and level or measure; overview and behind, see overview.h; thresholds, see
+// threshold_summary.h; and the curves of every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch
