@@ -231,8 +231,8 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
                            {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
                rule, scene);
   add_judged(scene, "jump_fraction_10");
-  for (const char* perceived :
-       {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10", "packet_rate_20"})
+  for (const char* perceived : {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10",
+                                "packet_rate_20", "max_relative_jump"})
     add_measure(scene, perceived, Better::neither);
   return scene;
 }

@@ -19,7 +19,7 @@ const std::vector<double>& scorecard_noise_m();  // 0, .1, .2, .6, 1 and 2 r_c
 // The parameters of the tracked sheet were tuned with seeds 1 to kLastTunedSeed. The runs of a scorecard use
 // another seed.
 inline constexpr int kLastTunedSeed = 40;
-inline constexpr int kScorecardSeed = 301;
+inline constexpr int kScorecardSeed = 431;
 
 struct Method {
   std::string name, title;
@@ -59,7 +59,8 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
                           int replicates);
 
 // Reads a method or scene from JSON text; errors name it by `name`. Every scene gets the measures in
-// perception's units; a scene with the rule "held" also gets those of its contact.
+// perception's units, among them max_relative_jump, which has a published threshold. A scene with the rule
+// "held" also gets those of its contact.
 Method read_method(const std::string& name, const std::string& json);
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
 
