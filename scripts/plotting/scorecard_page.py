@@ -10,10 +10,11 @@ from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
 from plotting.scorecard_plots import level_text, looks_css, noise_plot, shapes
 from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
-                                       level_tables, measure_table, overview_table, success_table)
+                                       level_tables, measure_table, overview_table, success_table, threshold_value)
 
-SCHEMA = "remote-touch-scorecard/4"
-EARLIER_SCHEMA = "remote-touch-scorecard/3"  # its weaknesses have the key "shown" in place of "significant"
+SCHEMA = "remote-touch-scorecard/5"
+# /4 has no thresholds; the weaknesses of /3 also have the key "shown" in place of "significant".
+EARLIER_SCHEMAS = ("remote-touch-scorecard/4", "remote-touch-scorecard/3")
 OWN_CSS = """
 body { font-size: 15px; max-width: 78rem; }
 h2#reading ~ p { max-width: 60rem; }
@@ -50,6 +51,19 @@ def behind_section(card):
     return "\n".join(parts)
 
 
+def thresholds_text(card):
+    """The published thresholds of perception, with their sources."""
+    if not card["thresholds"]:
+        return ""
+    listed = "".join(f"<li>{esc(one['measure'])}: {threshold_value(one)} is {esc(one['meaning'])} "
+                     f"<small>({esc(one['source'])})</small></li>" for one in card["thresholds"])
+    return f"""
+<p><b>Thresholds of perception</b> are published. The table of all scenes counts the runs in which a measure is below \
+its threshold, so that a hand would probably not notice it. Only successful runs that have the measure count; runs \
+without noise are in small print. A method that succeeds only where it is easy is judged by easy runs. No person judged \
+the forces of this page.</p><ul>{listed}</ul>"""
+
+
 def how_to_read(card):
     """What the reader of the tables must know."""
     return f"""<h2 id="reading">How to read the tables</h2>
@@ -78,7 +92,7 @@ easy runs. A measure that is not judged has its mean over all runs that have a n
 are not corrected.</p>
 <p><b>In units of perception</b>: jump_fraction_10 is the fraction of the frame updates at which the force changes by \
 more than 10 % of the force before; packet_rate_10 is how many packets a second a connection with a dead-band of 10 % \
-would send (IEEE 1918.1.1).</p>"""
+would send (IEEE 1918.1.1).</p>{thresholds_text(card)}"""
 
 
 def scene_section(card, scene, link):
@@ -158,11 +172,14 @@ def is_scorecard(directory):
 
 
 def with_present_names(card):
-    """A card of the earlier schema, with the key of this one. A damaged card is returned as it is."""
+    """A card of an earlier schema, with the keys of this one. A damaged card is returned as it is."""
     try:
-        listed = [{"significant" if key == "shown" else key: value for key, value in one.items()}
-                  for one in card["behind"]["list"]]
-        return card | {"behind": card["behind"] | {"list": listed}}
+        present = card | {"thresholds": []}
+        if card["behind"]:
+            listed = [{"significant" if key == "shown" else key: value for key, value in one.items()}
+                      for one in card["behind"]["list"]]
+            present["behind"] = card["behind"] | {"list": listed}
+        return present
     except (AttributeError, KeyError, TypeError):
         return card
 
@@ -175,7 +192,7 @@ def read_scorecard(path):
     except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: damaged: {error}") from None
     schema = card.get("schema") if isinstance(card, dict) else None
-    if schema not in (SCHEMA, EARLIER_SCHEMA):
+    if schema not in (SCHEMA, *EARLIER_SCHEMAS):
         raise PlotError(f"{path}: schema {schema!r}: expected {SCHEMA!r}")
     return card if schema == SCHEMA else with_present_names(card)
 

@@ -54,17 +54,37 @@ def named_rows(card, methods, cells):
     return [[name_cell(name, c), *cells(one)] for c, (name, one) in enumerate(pairs)]
 
 
+def threshold_value(threshold):
+    factor, units = unit_of(threshold)
+    return f"{number(threshold['threshold'], factor)} {esc(units)}".strip()
+
+
+def threshold_cell(counts):
+    """The runs below a threshold among those with noise, and in small print among those without."""
+    def share(below, runs):
+        return "-" if runs == 0 else f"{below:d} of {runs:d}"
+
+    return cell(f"{share(counts['below'], counts['runs'])} "
+                f"<small>{share(counts['noise_free_below'], counts['noise_free_runs'])}</small>")
+
+
 def overview_table(card):
-    """Successes of all scenes together, and how often each method stands out; the most successful first."""
+    """Successes of all scenes together, how often each method stands out, and how many runs are below each threshold of
+    perception; the most successful method first."""
     interval = "<br><small>mean over the scenes, 95 % interval</small>"
     heads = ["", f"successes with noise{interval}", f"successes without noise{interval}",
              f"by the rule before, with noise{interval}",
-             f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone"]
+             f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone",
+             *(f"{esc(one['measure'])} below {threshold_value(one)}<br><small>successful runs with noise; without"
+               "</small>" for one in card["thresholds"])]
     rows = named_rows(card, card["methods"], lambda method: [
         cell(with_interval(method["success"], 1)), cell(with_interval(method["noise_free"], 1)),
         cell(with_interval(method["old_success"], 1)),
         cell(f"{method['scenes_held']:d} of {len(card['scenes'])}"), cell(f"{method['scenes_best']:d}"),
         cell(f"{method['scenes_worst']:d}")])
+    for one in card["thresholds"]:
+        for row, counts in zip(rows, one["methods"], strict=True):
+            row.append(threshold_cell(counts))
     order = sorted(range(len(rows)), key=lambda c: -(card["methods"][c]["success"]["mean"] or 0))
     return table(heads, [rows[c] for c in order])
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/scorecard/threshold_summary.h"
 #include "runners/evaluation/scorecard/json_number.h"
 #include "runners/evaluation/scorecard/summary.h"
 
@@ -147,6 +148,27 @@ Json behind_json(const Scorecard& card) {
   return {{"method", kOwnMethod}, {"list", list}};
 }
 
+Json thresholds_json(const Scorecard& card) {
+  Json list = Json::array();
+  for (const ThresholdSummary& summary : threshold_summary(card)) {
+    Json methods = Json::array();
+    for (const ThresholdCounts& counts : summary.methods)
+      methods.push_back({{"scenes", counts.scenes},
+                         {"below", counts.below},
+                         {"runs", counts.runs},
+                         {"noise_free_below", counts.noise_free_below},
+                         {"noise_free_runs", counts.noise_free_runs}});
+    const PerceptionThreshold& threshold = summary.threshold;
+    list.push_back({{"measure", threshold.measure},
+                    {"units", threshold.unit},
+                    {"threshold", threshold.value},
+                    {"meaning", threshold.meaning},
+                    {"source", threshold.source},
+                    {"methods", methods}});
+  }
+  return list;
+}
+
 // Returns "given" or "taken" if the interval of the energy excludes zero, else "none".
 const char* energy_word(const MeanDifference& energy) {
   return energy.low > 0 ? "given" : energy.high < 0 ? "taken" : "none";
@@ -217,6 +239,7 @@ std::string to_json(const ScorecardReport& report) {
                     {"contact_radius_m", kScorecardRadius_m},
                     {"significance", kSignificance},
                     {"methods", methods_json(report.card)},
+                    {"thresholds", thresholds_json(report.card)},
                     {"behind", behind_json(report.card)},
                     {"skipped", skipped_json(report)},
                     {"scenes", scenes},

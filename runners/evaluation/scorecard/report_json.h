@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/4";
+inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/5";
 
 // SI units, null for a number that is missing. The lists "methods" and "laws" have the same order everywhere.
 std::string to_json(const ScorecardReport& report);

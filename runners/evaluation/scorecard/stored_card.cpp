@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/overview.h"
+#include "analysis/scorecard/threshold_summary.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
 #include "analysis/trace/renamed_columns.h"
@@ -76,10 +78,52 @@ std::string behind_text(const Table& behind, bool is_significant) {
          " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
 }
 
-std::string overview_text(const Table& overview) {
+// A threshold of perception, and the counts of each method as the text of two cells.
+struct ThresholdColumns {
+  std::string measure, value, meaning, source;
+  std::map<std::string, std::string> cells = {};  // by method
+};
+
+// Returns the thresholds of a table "thresholds" in its order.
+std::vector<ThresholdColumns> threshold_columns(const Table& thresholds) {
+  std::vector<ThresholdColumns> list;
+  const auto& measures = values_of<std::vector<std::string>>(thresholds, "measure");
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const auto text = [&](const char* name) {
+      return values_of<std::vector<std::string>>(thresholds, name)[i];
+    };
+    const auto share = [&](const char* below, const char* runs) {
+      const auto count = [&](const char* name) {
+        return values_of<std::vector<std::int32_t>>(thresholds, name)[i];
+      };
+      return count(runs) == 0 ? "-" : std::to_string(count(below)) + " of " + std::to_string(count(runs));
+    };
+    if (list.empty() || list.back().measure != measures[i])
+      list.push_back({measures[i],
+                      with_unit(values_of<std::vector<double>>(thresholds, "threshold")[i], text("units")),
+                      text("meaning"), text("source")});
+    list.back().cells[text("method")] =
+        share("below", "runs") + " | " + share("noise_free_below", "noise_free_runs") + " |";
+  }
+  return list;
+}
+
+std::string sources_text(const std::vector<ThresholdColumns>& thresholds) {
+  std::string text;
+  for (const ThresholdColumns& one : thresholds)
+    text += "- `" + one.measure + "`: " + one.value + " is " + one.meaning + " (" + one.source + ").\n";
+  return text.empty() ? text : "\nThresholds of perception:\n\n" + text;
+}
+
+std::string overview_text(const Table& overview, const std::vector<ThresholdColumns>& thresholds) {
   std::string text =
-      "| method | successes with noise (95 %) | without noise | by the rule before | best alone | worst alone |\n"
-      "|---|---|---|---|---|---|\n";
+      "| method | successes with noise (95 %) | without noise | by the rule before | best alone | worst alone |";
+  std::string line = "\n|---|---|---|---|---|---|";
+  for (const ThresholdColumns& one : thresholds) {
+    text += " " + one.measure + " below " + one.value + ", with noise | without |";
+    line += "---|---|";
+  }
+  text += line + "\n";
   const auto& methods = values_of<std::vector<std::string>>(overview, "method");
   const auto& success = values_of<std::vector<double>>(overview, "success");
   std::vector<std::size_t> order(methods.size());
@@ -95,7 +139,12 @@ std::string overview_text(const Table& overview) {
     };
     text += "| " + methods[i] + " | " + number("success") + " (" + number("low") + " to " + number("high") +
             ") | " + number("noise_free") + " | " + number("old_success") + " | " + count("best") + " | " +
-            count("worst") + " |\n";
+            count("worst") + " |";
+    for (const ThresholdColumns& one : thresholds) {
+      const auto found = one.cells.find(methods[i]);
+      text += " " + (found == one.cells.end() ? std::string("- | - |") : found->second);
+    }
+    text += "\n";
   }
   return text;
 }
@@ -129,13 +178,13 @@ std::string configuration_of(const BenchmarkPlan& plan) {
 std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
                               const TextAttributes& provenance) {
   const CardNumbers numbers = numbers_of(card, KeptMeasures::judged);
-  return write_figure(
-      file,
-      {kStoredCardFigure,
-       "Stored scorecard",
-       "Successes and means with their intervals, for remote-touch scorecard check.",
-       {overview_table(card), behind_table(card), counts_table(numbers), means_table(numbers)}},
-      provenance);
+  return write_figure(file,
+                      {kStoredCardFigure,
+                       "Stored scorecard",
+                       "Successes and means with their intervals, for remote-touch scorecard check.",
+                       {overview_table(card), behind_table(card), thresholds_table(card),
+                        counts_table(numbers), means_table(numbers)}},
+                      provenance);
 }
 
 StoredCard read_stored_card(const std::filesystem::path& file) {
@@ -158,12 +207,14 @@ std::string stored_summary(const std::filesystem::path& file) {
   const Hdf5Reader hdf5 = stored_card_file(file);
   try {
     const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
+    std::vector<ThresholdColumns> thresholds;  // cards that earlier versions stored have none
+    if (hdf5.has("/tables/thresholds/measure")) thresholds = threshold_columns(table_in(hdf5, "thresholds"));
     return std::string("Where ") + kOwnMethod + " is not the best, by more than chance:\n\n" +
            behind_text(behind, true) +
            "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
            behind_text(behind, false) + "\nAll methods, means over " +
            std::to_string(values_of<std::vector<std::int32_t>>(overview, "scenes").at(0)) + " scenes:\n\n" +
-           overview_text(overview);
+           overview_text(overview, thresholds) + sources_text(thresholds);
   } catch (const std::out_of_range& missing) {
     hdf5.damaged(missing.what());
   }

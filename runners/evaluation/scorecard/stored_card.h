@@ -27,7 +27,8 @@ std::string write_stored_card(const std::filesystem::path& file, const Scorecard
 StoredCard read_stored_card(const std::filesystem::path& file);
 
 // Returns the results of the stored card as Markdown: first those in which the project's own method is not
-// the best, then all methods. Throws InputError if the file is not a stored card.
+// the best, then all methods, with the runs below each threshold of perception. Throws InputError
+// if the file is not a stored card.
 std::string stored_summary(const std::filesystem::path& file);
 
 // Returns a sentence for each method and scene of the plan that is not in the stored card, or is defined in

@@ -121,7 +121,7 @@ TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
 
 TEST(ScorecardFigure, HasARowForEverySceneMethodAndLevel) {
   const Figure figure = scorecard_figure(two_scenes());
-  ASSERT_EQ(figure.tables.size(), 7u);
+  ASSERT_EQ(figure.tables.size(), 8u);
   EXPECT_EQ(figure.tables[0].columns[0].length(), 2u * 2 + 2u * 1);
   for (const Table& table : figure.tables)
     for (const Column& column : table.columns)
@@ -135,7 +135,7 @@ TEST(ScorecardReport, DescribesItsOrigin) {
   EXPECT_EQ(json["schema"], kScorecardSchema);
   EXPECT_EQ(json["origin"], "remote-touch 1");
   EXPECT_EQ(json["replicates"], 10);
-  EXPECT_EQ(json["seed"], 301);
+  EXPECT_EQ(json["seed"], 431);
   EXPECT_EQ(json["last_tuned_seed"], 40);
   EXPECT_EQ(json["min_pairs"], 12);
   EXPECT_EQ(json["significance"], 0.05);
@@ -231,6 +231,33 @@ TEST(ScorecardReport, SaysWhereTheOwnMethodIsBehind) {
   EXPECT_LT(first["p"], 0.05);
   EXPECT_EQ(behind["list"][1]["what"], "success without noise");
   EXPECT_EQ(behind["list"][1]["p"], nullptr);
+}
+
+// Method one has a jump below the threshold in 19 of its 20 runs with noise, and method two in none.
+TEST(ScorecardReport, HasTheRunsBelowEachThreshold) {
+  const std::vector<double> depth(40, 0.005);
+  SweepResult quiet = sweep_of(depth, {0, 0.005}), loud = quiet;
+  std::vector<double> jump(40, 0.01);
+  jump[39] = 0.5;
+  quiet.measures.push_back({"max_relative_jump", "1", "", jump, 1, {}});
+  loud.measures.push_back({"max_relative_jump", "1", "", std::vector<double>(40, 0.5), 1, {}});
+  SceneRules rules = kRules;
+  rules.measures = {{"max_relative_jump", Better::neither}};
+  ScorecardReport report = report_of(two_scenes());
+  EXPECT_EQ(json_of(report)["thresholds"], Json::array());
+  report.card.scenes[0] = score(rules, {quiet, loud}, false);
+  const Json list = json_of(report)["thresholds"];
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0]["measure"], "max_relative_jump");
+  EXPECT_EQ(list[0]["units"], "1");
+  EXPECT_EQ(list[0]["threshold"], 0.07);
+  EXPECT_HAS(list[0]["source"].get<std::string>(), "1991");
+  EXPECT_FALSE(list[0]["meaning"].get<std::string>().empty());
+  EXPECT_EQ(
+      list[0]["methods"],
+      Json::array(
+          {{{"scenes", 1}, {"below", 19}, {"runs", 20}, {"noise_free_below", 1}, {"noise_free_runs", 1}},
+           {{"scenes", 1}, {"below", 0}, {"runs", 20}, {"noise_free_below", 0}, {"noise_free_runs", 1}}}));
 }
 
 TEST(ScorecardReport, AMeasureThatIsNotJudgedHasNoMark) {

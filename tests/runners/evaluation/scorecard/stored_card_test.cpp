@@ -7,6 +7,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/overview.h"
+#include "analysis/scorecard/threshold_summary.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/text_files/json_text.h"
@@ -100,6 +101,35 @@ TEST_F(StoredCards, SayFirstWhereTheOwnMethodIsNotTheBest) {
   EXPECT_HAS(text, "| short | success without noise | 0 | 1 (proxy) | - |\n");
   EXPECT_HAS(text, "All methods, means over 1 scenes:");
   EXPECT_LT(text.find("| proxy | "), text.rfind("| tracked-sheet | "));  // the most successful first
+}
+
+// The counts in the summary are those of threshold_summary().
+TEST_F(StoredCards, SayHowManyRunsAreBelowAThreshold) {
+  const auto summary = threshold_summary(card_);
+  ASSERT_EQ(summary.size(), 1u);  // the scene reports max_relative_jump only
+  const ThresholdCounts& proxy = summary[0].methods[0];
+  ASSERT_GT(proxy.runs, 0);
+  const std::string text = stored_summary(file_);
+  EXPECT_HAS(text,
+             "| max_relative_jump below 0.07, with noise | without |\n|---|---|---|---|---|---|---|---|\n");
+  EXPECT_HAS(text, " | " + std::to_string(proxy.below) + " of " + std::to_string(proxy.runs) + " | " +
+                       std::to_string(proxy.noise_free_below) + " of " +
+                       std::to_string(proxy.noise_free_runs) + " |\n");
+  EXPECT_HAS(text, "Thresholds of perception:\n\n- `max_relative_jump`: 0.07 is the change");
+}
+
+// Cards that earlier versions stored have no thresholds.
+TEST_F(StoredCards, WithoutThresholdsAreSummarised) {
+  const CardNumbers numbers = numbers_of(card_, KeptMeasures::judged);
+  write_figure(file_,
+               {kStoredCardFigure,
+                "t",
+                "c",
+                {overview_table(card_), behind_table(card_), counts_table(numbers), means_table(numbers)}},
+               config_of(plan_));
+  const std::string text = stored_summary(file_);
+  EXPECT_HAS(text, "| best alone | worst alone |\n");
+  EXPECT_EQ(text.find("hreshold"), std::string::npos) << text;
 }
 
 TEST_F(StoredCards, AnEvaluationThatFailsGivesTheThreadsBack) {
