@@ -162,12 +162,12 @@ void add_claims(Figure& figure, const MeshRun& run, const MeshRun& exact) {
   add_sound_claims(figure, "", run.trace);
   const Claims claims(figure);
   claims.at_most(
-      "the proxy stays on the true surface within the largest error of a depth (three standard deviations and "
-      "half a step): largest gap between its ball and the surface",
+      "the proxy stays on the true surface within the largest error of a depth (three standard "
+      "deviations and half a step): largest gap between its ball and the surface",
       max_gap_m(run.gaps, &BallGap::now_m), error_at_proxy(run).largest_m(), "m");
   claims.between(
-      "the proxy rests on the points that noise brings nearest to the camera: its rms gap, divided by the rms "
-      "distance of the points below the path from the true surface",
+      "the proxy rests on the points that noise brings nearest to the camera: its rms gap, divided by "
+      "the rms distance of the points below the path from the true surface",
       rms_gap_m(run.gaps, &BallGap::now_m) / rms_point_distance_m(run), 1, 1.5, "1");
   claims.at_most(
       "with a camera without noise and rounding, the ball only sinks between the points: largest gap",

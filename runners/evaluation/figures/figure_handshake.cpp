@@ -197,8 +197,8 @@ void add_claims(Figure& figure, const Handshake& shake) {
   const Claims claims(figure);
   const double sink_m = sink_on_palm_m(shake), rms_m = rms_gap_m(shake.pressed.gaps, &BallGap::now_m);
   claims.at_most(
-      "the proxy keeps to the moving hand within its way between two frames, the largest error of a depth and "
-      "the sink between points: largest gap",
+      "the proxy keeps to the moving hand within its way between two frames, the largest error of a "
+      "depth and the sink between points: largest gap",
       max_gap_m(shake.pressed.gaps, &BallGap::now_m), largest_gap_m(shake, sink_m), "m");
   claims.between("most of the gap is the age of the frame: rms gap, divided by v_rms / (3^(1/2) f_c)",
                  rms_m / derived_age_gap_m(shake), 0.85, 1.15, "1");
@@ -331,12 +331,12 @@ Figure handshake_figure(FigureContext& context, Figure figure, const std::vector
 }
 
 constexpr const char* kShakeCaption =
-    "shakes up and down by 3 cm, three times in 2 s, before a simulated Kinect at half of its resolution. First the "
-    "HIP presses 10 mm into the palm, as the newest frame shows it. Between two frames the proxy stays where it is "
-    "and the hand moves on: this is most of the gap between the proxy's ball and the true hand. Against the hand at "
-    "the capture of the newest frame the gap is the error of the sensor; with a sensor without noise and rounding "
-    "it is that of the renderer alone. Below: a simulated hand with mass wants to stay at a position in the palm, "
-    "and is shaken.";
+    "shakes up and down by 3 cm, three times in 2 s, before a simulated Kinect at half of its "
+    "resolution. First the HIP presses 10 mm into the palm, as the newest frame shows it. Between two "
+    "frames the proxy stays where it is and the hand moves on: this is most of the gap between the "
+    "proxy's ball and the true hand. Against the hand at the capture of the newest frame the gap is the "
+    "error of the sensor; with a sensor without noise and rounding it is that of the renderer alone. "
+    "Below: a simulated hand with mass wants to stay at a position in the palm, and is shaken.";
 
 }  // namespace
 
