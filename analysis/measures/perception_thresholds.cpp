@@ -13,8 +13,8 @@ constexpr PerceptionThreshold kThresholds[] = {
     {"apparent_friction", "1", 0.056,
      "the difference of two coefficients of friction of a force-feedback device that is just noticed, at a "
      "coefficient of 0.2, the smallest one tested",
-     "W. R. Provancher, N. D. Sylvester, Fingerpad skin stretch increases the perception of virtual friction, "
-     "2009"},
+     "W. R. Provancher, N. D. Sylvester, Fingerpad skin stretch increases the perception of virtual "
+     "friction, 2009"},
 };
 
 }  // namespace

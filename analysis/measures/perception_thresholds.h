@@ -15,7 +15,7 @@ struct PerceptionThreshold {
   const char* measure;  // name of the measure, see measures.h
   const char* unit;     // unit of the measure and of the threshold
   double value;         // positive
-  const char* meaning;  // what the source measured, as one line
+  const char* meaning;  // one line: "THRESHOLD is MEANING"
   const char* source;   // authors, title and year
 };
 

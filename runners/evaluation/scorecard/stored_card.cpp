@@ -81,7 +81,7 @@ std::string behind_text(const Table& behind, bool is_significant) {
 // A threshold of perception, and the counts of each method as the text of two cells.
 struct ThresholdColumns {
   std::string measure, value, meaning, source;
-  std::map<std::string, std::string> cells = {};  // by method
+  std::map<std::string, std::string> cells = {};  // the key is the method
 };
 
 // Returns the thresholds of a table "thresholds" in its order.
@@ -117,7 +117,8 @@ std::string sources_text(const std::vector<ThresholdColumns>& thresholds) {
 
 std::string overview_text(const Table& overview, const std::vector<ThresholdColumns>& thresholds) {
   std::string text =
-      "| method | successes with noise (95 %) | without noise | by the rule before | best alone | worst alone |";
+      "| method | successes with noise (95 %) | without noise | by the rule before "
+      "| best alone | worst alone |";
   std::string line = "\n|---|---|---|---|---|---|";
   for (const ThresholdColumns& one : thresholds) {
     text += " " + one.measure + " below " + one.value + ", with noise | without |";
