@@ -70,6 +70,8 @@ constexpr FigureEntry kFigures[] = {
     {"handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
      figure_handshake, 2.5},
     {"handshake-human", "the figure handshake with the mesh of a human hand", figure_handshake_human, 2.5},
+    {"device-wall", "up to which stiffness a rendered plane is stable, over damping and delay of the device",
+     figure_device_wall, 10},
     {"tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
      figure_tool_forces, 1.6},
     {"tool-lifts",

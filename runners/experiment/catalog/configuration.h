@@ -14,6 +14,7 @@
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/sessions/live_settings.h"
 #include "runners/experiment/sessions/safety_limits.h"
+#include "runners/experiment/teleoperation/teleoperation_settings.h"
 #include "scenarios/camera/sensor_faults.h"
 
 namespace remote_touch {
@@ -52,6 +53,9 @@ struct ExperimentConfiguration {
   Part<TrajectoryEntry> trajectory;
   std::optional<OperatorSettings> operator_settings;
   std::optional<DeviceSettings> device;
+  std::optional<SlaveSettings> slave;
+  std::optional<LinkSettings> command_link, force_link;
+  std::optional<FeedbackSettings> feedback;
   std::optional<LiveSettings> live;
   std::optional<SafetyLimits> safety;
 

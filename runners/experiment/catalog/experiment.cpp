@@ -149,7 +149,20 @@ void Experiment::add_depth_device(TextAttributes& provenance) const {
 }
 
 SimulatedHand Experiment::build_hand() const {
-  return {configuration_.operator_settings, configuration_.device, 1 / configuration_.run.haptic_rate_hz};
+  // A slave's force acts through a device, so that the trace records what the hand feels.
+  std::optional<DeviceSettings> device = configuration_.device;
+  if (configuration_.slave && !device) device.emplace();
+  return {configuration_.operator_settings, device, 1 / configuration_.run.haptic_rate_hz};
+}
+
+std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario& scenario) const {
+  const ExperimentConfiguration& c = configuration_;
+  if (!c.slave) return {};
+  const SlaveScene scene{
+      [&scenario](const Vec3& p_W, double time_s) { return scenario.signed_distance(p_W, time_s); },
+      [&scenario](const Vec3& p_W, double time_s) { return scenario.true_normal(p_W, time_s); }};
+  return Teleoperation({*c.slave, *c.command_link, *c.force_link, *c.feedback}, c.run.key,
+                       1 / c.run.haptic_rate_hz, scene);
 }
 
 std::vector<LiveParameter> Experiment::live_parameters() const {

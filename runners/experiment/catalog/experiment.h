@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/catalog/scheduled_phases.h"
 #include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
 
 namespace remote_touch {
 
@@ -73,6 +75,9 @@ class Experiment {
   // images. Adds nothing if the CPU processes them. Must be called after build_processing().
   void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
+  // Builds the slave and its links, in the true surface of the scenario, which must outlive it. Returns
+  // nothing without a slave.
+  std::optional<Teleoperation> build_teleoperation(const Scenario& scenario) const;
   // Returns the phases in the sections of the experiment itself: changes of the renderer, schedules of
   // fixtures, and steps of the sequence that wait for a time.
   std::vector<Phase> phases() const { return setting_phases(configuration_); }

@@ -130,6 +130,23 @@ void check_sequence(ExperimentConfiguration& configuration) {
           "expected a button of operator.presses (any button in experiments with a section live)");
 }
 
+void check_slave(ExperimentConfiguration& configuration) {
+  if (!configuration.slave) {
+    const std::pair<const char*, bool> needing[] = {{"command_link", configuration.command_link.has_value()},
+                                                    {"force_link", configuration.force_link.has_value()},
+                                                    {"feedback", configuration.feedback.has_value()}};
+    for (const auto& [name, is_given] : needing)
+      if (is_given) throw InputError(name, "expected only in an experiment with the section slave");
+    return;
+  }
+  for (const Parameter& p : configuration.renderer.factory->settings())
+    if (p.name == "tool_mesh")
+      throw InputError("slave", "expected a renderer without a tool, because the slave is a ball");
+  if (!configuration.command_link) configuration.command_link.emplace();
+  if (!configuration.force_link) configuration.force_link.emplace();
+  if (!configuration.feedback) configuration.feedback.emplace();
+}
+
 void check_device(ExperimentConfiguration& configuration) {
   if (!configuration.device || configuration.operator_settings) return;
   const DeviceResistance& r = configuration.device->resistance;

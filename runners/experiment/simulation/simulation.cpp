@@ -147,6 +147,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   ObservedFrames observed(*renderer, options);
   RendererChanges changes(experiment.changes(), *renderer);
   SimulatedHand hand = experiment.build_hand();
+  std::optional<Teleoperation> remote = experiment.build_teleoperation(*scenario);
   const std::size_t ticks = tick_count(experiment, *trajectory);
   const RenderedContact contact = experiment.rendered_contact();
   const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
@@ -169,14 +170,15 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    hand.apply(rendered_wrench(out));
+    hand.apply(remote ? remote->tick(device, out, time_s) : rendered_wrench(out));
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
     if (finds_contact)
       known.contact =
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     if (hand.follows_script()) known.expected_force_N = trajectory->expected_force_N(time_s);
-    trace.append(time_s, device, out, known, hand.state());
+    trace.append(time_s, device, out, known, hand.state(),
+                 remote ? std::optional(remote->state()) : std::nullopt);
     if (options.report) {
       surface.add(device.position_W, time_s);
       if (!out.tool)

@@ -136,6 +136,27 @@ TEST(TraceColumns, AnOrdinaryRunHasNoExpectedForceAndNoMeasuredDistance) {
     EXPECT_EQ(std::count(list.begin(), list.end(), name), 0) << name;
 }
 
+// The columns of a slave, and those of a hand whose pose the device rounds.
+TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
+  Trace trace;
+  for (const double i : {1.0, 2.0}) {
+    HandState hand;
+    hand.true_pose = HandState::Pose{{i, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
+    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13};
+    trace.append(i, {}, {}, {}, hand, slave);
+  }
+  const std::vector<Column> columns = trace.columns();
+  EXPECT_EQ(values<double>(trace, "hand_position"), (std::vector<double>{1, 2, 3, 2, 2, 3}));
+  EXPECT_EQ(values<double>(trace, "slave_position"), (std::vector<double>{7, 8, 1, 7, 8, 2}));
+  EXPECT_EQ(values<double>(trace, "slave_peak_force"), (std::vector<double>{11, 12}));
+  EXPECT_EQ(values<std::int32_t>(trace, "force_packets"), (std::vector<std::int32_t>{13, 13}));
+  const std::optional<Trace> restored = again(columns);
+  ASSERT_TRUE(restored);
+  EXPECT_TRUE(restored->has_slave());
+  EXPECT_TRUE(restored->has_rounded_hand());
+  EXPECT_EQ(restored->columns().back().values, columns.back().values);
+}
+
 // The only column of a replay or of a measured surface may be missing: the trace is then one without it.
 TEST(TraceColumns, RestoreNoTraceIfOneIsMissingOrWrong) {
   const std::vector<Column> all = one_tick(true, true, true).columns();

@@ -106,7 +106,8 @@ constexpr const char* kPure =
     "normal_step device_scale detections_per_tick colour_noise approach_axis "
     "max_tool_leaves max_patches min_points button fraction layers view_direction threshold "
     "normal_neighbours friction fused_frames view alpha persistence_hits persistence_frames "
-    "mean_frames neighbours degree inner_spheres scale delay_ticks velocity_ticks";
+    "mean_frames neighbours degree inner_spheres scale delay_ticks velocity_ticks "
+    "damping_ratio mean_burst_packets least gain";
 
 // True for pure numbers, counts and pixels, which have no unit, and for names that end in their unit or in
 // the kind of fraction that they are.

@@ -39,7 +39,7 @@ TEST(SimulatedHand, FeelsWhatTheDeviceExerts) {
   RenderOutput out;
   out.force_N = {1, 2, 0};
   out.tool.emplace().torque_Nm = {0.1, 0, 0.2};
-  const DeviceState first = hand.move(at({0, 0, 0}), 0);
+  hand.move(at({0, 0, 0}), 0);
   EXPECT_EQ(hand.state()->force_N, Vec3::Zero());
   hand.apply(rendered_wrench(out));
   EXPECT_EQ(hand.state()->force_N, Vec3(1, 0, 0));
@@ -56,7 +56,7 @@ TEST(SimulatedHand, FeelsWhatTheDeviceExerts) {
 // A renderer of three degrees of freedom has no torque, so that of the tick before is cleared.
 TEST(SimulatedHand, FeelsNoTorqueWithoutATool) {
   SimulatedHand hand(OperatorSettings{}, {}, kTick_s);
-  const DeviceState d = hand.move(at({0, 0, 0}), 0);
+  hand.move(at({0, 0, 0}), 0);
   RenderOutput out;
   out.tool.emplace().torque_Nm = {1, 0, 0};
   hand.apply(rendered_wrench(out));

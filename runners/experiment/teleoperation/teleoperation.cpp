@@ -1,0 +1,90 @@
+#include "runners/experiment/teleoperation/teleoperation.h"
+
+#include <limits>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+SlaveState unknown_state() {
+  SlaveState state;
+  state.command_W = state.position_W = state.force_N =
+      Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  state.peak_force_N = state.clearance_m = std::numeric_limits<double>::quiet_NaN();
+  return state;
+}
+
+}  // namespace
+
+void Teleoperation::Link::send(const Vec3& value, double in_J, double time_s) {
+  if (const std::optional<DeadBandSample> sample = sender.send(value, time_s))
+    channel.send(time_s, {*sample, in_J});
+}
+
+void Teleoperation::Link::receive(double time_s) {
+  const std::optional<Packet> packet = channel.receive(time_s);
+  if (!packet) return;
+  receiver.receive(packet->sample, time_s);
+  far_in_J = packet->in_J;
+}
+
+Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
+                             SlaveScene scene)
+    : s_(settings),
+      slave_(settings.slave, tick_s, std::move(scene)),
+      commands_(settings.commands, key, NoiseUse::command_channel),
+      forces_(settings.forces, key, NoiseUse::force_channel),
+      hand_port_(settings.feedback.passivity, tick_s),
+      slave_port_(settings.feedback.passivity, tick_s),
+      state_(unknown_state()) {}
+
+void Teleoperation::move_slave(double time_s) {
+  const Slave::State& slave = slave_.move(*command_W_, time_s);
+  state_.command_W = *command_W_;
+  state_.position_W = slave.position_W, state_.force_N = slave.force_N;
+  state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
+}
+
+void Teleoperation::exchange_command(const Vec3& command_W, double time_s) {
+  commands_.send(command_W, hand_port_.energy().in_J, time_s);
+  commands_.receive(time_s);
+  if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
+    command_W_ = is_passive() ? slave_port_.command(*received, slave_.state().reaction_N, commands_.far_in_J)
+                              : *received;
+}
+
+// Returns the force on the hand for the coming tick.
+Vec3 Teleoperation::exchange_force(double time_s) {
+  const bool feels_slave = s_.feedback.force == Feedback::slave_force || is_passive();
+  if (!feels_slave) return Vec3::Zero();
+  const Slave::State& slave = slave_.state();
+  forces_.send(is_passive() ? slave.reaction_N : slave.force_N, slave_port_.energy().in_J, time_s);
+  forces_.receive(time_s);
+  return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
+}
+
+Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, double time_s) {
+  const bool is_rendered = s_.feedback.force == Feedback::rendered;
+  const Vec3 command_W = is_rendered ? out.slave_W : device.position_W;
+  const bool is_first = !command_W_ && command_W.allFinite();
+  if (is_first) command_W_ = command_W;
+  if (!command_W_) return is_rendered ? rendered_wrench(out) : Wrench{};
+
+  move_slave(time_s);
+  const Vec3 displacement_m = hand_W_ ? Vec3(device.position_W - *hand_W_) : Vec3(Vec3::Zero());
+  if (is_passive() && !is_first) {
+    slave_port_.observe(slave_.state().reaction_N);
+    hand_port_.observe(displacement_m);
+  }
+  hand_W_ = device.position_W;
+  if (command_W.allFinite()) exchange_command(command_W, time_s);
+  Wrench wrench = is_rendered ? rendered_wrench(out) : Wrench{exchange_force(time_s), Vec3::Zero()};
+  if (s_.feedback.force == Feedback::slave_force) wrench.force_N *= s_.feedback.gain;
+  if (is_passive()) wrench.force_N = hand_port_.force(wrench.force_N, displacement_m, forces_.far_in_J);
+  state_.command_packets = static_cast<std::int32_t>(commands_.sender.packets());
+  state_.force_packets = static_cast<std::int32_t>(forces_.sender.packets());
+  return wrench;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,64 @@
+// The remote side of a run: commands travel to a slave robot, and its forces travel back.
+#pragma once
+
+#include <optional>
+
+#include "analysis/trace/slave_state.h"
+#include "core/numeric/noise.h"
+#include "core/rendering/rendered_wrench.h"
+#include "runners/experiment/teleoperation/teleoperation_settings.h"
+
+namespace remote_touch {
+
+class Teleoperation {
+ public:
+  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels.
+  Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s, SlaveScene scene);
+
+  // Must be called once per tick, after the renderer. Moves the slave to time_s with the command that it had
+  // at the tick before, sends the new command and the slave's force, and receives what has arrived by
+  // time_s. Returns the wrench that the device is commanded to exert until the next tick. The slave starts,
+  // at rest, at the first command that is finite, whatever the delay.
+  Wrench tick(const DeviceState& device, const RenderOutput& out, double time_s);
+
+  // Returns the state after the last tick. Before the first command all its numbers are NaN, except the
+  // counts of packets.
+  const SlaveState& state() const { return state_; }
+
+  // The energies at both ports since the start; of passivity control only.
+  const PortEnergy& hand_energy() const { return hand_port_.energy(); }
+  const PortEnergy& slave_energy() const { return slave_port_.energy(); }
+
+ private:
+  // A sample beside the energy that has entered the channel at its port, see passivity_control.h.
+  struct Packet {
+    DeadBandSample sample;
+    double in_J = 0;
+  };
+  struct Link {
+    Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use)
+        : channel(settings.channel, key, use), sender(settings.dead_band) {}
+    void send(const Vec3& value, double in_J, double time_s);
+    void receive(double time_s);
+    Channel<Packet> channel;
+    DeadBandSender sender;
+    DeadBandReceiver receiver;
+    double far_in_J = 0;
+  };
+
+  bool is_passive() const { return s_.feedback.force == Feedback::passive_slave_force; }
+  void move_slave(double time_s);
+  void exchange_command(const Vec3& command_W, double time_s);
+  Vec3 exchange_force(double time_s);
+
+  const TeleoperationSettings s_;
+  Slave slave_;
+  Link commands_, forces_;
+  ImpedancePassivityController hand_port_;
+  AdmittancePassivityController slave_port_;
+  std::optional<Vec3> hand_W_;     // position of the hand at the last tick
+  std::optional<Vec3> command_W_;  // the command for the coming tick of the slave
+  SlaveState state_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,48 @@
+// The settings of a run with teleoperation: the slave, the links to it and back, and what the hand feels.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "core/teleoperation/channel.h"
+#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/passivity_control.h"
+#include "core/teleoperation/slave.h"
+
+namespace remote_touch {
+
+// What the device exerts on the hand, and which position is sent to the slave.
+//   rendered:     the force of the renderer, which it computes from the points of the newest frame. The slave
+//                 gets the commanded position of the renderer, which stays outside of forbidden regions. This
+//                 is teleoperation as in the dissertation, 3.2.
+//   none:         no force. The slave gets the position of the HIP, as in all architectures below.
+//   slave_force:  the force of the scene on the slave (position-force).
+//   passive_slave_force: the force of the slave's drive, with passivity control at the hand and at the slave,
+//                 see passivity_control.h.
+enum class Feedback { rendered, none, slave_force, passive_slave_force };
+
+struct FeedbackSettings {
+  Feedback force = Feedback::rendered;
+  double gain = 1;
+  PassivitySettings passivity;
+};
+
+Parameters parameters(FeedbackSettings& s);
+std::string validate(const FeedbackSettings& s);
+
+// One direction of the connection: which samples are sent, and how they travel.
+struct LinkSettings {
+  ChannelSettings channel;
+  DeadBandSettings dead_band;
+};
+
+Parameters parameters(LinkSettings& s);
+std::string validate(const LinkSettings& s);
+
+struct TeleoperationSettings {
+  SlaveSettings slave;
+  LinkSettings commands, forces;
+  FeedbackSettings feedback;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,81 @@
+// Measures of the slave: traces whose values are known.
+#include "analysis/measures/slave_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
+#include "tests/analysis/measures/measure_named.h"
+
+namespace remote_touch::slave_measures_test {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Tick {
+  double lag_m, peak_N, clearance_m, felt_N;
+};
+
+Trace trace_of(const std::vector<Tick>& ticks) {
+  Trace trace;
+  for (const Tick& tick : ticks) {
+    const auto number = static_cast<std::int32_t>(trace.length());
+    RenderOutput out;
+    out.slave_W = Vec3(1, 2, 3);
+    HandState hand;
+    hand.force_N = Vec3(0, tick.felt_N, 0);
+    SlaveState slave;
+    slave.position_W = Vec3(1, 2 + tick.lag_m, 3);
+    slave.peak_force_N = tick.peak_N, slave.clearance_m = tick.clearance_m;
+    slave.command_packets = 1 + number, slave.force_packets = 1 + number / 2;
+    trace.append(0.001 * number, {}, out, {}, hand, slave);
+  }
+  return trace;
+}
+
+const std::vector<Tick> kTouch = {
+    {0.001, 0, 0.02, 0}, {0.002, 0, 0.01, 1}, {-0.002, 0, kUnknown, 2}, {0, 7, -0.001, 3}, {0, 4, -0.002, 3}};
+
+TEST(SlaveMeasures, AreThoseOfTheSlave) {
+  const Trace trace = trace_of(kTouch);
+  EXPECT_EQ(max_slave_force_N(trace), 7);
+  EXPECT_NEAR(slave_contact_fraction(trace), 0.4, 1e-15);
+  EXPECT_EQ(min_slave_clearance_m(trace), -0.002);
+  EXPECT_NEAR(rms_slave_lag_m(trace), std::sqrt(9e-6 / 5), 1e-15);
+  EXPECT_NEAR(first_slave_contact_time_s(trace), 0.003, 1e-15);
+  EXPECT_NEAR(slave_anticipation_s(trace), 0.002, 1e-15);
+  EXPECT_NEAR(command_packet_rate_per_s(trace), 1000, 1e-9);
+  EXPECT_NEAR(force_packet_rate_per_s(trace), 500, 1e-9);
+}
+
+TEST(SlaveMeasures, HaveNoValueForWhatDidNotHappen) {
+  const Trace trace = trace_of({{0, 0, kUnknown, 0}, {0, 0, kUnknown, 0}});
+  EXPECT_EQ(max_slave_force_N(trace), 0);
+  EXPECT_TRUE(std::isnan(min_slave_clearance_m(trace)));
+  EXPECT_TRUE(std::isnan(first_slave_contact_time_s(trace)));
+  EXPECT_TRUE(std::isnan(slave_anticipation_s(trace)));
+  EXPECT_TRUE(std::isnan(command_packet_rate_per_s(trace_of({{0, 0, 0, 0}}))));
+}
+
+TEST(SlaveMeasures, BelongToRunsWithASlave) {
+  const Trace with = trace_of(kTouch);
+  Trace without;
+  without.append(0, {}, {}, {});
+  int measures = 0;
+  for (const Measure& measure : built_in_measures()) {
+    if (measure.runs != MeasuredRuns::slave) continue;
+    EXPECT_TRUE(applies(measure, with)) << measure.name;
+    EXPECT_FALSE(applies(measure, without)) << measure.name;
+    EXPECT_TRUE(std::isnan(value_of(measure, without))) << measure.name;
+    ++measures;
+  }
+  EXPECT_EQ(measures, 8);
+  EXPECT_EQ(value_of(measure_named("max_slave_force"), with), 7);
+}
+
+}  // namespace
+}  // namespace remote_touch::slave_measures_test

@@ -1,0 +1,135 @@
+// The remote side of a run: what is sent to the slave, what comes back, and when.
+#include "runners/experiment/teleoperation/teleoperation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace remote_touch::teleoperation_test {
+namespace {
+
+constexpr double kTick_s = 0.001;
+
+// The ground is the plane y = 0.
+SlaveScene ground() {
+  return {[](const Vec3& p, double) { return p.y(); }, [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+}
+
+struct Tick {
+  SlaveState slave;
+  Wrench felt;
+};
+
+// The hand moves down from 2 cm and presses 1 cm below the ground; the renderer commands a position that
+// stays above it, with a force of its own.
+std::vector<Tick> descent(const TeleoperationSettings& settings, int ticks = 1500) {
+  Teleoperation remote(settings, {}, kTick_s, ground());
+  std::vector<Tick> list;
+  for (int i = 0; i < ticks; ++i) {
+    const double y = std::max(-0.01, 0.02 - 0.05 * i * kTick_s);
+    RenderOutput out;
+    out.slave_W = Vec3(0, std::max(y, 0.006), 0);
+    out.force_N = Vec3(0, y < 0.006 ? 3 : 0, 0);
+    list.push_back({});
+    list.back().felt = remote.tick({{0, y, 0}}, out, i * kTick_s);
+    list.back().slave = remote.state();
+  }
+  return list;
+}
+
+TeleoperationSettings with(Feedback force, double delay_s = 0) {
+  TeleoperationSettings s;
+  s.feedback.force = force;
+  s.commands.channel.delay_s = s.forces.channel.delay_s = delay_s;
+  return s;
+}
+
+TEST(Teleoperation, RendersAndSendsTheCommandOfTheRenderer) {
+  const std::vector<Tick> ticks = descent(with(Feedback::rendered));
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const double y = 0.02 - 0.05 * static_cast<double>(i) * kTick_s;
+    EXPECT_EQ(ticks[i].felt.force_N, Vec3(0, y < 0.006 ? 3 : 0, 0)) << i;
+    EXPECT_EQ(ticks[i].slave.peak_force_N, 0) << i;
+    EXPECT_EQ(ticks[i].slave.force_packets, 0) << i;
+    EXPECT_EQ(ticks[i].slave.command_packets, static_cast<std::int32_t>(i) + 1) << i;
+  }
+  EXPECT_NEAR(ticks.back().slave.position_W.y(), 0.006, 1e-4);
+}
+
+TEST(Teleoperation, WithoutFeedbackSendsTheHip) {
+  const std::vector<Tick> ticks = descent(with(Feedback::none));
+  for (const Tick& tick : ticks) EXPECT_EQ(tick.felt.force_N, Vec3::Zero());
+  EXPECT_GT(ticks.back().slave.peak_force_N, 1);
+  EXPECT_EQ(ticks.back().slave.force_packets, 0);
+  EXPECT_EQ(ticks.back().slave.command_W.y(), -0.01);
+}
+
+// The command takes the delay and one tick, in which the slave moves to it. The force takes the delay.
+TEST(Teleoperation, TheForceOfTheSlaveComesBackAfterTheDelays) {
+  for (const int delay : {0, 30}) {
+    const std::vector<Tick> ticks = descent(with(Feedback::slave_force, delay * kTick_s));
+    for (int i = delay + 1; i < static_cast<int>(ticks.size()); ++i) {
+      const auto now = static_cast<std::size_t>(i), sent = static_cast<std::size_t>(i - delay);
+      EXPECT_EQ(ticks[now].felt.force_N, ticks[sent].slave.force_N) << delay << " " << i;
+      const double command = std::max(-0.01, 0.02 - 0.05 * (i - 1 - delay) * kTick_s);
+      EXPECT_EQ(ticks[now].slave.command_W.y(), command) << delay << " " << i;
+    }
+    EXPECT_GT(ticks.back().felt.force_N.y(), 1);
+  }
+}
+
+TEST(Teleoperation, TheGainScalesTheForceOfTheSlave) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  const Vec3 whole = descent(s).back().felt.force_N;
+  s.feedback.gain = 0.25;
+  EXPECT_NEAR((descent(s).back().felt.force_N - 0.25 * whole).norm(), 0, 1e-12);
+}
+
+// A slave waits for the first command that is finite, and starts there at rest, whatever the delay.
+TEST(Teleoperation, TheSlaveStartsAtTheFirstCommand) {
+  Teleoperation remote(with(Feedback::rendered, 0.1), {}, kTick_s, ground());
+  RenderOutput out;  // its command is NaN
+  remote.tick({}, out, 0);
+  EXPECT_TRUE(std::isnan(remote.state().position_W.x()));
+  out.slave_W = Vec3(1, 2, 3);
+  remote.tick({}, out, kTick_s);
+  EXPECT_EQ(remote.state().position_W, Vec3(1, 2, 3));
+  EXPECT_NEAR(remote.state().clearance_m, 1.995, 1e-12);
+  out.slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  remote.tick({}, out, 2 * kTick_s);
+  EXPECT_EQ(remote.state().command_packets, 1);
+  EXPECT_EQ(remote.state().position_W, Vec3(1, 2, 3));
+}
+
+TEST(Teleoperation, ADeadBandSavesPackets) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  const std::int32_t all = descent(s).back().slave.force_packets;
+  s.forces.dead_band.weber_fraction = 0.1, s.forces.dead_band.least = 0.01;
+  s.commands.dead_band.least = 1e-4;
+  const SlaveState saved = descent(s).back().slave;
+  EXPECT_EQ(all, 1500);
+  EXPECT_LT(saved.force_packets, 200);
+  EXPECT_GT(saved.force_packets, 5);
+  EXPECT_NEAR(saved.command_packets, 0.03 / 1e-4, 10);
+}
+
+// Whatever the motion, the hand gets no more energy through the ports than the slave has put in.
+TEST(Teleoperation, PassivityControlKeepsTheBalanceAtBothPorts) {
+  for (const int delay : {0, 5, 50, 200}) {
+    Teleoperation remote(with(Feedback::passive_slave_force, delay * kTick_s), {}, kTick_s, ground());
+    double lowest = 0, felt = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const double t = i * kTick_s, y = 0.003 + 0.012 * std::sin(7 * t) * std::sin(1.3 * t);
+      felt = std::max(felt, remote.tick({{0, y, 0}}, {}, t).force_N.norm());
+      lowest = std::min({lowest, remote.hand_energy().balance_J(), remote.slave_energy().balance_J()});
+    }
+    EXPECT_GT(felt, 0.3) << delay;
+    EXPECT_GT(lowest, -2e-3) << delay;
+    EXPECT_GE(remote.hand_energy().received_J, 0) << delay;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::teleoperation_test
