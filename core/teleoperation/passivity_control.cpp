@@ -1,0 +1,96 @@
+#include "core/teleoperation/passivity_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+// Share of the missing energy per |direction|^2: the new energy of this tick in full, an older debt up to a
+// limit. new_J <= |a| |direction| for the signal a that is changed, so the first part never exceeds this
+// signal.
+double share(double new_J, double balance_J, const Vec3& direction, double max_for_debt) {
+  const double squared = direction.squaredNorm();
+  if (!(squared > 0)) return 0;
+  const double missing_now_J = std::max(0.0, new_J - std::max(0.0, balance_J));
+  const double debt_J = std::max(0.0, -balance_J);
+  if (missing_now_J == 0 && debt_J == 0) return 0;
+  return missing_now_J / squared + std::min(debt_J / squared, max_for_debt);
+}
+
+}  // namespace
+
+Parameters parameters(PassivitySettings& s) {
+  return {
+      {"max_damping_Ns_per_m", &s.max_damping_Ns_per_m, 0, 10000,
+       "largest damping at the hand with which the passivity controller repays energy of earlier ticks"},
+      {"max_yield_m_per_s", &s.max_yield_m_per_s, 0, 10,
+       "largest speed at the slave with which the passivity controller repays energy of earlier ticks"},
+      {"drift_time_s", &s.drift_time_s, 0, 100,
+       "time constant with which the slave returns from its drift if the energy suffices; 0: never"},
+  };
+}
+
+void PortEnergy::add(double energy_J) {
+  (energy_J > 0 ? in_J : out_J) += std::abs(energy_J);
+}
+
+void PortEnergy::receive(double far_in_J) {
+  received_J = std::max(received_J, far_in_J);
+}
+
+ImpedancePassivityController::ImpedancePassivityController(const PassivitySettings& settings, double tick_s)
+    : max_stiffness_(settings.max_damping_Ns_per_m / tick_s), tick_s_(tick_s) {}
+
+Vec3 ImpedancePassivityController::force(const Vec3& delayed_force_N, const Vec3& expected_displacement_m,
+                                         double far_in_J) {
+  energy_.receive(far_in_J);
+  delayed_force_N_ = delayed_force_N;
+  const double out_J = std::max(0.0, delayed_force_N.dot(expected_displacement_m));
+  stiffness_ = share(out_J, energy_.balance_J(), expected_displacement_m, max_stiffness_);
+  removed_N_ = stiffness_ * expected_displacement_m;
+  return stiffness_ > 0 ? Vec3(delayed_force_N - removed_N_) : delayed_force_N;
+}
+
+void ImpedancePassivityController::observe(const Vec3& displacement_m) {
+  energy_.add(-delayed_force_N_.dot(displacement_m));
+  energy_.dissipated_J += removed_N_.dot(displacement_m);
+}
+
+AdmittancePassivityController::AdmittancePassivityController(const PassivitySettings& settings, double tick_s)
+    : max_yield_m_(settings.max_yield_m_per_s * tick_s),
+      drift_share_(settings.drift_time_s > 0 ? std::min(1.0, tick_s / settings.drift_time_s) : 0.0) {}
+
+Vec3 AdmittancePassivityController::correction(const Vec3& motion_m, const Vec3& force_N) const {
+  const Vec3 wanted_m = -drift_share_ * drift_m_;
+  const double cost_J = -force_N.dot(wanted_m);
+  if (cost_J <= 0) return wanted_m;
+  const double spare_J = energy_.balance_J() + force_N.dot(motion_m);
+  return std::clamp(spare_J / cost_J, 0.0, 1.0) * wanted_m;
+}
+
+Vec3 AdmittancePassivityController::command(const Vec3& delayed_W, const Vec3& expected_force_N,
+                                            double far_in_J) {
+  energy_.receive(far_in_J);
+  if (!is_placed_) delayed_W_ = delayed_W;
+  is_placed_ = true;
+  motion_m_ = delayed_W - delayed_W_;
+  const Vec3 returned_m = correction(motion_m_, expected_force_N);
+  motion_m_ += returned_m;
+  const double out_J = std::max(0.0, -expected_force_N.dot(motion_m_));
+  // An older debt is repaid with at most max_yield_m_: share * |f| = max_yield_m_.
+  const double length_N = expected_force_N.norm();
+  const double max_for_debt = length_N > 0 ? max_yield_m_ / length_N : 0;
+  yield_m_ = share(out_J, energy_.balance_J(), expected_force_N, max_for_debt) * expected_force_N;
+  delayed_W_ = delayed_W;
+  drift_m_ += returned_m + yield_m_;
+  return delayed_W + drift_m_;
+}
+
+void AdmittancePassivityController::observe(const Vec3& force_N) {
+  energy_.add(force_N.dot(motion_m_));
+  energy_.dissipated_J += force_N.dot(yield_m_);
+}
+
+}  // namespace remote_touch
