@@ -103,18 +103,29 @@ TEST_F(StoredCards, SayFirstWhereTheOwnMethodIsNotTheBest) {
   EXPECT_LT(text.find("| proxy | "), text.rfind("| tracked-sheet | "));  // the most successful first
 }
 
-// The counts in the summary are those of threshold_summary().
+// The counts in the summary are those of threshold_summary(). A flat-grid without noise has one
+// frame and no jump, so the shape is another one here.
 TEST_F(StoredCards, SayHowManyRunsAreBelowAThreshold) {
-  const auto summary = threshold_summary(card_);
+  Json scene = parse_json(kScene, "scene");
+  scene["experiment"]["scenario"] = {{"name", "moving-shape"}, {"rise_s", 5}};
+  scene["experiment"]["duration_s"] = 0.3;
+  const TestFolder folder("stored_thresholds");
+  const BenchmarkPlan plan = plan_in(folder, chosen_methods({"proxy", "penalty"}), scene.dump());
+  const Scorecard card = scored(plan);
+  const auto summary = threshold_summary(card);
   ASSERT_EQ(summary.size(), 1u);  // the scene reports max_relative_jump only
   const ThresholdCounts& proxy = summary[0].methods[0];
   ASSERT_GT(proxy.runs, 0);
+  ASSERT_GT(proxy.noise_free_runs, 0);
+  ASSERT_EQ(summary[0].methods[1].runs, 0);  // the penalty method never succeeds
+  write_stored_card(file_, card, config_of(plan));
   const std::string text = stored_summary(file_);
   EXPECT_HAS(text,
              "| max_relative_jump below 0.07, with noise | without |\n|---|---|---|---|---|---|---|---|\n");
   EXPECT_HAS(text, " | " + std::to_string(proxy.below) + " of " + std::to_string(proxy.runs) + " | " +
                        std::to_string(proxy.noise_free_below) + " of " +
                        std::to_string(proxy.noise_free_runs) + " |\n");
+  EXPECT_HAS(text, " | - | - |\n");
   EXPECT_HAS(text, "Thresholds of perception:\n\n- `max_relative_jump`: 0.07 is the change");
 }
 
