@@ -65,7 +65,7 @@ struct Claim {
   Verdict verdict = Verdict::not_run;
   bool of_map = false;  // is about a whole map, so a part of the map cannot decide it
   bool set_up = false;  // checks only that the run was set up as intended; is listed apart from the claims
-  std::string source = kDissertation;  // what `paper` is from, that of its figure
+  std::string source = kDissertation;  // origin of `paper`: the source of its figure
 };
 
 // Passes if measured is within [low, high]. NaN fails.
@@ -89,7 +89,7 @@ struct Figure {
   std::vector<Table> tables = {};
   std::vector<Panel> panels = {};
   std::vector<Claim> claims = {};
-  std::string source = kDissertation;  // what the figure is compared with, with its article
+  std::string source = kDissertation;  // reference of the figure, with its article
 };
 
 }  // namespace remote_touch

@@ -116,8 +116,8 @@ constexpr Row kMeasures[] = {
      contact_force_fraction},
     {"contact_known_fraction", "1", "fraction of the settled ticks with a known truth", contact, neither,
      contact_known_fraction},
-    // Without a direction: a renderer that follows a bad measurement exactly is not better, and a filter that
-    // corrects the measurement is not worse. rms_contact_error judges both by the truth.
+    // The measure has no direction: a renderer that follows a bad measurement exactly is not better, and a
+    // filter that corrects the measurement is not worse. rms_contact_error judges both by the truth.
     {"rms_renderer_error", "m",
      "rms distance of the contact point from the measured surface, in settled ticks", measured_surface,
      neither, rms_renderer_error_m},

@@ -17,7 +17,7 @@ KeptFrames::Points KeptFrames::find(std::size_t frame) {
 
 KeptFrames::Points KeptFrames::get(std::size_t frame, const std::function<Points()>& make) {
   if (Points points = find(frame)) return points;
-  Points made = make();  // without the lock, so that other frames are made meanwhile
+  Points made = make();  // the lock is free, so that other frames are made meanwhile
   if (Points points = find(frame)) return points;
   const std::lock_guard lock(mutex_);
   if (kept_.size() == at_most_) kept_.pop_back();

@@ -146,7 +146,7 @@ TEST_F(TruthFolders, AreRefusedWithAnEmptyFolderOfMasks) {
   expect_refused("mask", "has no .png file");
 }
 
-// Without its masks the truth would hold at all pixels.
+// The truth would hold at all pixels without its masks.
 TEST_F(TruthFolders, AreRefusedIfTheMasksAreNoFolder) {
   write("cube.obj"), write("poses.txt"), write("mask");
   expect_refused("mask", "is not a folder");

@@ -81,7 +81,7 @@ TEST_F(FindRecording, RefusesPartsThatAreNoFiles) {
 TEST_F(FindRecording, RefusesFilesThatNoReaderAccepts) {
   const auto refused = [&](const std::string& name, std::uintmax_t bytes) {
     folder_.write("here/" + name, "");
-    fs::resize_file(name, bytes);  // without blocks on the disk
+    fs::resize_file(name, bytes);  // takes no blocks on the disk
     return refusal([&] { files_of({name}); });
   };
   const std::uintmax_t text = 16 << 20, mesh = std::uintmax_t{2} << 30;
