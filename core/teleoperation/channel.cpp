@@ -15,7 +15,7 @@ Parameters parameters(ChannelSettings& s) {
   };
 }
 
-// After a packet that arrives, a burst begins with a probability that makes the lost fraction right. This
+// A burst begins, after a packet that arrives, with a probability that makes the lost fraction right. This
 // probability must not exceed 1: many losses in short bursts would need bursts without a pause.
 std::string validate(const ChannelSettings& s) {
   constexpr double kRounding = 1e-9;

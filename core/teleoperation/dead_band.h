@@ -17,7 +17,7 @@ namespace remote_touch {
 // positions needs weber_fraction 0 and a length as `least`.
 struct DeadBandSettings {
   double weber_fraction = 0;
-  double least = 0;  // in the unit of the signal
+  double least = 0;  // unit of the signal
   bool predicts = false;
   double longest_silence_s = 0;
 };

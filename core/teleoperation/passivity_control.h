@@ -109,7 +109,7 @@ class AdmittancePassivityController {
   void observe(const Vec3& force_N);
 
   const PortEnergy& energy() const { return energy_; }
-  const Vec3& drift_m() const { return drift_m_; }  // from the delayed to the commanded position
+  const Vec3& drift_m() const { return drift_m_; }  // distance from the delayed to the commanded position
 
  private:
   // The motion against the drift, as far as the energy allows beside the delayed motion.

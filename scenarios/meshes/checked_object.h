@@ -11,7 +11,7 @@ namespace remote_touch {
 
 // The words of messages about a mesh.
 struct MeshSubject {
-  std::string subject;  // what is refused: the file, or the parameter and its value
+  std::string subject;  // the refused part: the file, or the parameter and its value
   // Advice to a user: these continue the messages about an open mesh, one of clockwise triangles, and one
   // of more than 10 m.
   std::string if_open = {}, if_inverted = {}, if_large = {};

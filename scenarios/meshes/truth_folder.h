@@ -19,10 +19,11 @@ struct TruthObjectFiles {
 };
 
 struct TruthFolder {
-  std::vector<TruthObjectFiles> objects;                            // one or more
-  double uncertainty_m = std::numeric_limits<double>::quiet_NaN();  // of the poses; NaN: not stated
-  std::filesystem::path masks;                                      // folder of masks; empty: none
-  std::filesystem::path description;                                // truth.json; empty: none
+  std::vector<TruthObjectFiles> objects;  // one or more
+  double uncertainty_m =
+      std::numeric_limits<double>::quiet_NaN();  // uncertainty of the poses; NaN: not stated
+  std::filesystem::path masks;                   // folder of masks; empty: none
+  std::filesystem::path description;             // truth.json; empty: none
 };
 
 // Lists the truth of a recording. Returns nothing if `recording` has no folder truth/. No mesh, pose or mask

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxCached = 8;  // as many as RecordedScene keeps frames
+constexpr std::size_t kMaxCached = 8;  // the number that RecordedScene keeps frames
 
 // Returns the number in a name, if there is exactly one: 7 for mask_0007.png.
 std::optional<std::size_t> number_in(const fs::path& file) {

@@ -36,7 +36,7 @@ class TruthMasks {
   const std::vector<bool>& mask_of(std::size_t frame) const;
   std::vector<bool> read(std::size_t frame) const;
 
-  std::vector<std::filesystem::path> files_;  // for each frame, or an empty path; empty: no masks
+  std::vector<std::filesystem::path> files_;  // a path for each frame, or an empty path; empty: no masks
   CameraIntrinsics camera_;
   mutable std::vector<Mask> cache_;  // the masks that were used last, the newest in front
 };

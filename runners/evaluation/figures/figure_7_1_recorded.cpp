@@ -4,8 +4,8 @@
 
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/tools/hue_masks.h"
 
 namespace remote_touch {
 

@@ -52,6 +52,8 @@ Experiment experiment_of(const Wall& wall) {
   return Experiment::load("virtual-wall",
                           {std::string(R"(renderer={"name": ")") + kRenderers[wall.renderer] + "\"}",
                            "renderer.stiffness_N_per_m=" + std::to_string(wall.middle_N_per_m()),
+                           // A quarter: the hand stays in contact and does not sink through a penalty force.
+                           "operator.stiffness_N_per_m=" + std::to_string(wall.middle_N_per_m() / 4),
                            "device.damping_Ns_per_m=" + std::to_string(wall.damping_Ns_per_m),
                            "device.delay_ticks=" + std::to_string(wall.delay_ticks)});
 }

@@ -23,7 +23,8 @@ constexpr double kShake_hz = 1.5, kShakes_s = 0.5, kSettled_shake_s = kShakes_s 
                  kRests_s = 2.5;
 constexpr double kHeld_shake_s = 0.45;   // the HIP has pressed, and the hand still rests
 constexpr double kShake_frames_hz = 30;  // frame rate of the experiment
-constexpr double kDeeper_m = 0.012;      // how much deeper than in the first run the passive hand wants to be
+constexpr double kDeeper_m =
+    0.012;  // depth by which it presses more than in the first run the passive hand wants to be
 constexpr double kFromAbove_m = 0.05, kApproach_m_per_s = 0.25;
 constexpr std::size_t kStride_shake = 2;  // ticks, in tables
 
@@ -122,9 +123,9 @@ Sinusoid shake_in(const Trace& t, const std::vector<double>& values) {
   return sinusoid_in(time_s, settled, kShake_hz);
 }
 
-// How a passive hand of mass m on a spring k and a damper c moves on a surface of stiffness K that shakes.
+// The motion of a passive hand of mass m, a spring k and a damper c on a surface of stiffness K that shakes.
 struct PassiveHand {
-  double amplitude;      // of the hand, divided by that of the surface: K / |K + k - m w^2 + i c w|
+  double amplitude;      // amplitude of the hand, divided by that of the surface: K / |K + k - m w^2 + i c w|
   double force_N_per_m;  // amplitude of the force over that of the hand: |k - m w^2 + i c w|
   double lag_s;
 };
@@ -169,7 +170,7 @@ double largest_gap_m(const Handshake& shake, double sink_m) {
   return fastest_m_per_s / kShake_frames_hz + error_at_proxy(shake.pressed).largest_m() + sink_m;
 }
 
-// How deep the ball sinks between points of the palm, within 30 mm of the HIP at rest.
+// The depth to which the ball sinks between points of the palm, within 30 mm of the HIP at rest.
 double sink_on_palm_m(const Handshake& shake) {
   constexpr double kPalm_m = 0.03;
   const Trace& t = shake.pressed.trace;

@@ -5,8 +5,8 @@
 #include "analysis/measures/segmentation.h"
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/tools/hue_masks.h"
 #include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {

@@ -14,7 +14,7 @@ void check_changes(ExperimentConfiguration& configuration);
 void check_sequence(ExperimentConfiguration& configuration);
 // Friction and damping of the device need a hand with a mass.
 void check_device(ExperimentConfiguration& configuration);
-// Without a slave there are no links and no feedback. With one, adds those that were left out with default
+// Links and feedback need a slave. With one, adds those that were left out with default
 // values, so that results store the settings used. The slave is a ball, so the renderer must have no tool.
 void check_slave(ExperimentConfiguration& configuration);
 

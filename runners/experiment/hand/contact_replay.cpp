@@ -202,7 +202,7 @@ class GeneratedContact {
     Contact contact{time_s, nearest_on_surface(scenario_, on_line(time_s), time_s)};
     if (!contact.position_W.allFinite()) refuse_surface(time_s);
     const Vec3 normal_W = scenario_.true_normal(contact.position_W, time_s);
-    if (normal_W.allFinite()) outward_W_ = normal_W;  // at an edge it stays that of the row before
+    if (normal_W.allFinite()) outward_W_ = normal_W;  // stays, at an edge, that of the row before
     if (outward_W_.isZero(0)) refuse_surface(time_s);
     contact.outward_W = outward_W_;
     contact.gap_m = gap_m(time_s);

@@ -113,7 +113,7 @@ void DryFrictionStep::advance(Axis& axis, StepEnergy* energy) const {
       const double pull = acceleration(axis, 0);
       direction = pull > 0 ? 1 : -1;
       if (std::abs(pull) <= friction_) {
-        const double rate = system_.stiffness * axis.path_velocity;  // of the pull
+        const double rate = system_.stiffness * axis.path_velocity;  // change of the pull per second
         direction = rate > 0 ? 1 : -1;
         const double until_s = rate == 0 ? axis.remaining_s : (direction * friction_ - pull) / rate;
         if (until_s >= axis.remaining_s || stops >= kMaxStops) return rest(axis, axis.remaining_s, energy);

@@ -32,7 +32,7 @@ constexpr Priority kPriorities[] = {
     {"max_tool_penetration", When::always},
     // How well does the hand feel the shape?
     {"rms_contact_error", When::no_fixtures},
-    // That error has two parts, of the camera and of the renderer.
+    // The error has two parts, of the camera and of the renderer.
     {"rms_camera_error", When::no_fixtures},
     {"rms_renderer_error", When::no_fixtures},
     // How much does the device have to exert, and how large is the jolt when a frame arrives?

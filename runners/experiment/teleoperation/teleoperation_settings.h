@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// What the device exerts on the hand, and which position is sent to the slave.
+// The force that the device exerts on the hand, and the position that is sent to the slave.
 //   rendered:     the force of the renderer, which it computes from the points of the newest frame. The slave
 //                 gets the commanded position of the renderer, which stays outside of forbidden regions. This
 //                 is teleoperation as in the dissertation, 3.2.

@@ -33,7 +33,7 @@ using ShownPose = std::array<float, 7>;
 struct ShownMesh {
   std::string name;
   MeshOnGrid mesh;
-  std::vector<double> time_s;  // as many as poses; the first is the first tick
+  std::vector<double> time_s;  // one for each pose; the first is the first tick
   std::vector<ShownPose> poses;
 };
 

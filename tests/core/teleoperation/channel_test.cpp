@@ -90,7 +90,7 @@ TEST(Channel, DelaysToTheTick) {
 TEST(Channel, ReturnsTheNewestOfSeveralArrivals) {
   Channel<int> channel({.delay_s = 0.01}, {}, kUse);
   for (int k = 0; k < 5; ++k) channel.send(0.001 * k, k);
-  channel.send(0.004, 5);  // at the time of packet 4
+  channel.send(0.004, 5);  // the time of packet 4
   EXPECT_EQ(channel.receive(0.009), std::nullopt);
   EXPECT_EQ(channel.receive(0.012), 2);
   EXPECT_EQ(channel.receive(1), 5);
@@ -131,7 +131,7 @@ TEST(PacketFates, LosesEachPacketByItself) {
   for (const double p : {0.01, 0.1, 0.5, 0.9}) {
     const std::vector<bool> lost = losses_of({.loss_probability = p}, kMany);
     EXPECT_NEAR(fraction(lost), p, kSigmas * std::sqrt(p * (1 - p) / kMany));
-    double pairs = 0;  // of losses in a row: the chance does not depend on the packet before
+    double pairs = 0;  // number of losses in a row: the chance does not depend on the packet before
     for (int n = 1; n < kMany; ++n) pairs += lost[n] && lost[n - 1] ? 1 : 0;
     EXPECT_NEAR(pairs / kMany, p * p, kSigmas * std::sqrt(2 * p * p / kMany));
   }

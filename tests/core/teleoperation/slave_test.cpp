@@ -49,7 +49,7 @@ TEST(Slave, FollowsASineWithTheResponseOfItsOrder) {
           const double x = slave.move({std::sin(u * t), 0, 0}, t).position_W.x();
           if (tick >= settle) sum += x * std::exp(std::complex<double>(0, -u * t)) * (2.0 / window);
         }
-        const std::complex<double> i(0, 1), measured = sum * i;  // of a sine
+        const std::complex<double> i(0, 1), measured = sum * i;  // response to a sine
         const std::complex<double> expected =
             (w * w + i * 2.0 * zeta * w * u) / (w * w - u * u + i * 2.0 * zeta * w * u);
         EXPECT_NEAR(std::abs(measured), std::abs(expected), 0.01 * std::abs(expected) + 1e-3)

@@ -30,9 +30,10 @@ struct SourceStatistics {
 };
 
 struct SensorComparison {
-  double focal_px = 0;      // that of the recorded images
-  double own_focal_px = 0;  // of the sensor's own images, if its steps of disparity have the published size
-  double baseline_m = 0;    // published
+  double focal_px = 0;  // value of the recorded images
+  double own_focal_px =
+      0;  // value of the sensor's own images, if its steps of disparity have the published size
+  double baseline_m = 0;  // published
   SourceStatistics recorded;
   SourceStatistics simulated;  // published numbers and the focal length of the recorded images
   SourceStatistics own_focal;  // see with_own_focal_length()

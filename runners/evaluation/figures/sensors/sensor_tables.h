@@ -54,7 +54,7 @@ struct MeasuredSensor {
 std::string side_name(bool is_left_of_near);
 inline constexpr bool kEdgeSides[] = {true, false};
 
-inline constexpr double kLoudShare = 0.9;  // of the pixels, whose noise over time is in the tables
+inline constexpr double kLoudShare = 0.9;  // number of the pixels whose noise over time is in the tables
 
 // Table `noise_NAME` over the ranges of distance: noise over time (`time_SOURCE`, and its 90 % quantile
 // `loud_SOURCE`) if the scene is at rest, `planes_SOURCE`, `planes_px_SOURCE`, and the step of depth

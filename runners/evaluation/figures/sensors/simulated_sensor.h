@@ -45,7 +45,7 @@ std::vector<DepthImage> simulated_frames(const DepthSensorSettings& settings, co
 // Depths of the true objects in a frame, as their meshes and poses state it, and as a sensor measures them.
 struct ObjectImage {
   DepthImage true_depth, measured;
-  std::vector<int> object;  // that each pixel shows; -1: none
+  std::vector<int> object;  // the object that each pixel shows; -1: none
 };
 // Returns what a recorded frame shows of the true objects. camera: that of the recording.
 ObjectImage recorded_objects(const RecordedTruth& truth, std::size_t frame, const DepthImage& recorded,

@@ -21,8 +21,8 @@ namespace remote_touch {
 // Signed distances from the ball to the true surface: positive outside, negative if a part of the ball is
 // behind the surface.
 struct BallGap {
-  double now_m = kNoValue;         // to the surface as it is in this tick
-  double at_capture_m = kNoValue;  // to the surface as it was when the frame in use was captured
+  double now_m = kNoValue;         // distance to the surface as it is in this tick
+  double at_capture_m = kNoValue;  // distance to the surface as it was when the frame in use was captured
 };
 using GapValue = double BallGap::*;
 
@@ -34,7 +34,7 @@ std::vector<BallGap> ball_gaps(const Trace& trace, const Scenario& scenario, dou
 
 // Statistics over the ticks in which the gap is known; NaN if there are none.
 double rms_gap_m(const std::vector<BallGap>& gaps, GapValue value);
-double max_gap_m(const std::vector<BallGap>& gaps, GapValue value);  // of the absolute value
+double max_gap_m(const std::vector<BallGap>& gaps, GapValue value);  // percentile of the absolute value
 
 // A run in a scene of meshes.
 struct MeshRun {

@@ -19,7 +19,7 @@ struct TouchedObject {
   std::vector<std::vector<ContactError>> renderers;  // order of compared_renderers()
   // The order is that of depth_settings(); over the frames in which all of them are known.
   std::vector<std::vector<ContactError>> settings;
-  std::vector<double> known_frames;  // of each setting alone
+  std::vector<double> known_frames;  // runs of each setting alone
   std::vector<DepthErrors> points;   // one for each spatial setting, in their order
 };
 

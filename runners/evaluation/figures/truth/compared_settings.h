@@ -20,7 +20,7 @@ const std::vector<Toucher>& compared_renderers();
 struct DepthSetting {
   std::string name;
   double window_px = 1;         // width of the spatial filter (7.1); 1: there is none
-  double sigma_f_m = kNoValue;  // of (7.2)
+  double sigma_f_m = kNoValue;  // window of (7.2)
   std::string average;          // setting of the renderer averaged-proxy; empty: nothing filters over time
   bool is_spatial() const { return average.empty(); }
 };

@@ -15,7 +15,7 @@ namespace remote_touch {
 
 // The renderer that touches a recording, and how its frames are processed before.
 struct Toucher {
-  std::string name;            // for titles
+  std::string name;            // text for titles
   std::string renderer;        // JSON
   std::string depth_pipeline;  // JSON; empty: none
   double rest_distance_m = 0;  // distance of the reported position from a surface that it touches

@@ -1,4 +1,4 @@
-// What a simulated device measures and exerts.
+// A simulated device: what it measures and exerts.
 #include "runners/experiment/hand/device_model.h"
 
 #include <gtest/gtest.h>

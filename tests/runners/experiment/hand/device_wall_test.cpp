@@ -119,7 +119,7 @@ double largest_gain_J(double stiffness, const DeviceSettings& s, unsigned seed) 
     const DeviceState at = device.measured(hand.move({{path, 0, 0}}, tick * kTick_s, wrench));
     if (tick > 0) {
       const StepEnergy energy = hand.last_energy();
-      // Without grip changes the ground damper is that of the device.
+      // The ground damper is that of the device, because the grip does not change.
       gain += energy.force_work_J - energy.ground_damper_J - energy.dry_friction_J;
       largest = std::max(largest, gain);
     }
@@ -147,7 +147,7 @@ TEST(DeviceWall, IsPassiveWithinTheBoundOfAbbottAndOkamura) {
   }
 }
 
-// Without friction rounding gives energy, however much the device damps.
+// Rounding without friction gives energy, however much the device damps.
 TEST(DeviceWall, GivesEnergyWithoutFrictionIfPositionsAreRounded) {
   int active = 0;
   for (unsigned seed = 0; seed < 50; ++seed)

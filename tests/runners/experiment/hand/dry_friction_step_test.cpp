@@ -60,8 +60,8 @@ TEST(DryFriction, EndsWhenTheSpringPullsHarder) {
   EXPECT_EQ(ticks, 21);
 }
 
-// Without damping, the swings of a mass on a spring shrink by 2 F_c / k from side to side, and the mass stops
-// where the spring is weaker than friction. Ten swings in one tick.
+// The swings, without damping, of a mass on a spring shrink by 2 F_c / k from side to side, and the mass
+// stops where the spring is weaker than friction. Ten swings in one tick.
 TEST(DryFriction, ShrinksTheSwingsByTwiceItsWidth) {
   const double mass = 0.02, k = 2000, friction = 0.5;
   const double half_s = std::acos(-1.0) * std::sqrt(mass / k);
