@@ -102,10 +102,10 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
   for (const Measure& each : built_in_measures()) {
     const bool of_tool = each.runs == MeasuredRuns::tool, of_proxy = each.runs == MeasuredRuns::proxy,
                of_guidance = each.runs == MeasuredRuns::guidance,
-               of_replay = each.runs == MeasuredRuns::replay,
+               of_others = each.runs == MeasuredRuns::replay || each.runs == MeasuredRuns::slave,
                of_contact = needs_true_contact(each);  // these traces have no true contact
-    EXPECT_EQ(applies(each, point), !of_tool && !of_guidance && !of_contact && !of_replay) << each.name;
-    EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance && !of_contact && !of_replay) << each.name;
+    EXPECT_EQ(applies(each, point), !of_tool && !of_guidance && !of_contact && !of_others) << each.name;
+    EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance && !of_contact && !of_others) << each.name;
     if (of_tool || of_guidance) {
       EXPECT_TRUE(std::isnan(each.compute(point))) << each.name;
     }
