@@ -6,8 +6,8 @@
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/recorded_fixture.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/tools/recorded_fixture.h"
 
 namespace remote_touch {
 
@@ -199,8 +199,8 @@ std::vector<RecordedRun> recorded_runs(FigureContext& context) {
                                                        {"tracked", "moving camera, tracked sheet"}};
   std::vector<RecordedRun> runs;
   for (const std::size_t i : {2, 0, 1, 3}) {
-    std::vector<FrameOutcome> frames = frame_outcomes(experiments[i], made[i]);
-    std::vector<PopThrough> pops = pop_throughs(made[i]);
+    std::vector<FrameOutcome> frames = frame_outcomes(experiments[i], made[i].trace, *made[i].scenario);
+    std::vector<PopThrough> pops = pop_throughs(made[i].trace, *made[i].scenario);
     runs.push_back({words[i].first, words[i].second, std::move(made[i]), std::move(frames), std::move(pops)});
   }
   return runs;

@@ -130,7 +130,7 @@ MakeFigure figure_4_10, figure_4_11, figure_4_12, figure_4_13, figure_4_13_repli
     figure_latency, figure_5_8, figure_5_8_recorded, figure_5_9, figure_6_2, figure_6_3, figure_6_3_angles,
     figure_6_4, figure_7_1_recorded, figure_7_4, figure_7_5, figure_7_5_guidance, figure_7_5_recorded,
     figure_bounds, figure_camera_error, figure_eq4_15, figure_first_touch, figure_frame_rates,
-    figure_device_wall, figure_handshake, figure_handshake_human, figure_proxy_rates,
+    figure_device_wall, figure_steer_robot, figure_handshake, figure_handshake_human, figure_proxy_rates,
     figure_sensor_models_recorded, figure_tool_forces, figure_tool_lifts, figure_tool_shapes,
     figure_tool_tracked, figure_turbidity;
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
-#include "runners/evaluation/figures/fixture_run.h"
+#include "analysis/trace/trace.h"
+#include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {
 
@@ -21,7 +22,8 @@ struct FrameOutcome {
 
 // The first frame has no frame before it: its motions are NaN. pre: the experiment plays a part of a
 // recording forwards and backwards (ping-pong), and every frame arrives.
-std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
+std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Trace& trace,
+                                         const Scenario& scenario);
 
 // A tick in which the proxy changed to the wrong side of the true surface.
 struct PopThrough {
@@ -29,6 +31,6 @@ struct PopThrough {
   double surface_motion_m =
       0;  // past the proxy since the frame before, by the planes of both; NaN if unknown
 };
-std::vector<PopThrough> pop_throughs(const FixtureRun& run);
+std::vector<PopThrough> pop_throughs(const Trace& trace, const Scenario& scenario);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/recorded_fixture.h"
+#include "runners/evaluation/figures/tools/recorded_fixture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,14 +86,14 @@ int recorded_frame_count(const Experiment& experiment) {
 }  // namespace
 
 // Goes through the frames in the order of the recording, so that each is read once.
-std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run) {
-  const Trace& trace = run.trace;
+std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Trace& trace,
+                                         const Scenario& scenario) {
   std::vector<FrameOutcome> outcomes = last_ticks(trace);
   const int count = recorded_frame_count(experiment);
   std::vector<Motion> to(static_cast<std::size_t>(count));  // motion to each frame from the one before
   PointCloud before;
   for (int index = 0; index < count; ++index) {
-    PointCloud cloud = run.scenario->cloud(index);
+    PointCloud cloud = scenario.cloud(index);
     if (index > 0)
       to[static_cast<std::size_t>(index)] =
           motion(before, cloud, pixel_of(trace.hip_position_m[0], cloud.image->camera));
@@ -115,8 +115,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
   return outcomes;
 }
 
-std::vector<PopThrough> pop_throughs(const FixtureRun& run) {
-  const Trace& trace = run.trace;
+std::vector<PopThrough> pop_throughs(const Trace& trace, const Scenario& scenario) {
   std::vector<PopThrough> found;
   double known_m = kUnknown;  // the newest distance that is known
   for (std::size_t i = 0; i < trace.length(); ++i) {
@@ -128,8 +127,8 @@ std::vector<PopThrough> pop_throughs(const FixtureRun& run) {
       if (trace.frame_update(i) && !std::isnan(trace.signed_distance_m[i - 1]))
         pop.surface_motion_m =
             trace.signed_distance_m[i - 1] -
-            run.scenario->signed_distance(trace.proxy_position_m[i - 1] + trace.frame_correction_m[i],
-                                          trace.time_s[i]);
+            scenario.signed_distance(trace.proxy_position_m[i - 1] + trace.frame_correction_m[i],
+                                     trace.time_s[i]);
       found.push_back(pop);
     }
     known_m = distance_m;
