@@ -14,7 +14,8 @@ namespace remote_touch {
 namespace {
 
 // A trace of one tick with distinct numbers, so that swapped columns are found.
-Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool measured = false) {
+Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool measured = false,
+               bool remote = false) {
   RenderOutput out;
   out.proxy_W = {1, 2, 3}, out.state = ContactState::entrenched, out.contact_count = 4;
   if (tool) {
@@ -29,7 +30,11 @@ Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool me
   if (replay) truth.expected_force_N = Vec3(11, 12, 13);
   if (measured) truth.measured_distance_m = 14;
   Trace trace;
-  trace.append(0.25, device, out, truth, hand ? std::optional<HandState>(HandState{}) : std::nullopt);
+  std::optional<HandState> state;
+  if (hand) state.emplace();
+  if (hand && remote) state->true_pose.emplace();
+  trace.append(0.25, device, out, truth, state,
+               remote ? std::optional<SlaveState>(SlaveState{}) : std::nullopt);
   return trace;
 }
 
@@ -51,7 +56,7 @@ std::vector<Number> values(const Trace& trace, const std::string& name) {
 }
 
 TEST(TraceColumns, AreThoseOfTheTableInItsOrder) {
-  const std::vector<Column> columns = one_tick(true, true, true, true, true).columns();
+  const std::vector<Column> columns = one_tick(true, true, true, true, true, true).columns();
   ASSERT_EQ(columns.size(), trace_columns().size());
   std::set<std::string> seen;
   for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -22,7 +22,8 @@ constexpr const char* kAll = R"({"scenario": {"name": "camera-scene"}, "faults":
     "fixtures": [{"name": "everywhere", "role": "guidance", "label": "all", "radius_m": 0.01}], "guidance": {},
     "sequence": [{"action": "activate", "fixture": "all"}], "renderer": {"name": "proxy"},
     "changes": [{"time_s": 1, "parameter": "renderer.r3_m", "value": 0.02}],
-    "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "live": {}, "safety": {}})";
+    "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "slave": {}, "command_link": {}, "force_link": {}, "feedback": {},
+    "live": {}, "safety": {}})";
 
 std::string why(const std::string& assignment) {
   return refusal([&] { Experiment::from_json(kAll, "all", {assignment}); });
