@@ -27,14 +27,20 @@
 // to be of the same kind:
 // - the reaction to the slave's drive. The slave with its drive is then a passive system behind the port, and
 // so is
-//   the whole loop. The hand also feels the inertia of the slave in free motion.
+//   the whole loop. The hand also feels the inertia of the slave in free motion, and all energy for the drive
+//   has to come from the hand: the slave moves only as fast as this energy arrives.
 // - the measured force of the scene. The channel is passive all the same, and the energy of the drive is the
-//   slave's own. The scene behind a slave that lags is not passive, so the loop has no guarantee.
+// slave's
+//   own. The scene behind a slave that lags is not passive, so the loop has no guarantee.
 //
-// The signals of a tick are chosen before the tick, so the controllers need the motion of the hand, and the
-// force at the slave, in the coming tick. The usual estimate is that of the last tick. observe() then records
-// the tick as it was. A wrong estimate leaves a negative balance of at most the force times the error of the
-// displacement; the next ticks repay it.
+// The signals of a tick are chosen before the tick, so a controller has to predict the energy of the tick.
+// With the published rule the motion at the port (at the slave: the force) is predicted to be that of the
+// last tick. A strong damping can reverse the motion within a tick; then the prediction has the wrong sign,
+// and the energy falls tick after tick. So the caller may give the response of the port: motion = motion
+// without a signal + response x signal. The energy is then a quadratic form in the signal, and the controller
+// projects the delayed signal onto the ball of signals that the energy allows, which is the smallest possible
+// change. Without a response the ball is the half-space of the published rule. observe() records the tick as
+// it was. What a wrong prediction leaves missing is a negative balance, and later ticks repay it.
 #pragma once
 
 #include <string>
@@ -70,40 +76,49 @@ struct PortEnergy {
 // The port at the hand. Call force() before each tick, observe() after it. Neither allocates.
 class ImpedancePassivityController {
  public:
-  // pre: tick_s > 0.
-  ImpedancePassivityController(const PassivitySettings& settings, double tick_s);
+  // response_m_per_N: displacement of the hand in a tick per force that is held for the tick; T^2 / (2 m) for
+  // the mass m of hand and device; 0: the published rule. pre: tick_s > 0, response_m_per_N >= 0.
+  ImpedancePassivityController(const PassivitySettings& settings, double tick_s, double response_m_per_N = 0);
 
   // Returns the force on the hand for the coming tick. It is delayed_force_N, bit by bit, if the energy
-  // suffices. expected_displacement_m: of the hand in the coming tick, its velocity times the tick. The
-  // controller takes from the delayed force at most the part that does work on the hand in the tick, plus
-  // max_damping_Ns_per_m for what an earlier tick left missing. Without motion there is no work, and nothing
-  // changes.
+  // suffices. expected_displacement_m: of the hand in the coming tick without this force; with the published
+  // rule, its velocity times the tick. The controller takes from the delayed force at most the part that does
+  // work on the hand in the tick, plus max_damping_Ns_per_m for what an earlier tick left missing. With the
+  // published rule nothing changes without motion.
   Vec3 force(const Vec3& delayed_force_N, const Vec3& expected_displacement_m, double far_in_J);
   // displacement_m: of the hand in the tick that has ended.
   void observe(const Vec3& displacement_m);
 
+  // Returns a prediction of the displacement in the coming tick without a force of this port. With d1 and d2,
+  // the displacements of the last two ticks, and the force f2 before the last, it is 2 d1 - d2 - response f2:
+  // exact for a mass under another force that is constant.
+  Vec3 free_displacement() const;
+
   const PortEnergy& energy() const { return energy_; }
-  double damping_Ns_per_m() const { return stiffness_ * tick_s_; }  // alpha of this tick
 
  private:
-  const double max_stiffness_, tick_s_;
+  const double response_, max_stiffness_;
   PortEnergy energy_;
   Vec3 delayed_force_N_ = Vec3::Zero(), removed_N_ = Vec3::Zero();
-  double stiffness_ = 0;  // alpha / T
+  Vec3 last_m_ = Vec3::Zero(), last_but_one_m_ = Vec3::Zero();
+  Vec3 last_force_N_ = Vec3::Zero(), last_but_one_force_N_ = Vec3::Zero();
 };
 
 // The port at the slave. Call command() before each tick, observe() after it. Neither allocates.
 class AdmittancePassivityController {
  public:
-  // pre: tick_s > 0.
-  AdmittancePassivityController(const PassivitySettings& settings, double tick_s);
+  // response_N_per_m: decrease of the mean force at the port in a tick per displacement of the command in
+  // this tick; about b / T + k / 2 for the reaction to a drive of stiffness k and damping b; 0: the published
+  // rule, and right for a measured force of the scene. pre: tick_s > 0, response_N_per_m >= 0.
+  AdmittancePassivityController(const PassivitySettings& settings, double tick_s,
+                                double response_N_per_m = 0);
 
   // Returns the position that the slave's command has to reach in the coming tick. It is delayed_W, bit by
   // bit, if the energy has always sufficed. Otherwise the command yields by beta f T, and keeps the sum of
   // all yields as its drift. If drift_time_s is set, the drift decays with this time constant, as far as the
   // energy suffices. The controller takes from the delayed motion at most the part that does work on the
   // slave in the tick, plus max_yield_m_per_s for what an earlier tick left missing. expected_force_N: at the
-  // port, in the coming tick.
+  // port, in the coming tick; with a response, if the command does not move.
   Vec3 command(const Vec3& delayed_W, const Vec3& expected_force_N, double far_in_J);
   // force_N: mean force at the port in the tick that has ended.
   void observe(const Vec3& force_N);
@@ -115,7 +130,7 @@ class AdmittancePassivityController {
   // The motion against the drift, as far as the energy allows beside the delayed motion.
   Vec3 correction(const Vec3& motion_m, const Vec3& force_N) const;
 
-  const double max_yield_m_, drift_share_;
+  const double response_, max_yield_m_, drift_share_;
   PortEnergy energy_;
   Vec3 delayed_W_ = Vec3::Zero(), drift_m_ = Vec3::Zero();
   Vec3 motion_m_ = Vec3::Zero(), yield_m_ = Vec3::Zero();
