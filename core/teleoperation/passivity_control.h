@@ -23,15 +23,14 @@
 // the channel in a tick is -f . d at the hand, where d is the displacement of the hand, and f . d at the
 // slave, where d is the displacement of the command.
 //
-// Two pairs of forces are possible. The force that is sent to the hand and the force at the slave's port have
-// to be of the same kind:
-// - the reaction to the slave's drive. The slave with its drive is then a passive system behind the port, and
-// so is
-//   the whole loop. The hand also feels the inertia of the slave in free motion, and all energy for the drive
-//   has to come from the hand: the slave moves only as fast as this energy arrives.
-// - the measured force of the scene. The channel is passive all the same, and the energy of the drive is the
-// slave's
-//   own. The scene behind a slave that lags is not passive, so the loop has no guarantee.
+// Two pairs of forces are possible; the force that is sent to the hand and the force at the slave's port have
+// to be of the same kind. The first is the reaction to the slave's drive. The slave with its drive is then a
+// passive system behind the port, and so is the whole loop. The hand also feels the inertia of the slave in
+// free motion, and all energy for the drive has to come from the hand: the slave moves only as fast as this
+// energy arrives. The damper of the drive makes the reaction depend on the command of the same tick, so this
+// port needs its response (below). The second is the measured force of the scene. The channel is passive all
+// the same, and the energy of the drive is the slave's own. The scene behind a slave that lags is not
+// passive, so the loop has no guarantee.
 //
 // The signals of a tick are chosen before the tick, so a controller has to predict the energy of the tick.
 // With the published rule the motion at the port (at the slave: the force) is predicted to be that of the
