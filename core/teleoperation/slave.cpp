@@ -76,7 +76,6 @@ void Slave::step(const Vec3& reference_velocity, double before_s, double now_s) 
   state_.position_W += step_s * state_.velocity_W;
   reference_W_ += step_s * reference_velocity;
   state_.force_N += force / s_.steps_per_tick;
-  state_.reaction_N -= s_.mass_kg * drive / s_.steps_per_tick;
   state_.peak_force_N = std::max(state_.peak_force_N, force.norm());
 }
 
@@ -87,7 +86,7 @@ const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
     is_placed_ = true;
   } else {
     const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
-    state_.force_N = state_.reaction_N = Vec3::Zero(), state_.peak_force_N = 0;
+    state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
     const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
     for (int i = 0; i < s_.steps_per_tick; ++i)
       step(reference_velocity, begin_s + (i - 1) * step_s, begin_s + i * step_s);

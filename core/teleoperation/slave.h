@@ -52,11 +52,8 @@ class Slave {
     Vec3 position_W = Vec3::Zero();
     Vec3 velocity_W = Vec3::Zero();
     Vec3 force_N = Vec3::Zero();  // mean force of the scene on the ball in the last tick
-    // Mean force of the drive on the reference in the last tick: minus its force on the ball. In a contact at
-    // rest it is force_N.
-    Vec3 reaction_N = Vec3::Zero();
-    double peak_force_N = 0;  // largest magnitude of the force in the last tick
-    double clearance_m = 0;   // distance of the ball from the surface; negative in contact; NaN: not known
+    double peak_force_N = 0;      // largest magnitude of the force in the last tick
+    double clearance_m = 0;  // distance of the ball from the surface; negative in contact; NaN: not known
   };
   // Moves the slave from time_s - tick to time_s. command_W: the position that it has received last. In the
   // first call the slave is put at the command, at rest.

@@ -98,7 +98,7 @@ const std::vector<Architecture>& architectures() {
       {"rendered", "rendered, no region", {"fixtures.0.radius_m=0"}},
       {"none", "no feedback", {"feedback.force=none"}},
       {"slave_force", "force of the slave", {"feedback.force=slave-force"}},
-      {"passive", "force of the drive, passivity control", {"feedback.force=passive-slave-force"}}};
+      {"passive", "force of the slave, passivity control", {"feedback.force=passive-slave-force"}}};
   return list;
 }
 

@@ -15,6 +15,11 @@ SlaveState unknown_state() {
   return state;
 }
 
+// Displacement of a mass in a tick per force that is held for the tick; 0 for an unknown mass.
+double response_m_per_N(double mass_kg, double tick_s) {
+  return mass_kg > 0 ? tick_s * tick_s / (2 * mass_kg) : 0;
+}
+
 }  // namespace
 
 void Teleoperation::Link::send(const Vec3& value, double in_J, double time_s) {
@@ -35,7 +40,7 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
       slave_(settings.slave, tick_s, std::move(scene)),
       commands_(settings.commands, key, NoiseUse::command_channel),
       forces_(settings.forces, key, NoiseUse::force_channel),
-      hand_port_(settings.feedback.passivity, tick_s),
+      hand_port_(settings.feedback.passivity, tick_s, response_m_per_N(settings.hand_mass_kg, tick_s)),
       slave_port_(settings.feedback.passivity, tick_s),
       state_(unknown_state()) {}
 
@@ -50,18 +55,23 @@ void Teleoperation::exchange_command(const Vec3& command_W, double time_s) {
   commands_.send(command_W, hand_port_.energy().in_J, time_s);
   commands_.receive(time_s);
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
-    command_W_ = is_passive() ? slave_port_.command(*received, slave_.state().reaction_N, commands_.far_in_J)
-                              : *received;
+    command_W_ =
+        is_passive() ? slave_port_.command(*received, slave_.state().force_N, commands_.far_in_J) : *received;
 }
 
 // Returns the force on the hand for the coming tick.
 Vec3 Teleoperation::exchange_force(double time_s) {
   const bool feels_slave = s_.feedback.force == Feedback::slave_force || is_passive();
   if (!feels_slave) return Vec3::Zero();
-  const Slave::State& slave = slave_.state();
-  forces_.send(is_passive() ? slave.reaction_N : slave.force_N, slave_port_.energy().in_J, time_s);
+  forces_.send(slave_.state().force_N, slave_port_.energy().in_J, time_s);
   forces_.receive(time_s);
   return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
+}
+
+// displacement_m: of the hand in the tick that has ended.
+Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& displacement_m) {
+  const Vec3 expected_m = s_.hand_mass_kg > 0 ? hand_port_.free_displacement() : displacement_m;
+  return hand_port_.force(force_N, expected_m, forces_.far_in_J);
 }
 
 Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, double time_s) {
@@ -74,14 +84,14 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   move_slave(time_s);
   const Vec3 displacement_m = hand_W_ ? Vec3(device.position_W - *hand_W_) : Vec3(Vec3::Zero());
   if (is_passive() && !is_first) {
-    slave_port_.observe(slave_.state().reaction_N);
+    slave_port_.observe(slave_.state().force_N);
     hand_port_.observe(displacement_m);
   }
   hand_W_ = device.position_W;
   if (command_W.allFinite()) exchange_command(command_W, time_s);
   Wrench wrench = is_rendered ? rendered_wrench(out) : Wrench{exchange_force(time_s), Vec3::Zero()};
   if (s_.feedback.force == Feedback::slave_force) wrench.force_N *= s_.feedback.gain;
-  if (is_passive()) wrench.force_N = hand_port_.force(wrench.force_N, displacement_m, forces_.far_in_J);
+  if (is_passive()) wrench.force_N = passive_force(wrench.force_N, displacement_m);
   state_.command_packets = static_cast<std::int32_t>(commands_.sender.packets());
   state_.force_packets = static_cast<std::int32_t>(forces_.sender.packets());
   return wrench;

@@ -50,6 +50,7 @@ class Teleoperation {
   void move_slave(double time_s);
   void exchange_command(const Vec3& command_W, double time_s);
   Vec3 exchange_force(double time_s);
+  Vec3 passive_force(const Vec3& force_N, const Vec3& displacement_m);
 
   const TeleoperationSettings s_;
   Slave slave_;

@@ -17,8 +17,8 @@ namespace remote_touch {
 //                 is teleoperation as in the dissertation, 3.2.
 //   none:         no force. The slave gets the position of the HIP, as in all architectures below.
 //   slave_force:  the force of the scene on the slave (position-force).
-//   passive_slave_force: the force of the slave's drive, with passivity control at the hand and at the slave,
-//                 see passivity_control.h.
+//   passive_slave_force: the same force, with passivity control at the hand and at the slave, see
+//                 passivity_control.h.
 enum class Feedback { rendered, none, slave_force, passive_slave_force };
 
 struct FeedbackSettings {
@@ -43,6 +43,8 @@ struct TeleoperationSettings {
   SlaveSettings slave;
   LinkSettings commands, forces;
   FeedbackSettings feedback;
+  // Mass of hand and device, which passivity control uses to predict the motion of the hand; 0: not known.
+  double hand_mass_kg = 0;
 };
 
 }  // namespace remote_touch
