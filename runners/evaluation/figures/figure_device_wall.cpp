@@ -27,10 +27,18 @@ double swing_m(const Trace& trace, double from_s, double to_s) {
   return high - low;
 }
 
+bool opens(const Trace& trace, double from_s) {
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (trace.time_s[i] >= from_s && trace.force_N[i].isZero(0)) return true;
+  return false;
+}
+
+// An oscillation that grows until the hand leaves the surface no longer grows, so a contact that opens counts
+// too.
 bool is_unstable(const Trace& trace) {
   const double first = swing_m(trace, kWindow_s[0], kWindow_s[1]);
   const double second = swing_m(trace, kWindow_s[1], kWindow_s[2]);
-  return second > kLeastSwing_m && second > first;
+  return (second > kLeastSwing_m && second > first) || opens(trace, kWindow_s[1]);
 }
 
 struct Wall {
