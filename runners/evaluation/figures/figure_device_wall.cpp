@@ -130,8 +130,11 @@ Figure figure_device_wall(FigureContext& context) {
         ratios.push_back(std::abs(wall.ratio() - 1));
       const Claims claims(figure, std::string(kRenderers[renderer]) +
                                       (delay_ticks == 0 ? ", without delay: " : ", delay of 5 ms: "));
+      // A penalty force pushes from the nearest point, which lies beside the hand. Its stiffness along the
+      // normal is therefore smaller than the setting, and its limit larger.
+      const double limit = kRenderers[renderer] == std::string("penalty") ? 0.2 : 0.05;
       claims.at_most("the largest stable stiffness is b / (T / 2 + delay): largest relative difference",
-                     max_of(ratios), 0.1, "fraction");
+                     max_of(ratios), limit, "fraction");
     }
   return figure;
 }
