@@ -117,8 +117,8 @@ TEST(Teleoperation, ADeadBandSavesPackets) {
   EXPECT_LE(saved.command_packets, 0.03 / 1e-4 + 2);
 }
 
-// The motion of the hand is prescribed, so the controller predicts a tick by the one before. The balance falls
-// below 0 by the errors of this prediction only.
+// The motion of the hand is prescribed, so the controller predicts a tick by the one before. The balance
+// falls below 0 by the errors of this prediction only.
 TEST(Teleoperation, PassivityControlKeepsTheBalanceAtBothPorts) {
   for (const int delay : {0, 5, 50, 200}) {
     Teleoperation remote(with(Feedback::passive_slave_force, delay * kTick_s), {}, kTick_s, ground());
