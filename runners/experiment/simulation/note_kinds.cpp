@@ -47,6 +47,8 @@ const std::vector<NoteKind>& note_kinds() {
        "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
       {"few frames", "fewer than three frames show the motion of the scene"},
       {"columns unused", "a measured contact has columns that are not used"},
+      {"slave without surface", "the true surface is not known where the slave was"},
+      {"slave without command", "the slave received no command after its first"},
   };
   return kinds;
 }

@@ -11,6 +11,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/fixture_notes.h"
+#include "runners/experiment/simulation/slave_notes.h"
 #include "runners/experiment/simulation/surface_watch.h"
 
 namespace remote_touch {
@@ -168,8 +169,9 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     frames.deliver_until(time_s, observed);
     const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();
-    const RenderOutput out = renderer->step(device, time_s);
+    RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
+    if (remote) out.slave_W = remote->command(device, out);  // the position that is sent
     hand.apply(remote ? remote->tick(device, out, time_s) : rendered_wrench(out));
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
     if (finds_contact)
@@ -195,6 +197,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     add_missed_phases(experiment.operator_phases(), end_s, notes);
     add(fixture_notes(frames.fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
+    add(slave_notes(trace), notes);
     if (trace.has_tool())
       add(tool_start_notes(trace), notes);
     else

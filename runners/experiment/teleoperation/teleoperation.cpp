@@ -74,9 +74,13 @@ Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& displacement_
   return hand_port_.force(force_N, expected_m, forces_.far_in_J);
 }
 
+Vec3 Teleoperation::command(const DeviceState& device, const RenderOutput& out) const {
+  return s_.feedback.force == Feedback::rendered ? out.slave_W : device.position_W;
+}
+
 Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, double time_s) {
   const bool is_rendered = s_.feedback.force == Feedback::rendered;
-  const Vec3 command_W = is_rendered ? out.slave_W : device.position_W;
+  const Vec3 command_W = command(device, out);
   const bool is_first = !command_W_ && command_W.allFinite();
   if (is_first) command_W_ = command_W;
   if (!command_W_) return is_rendered ? rendered_wrench(out) : Wrench{};

@@ -15,6 +15,10 @@ class Teleoperation {
   // pre: the settings are valid, tick_s > 0. key: of the noise of the channels.
   Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s, SlaveScene scene);
 
+  // Returns the position that is sent to the slave: the command of the renderer with rendered feedback, else
+  // the HIP.
+  Vec3 command(const DeviceState& device, const RenderOutput& out) const;
+
   // Must be called once per tick, after the renderer. Moves the slave to time_s with the command that it had
   // at the tick before, sends the new command and the slave's force, and receives what has arrived by
   // time_s. Returns the wrench that the device is commanded to exert until the next tick. The slave starts,

@@ -58,6 +58,15 @@ TEST(Teleoperation, RendersAndSendsTheCommandOfTheRenderer) {
   EXPECT_NEAR(ticks.back().slave.position_W.y(), 0.006, 1e-4);
 }
 
+TEST(Teleoperation, TheCommandIsWhatIsSent) {
+  RenderOutput out;
+  out.slave_W = Vec3(1, 2, 3);
+  const DeviceState device{{4, 5, 6}};
+  EXPECT_EQ(Teleoperation(with(Feedback::rendered), {}, kTick_s, ground()).command(device, out), out.slave_W);
+  for (const Feedback force : {Feedback::none, Feedback::slave_force, Feedback::passive_slave_force})
+    EXPECT_EQ(Teleoperation(with(force), {}, kTick_s, ground()).command(device, out), device.position_W);
+}
+
 TEST(Teleoperation, WithoutFeedbackSendsTheHip) {
   const std::vector<Tick> ticks = descent(with(Feedback::none));
   for (const Tick& tick : ticks) EXPECT_EQ(tick.felt.force_N, Vec3::Zero());
