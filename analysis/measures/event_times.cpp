@@ -1,27 +1,10 @@
 #include "analysis/measures/event_times.h"
 
+#include "analysis/measures/first_tick.h"
 #include "analysis/measures/force_change_measures.h"
-#include "analysis/measures/no_value.h"
 #include "analysis/measures/surface_side.h"
-#include "analysis/trace/trace.h"
 
 namespace remote_touch {
-
-namespace {
-
-// Returns the first tick i for which happens(i) is true. happens() is called for each tick up to it.
-template <class Happens>
-double first_tick(const Trace& trace, Happens&& happens) {
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (happens(i)) return static_cast<double>(i);
-  return kNoValue;
-}
-
-double time_of(const Trace& trace, double tick) {
-  return tick >= 0 ? trace.time_s[static_cast<std::size_t>(tick)] : kNoValue;
-}
-
-}  // namespace
 
 double first_contact_tick(const Trace& trace) {
   return first_tick(trace, [&](std::size_t i) { return trace.contact_count[i] > 0; });

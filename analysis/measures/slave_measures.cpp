@@ -1,24 +1,14 @@
 #include "analysis/measures/slave_measures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/first_tick.h"
 #include "analysis/statistics/mean.h"
-#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
 namespace {
-
-// Time of the first tick for which happens() is true; NaN if there is none.
-template <class Event>
-double first_time_s(const Trace& trace, Event&& happens) {
-  for (std::size_t i = 0; i < trace.length(); ++i)
-    if (happens(i)) return trace.time_s[i];
-  return kNoValue;
-}
 
 double rate_per_s(const Trace& trace, const std::vector<std::int32_t>& sent) {
   if (sent.size() < 2) return kNoValue;
@@ -28,8 +18,9 @@ double rate_per_s(const Trace& trace, const std::vector<std::int32_t>& sent) {
 }  // namespace
 
 double max_slave_force_N(const Trace& trace) {
-  const std::vector<double>& peaks = trace.slave_peak_force_N;
-  return peaks.empty() ? kNoValue : *std::max_element(peaks.begin(), peaks.end());
+  double largest = kNoValue;
+  for (const double peak : trace.slave_peak_force_N) largest = std::fmax(largest, peak);  // ignores NaN
+  return largest;
 }
 
 double slave_contact_fraction(const Trace& trace) {
@@ -51,12 +42,12 @@ double rms_slave_lag_m(const Trace& trace) {
 }
 
 double first_slave_contact_time_s(const Trace& trace) {
-  return first_time_s(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; });
+  return time_of(trace, first_tick(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; }));
 }
 
 double slave_anticipation_s(const Trace& trace) {
-  return first_slave_contact_time_s(trace) -
-         first_time_s(trace, [&](std::size_t i) { return !trace.device_force_N[i].isZero(0); });
+  const auto is_felt = [&](std::size_t i) { return !trace.device_force_N[i].isZero(0); };
+  return first_slave_contact_time_s(trace) - time_of(trace, first_tick(trace, is_felt));
 }
 
 double command_packet_rate_per_s(const Trace& trace) {

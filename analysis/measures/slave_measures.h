@@ -5,7 +5,8 @@ namespace remote_touch {
 
 struct Trace;
 
-// Maximum of Trace::slave_peak_force_N, N: forces between the ticks count.
+// Maximum of Trace::slave_peak_force_N, N: forces between the ticks count. Ticks before the first command
+// have none; NaN if there are no others.
 double max_slave_force_N(const Trace& trace);
 // Fraction of the ticks with a force on the slave.
 double slave_contact_fraction(const Trace& trace);

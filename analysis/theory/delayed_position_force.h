@@ -11,7 +11,7 @@
 // Kharitonov and J. Chen, "Stability of Time-Delay Systems", 2003). Each such u gives the delays u T = arg(-Q
 // / P) + 2 pi n. The least of them, over all u, is the onset if the loop is stable without delay.
 //
-// What is exact: the onset of this linear loop. A real contact opens, so beyond the onset the loop oscillates
+// The onset of this linear loop is exact. A real contact opens, so beyond the onset the loop oscillates
 // with a limited amplitude where the linear loop grows; below it the closed contact is stable.
 #pragma once
 

@@ -27,8 +27,8 @@ struct PortInTick {
   double out_J(const Vec3& s) const { return s.dot(offset) + response * s.squaredNorm(); }
 };
 
-// What is removed from s if the conjugate responds: the way to the nearest point of the ball |x - centre| <=
-// radius of the signals from which at most budget_J leaves the channel.
+// Returns what is removed from s if the conjugate responds: the way to the nearest point of the ball |x -
+// centre| <= radius of the signals from which at most budget_J leaves the channel.
 Vec3 removed_by_projection(const PortInTick& port, const Vec3& s, double balance_J, double max_for_debt) {
   const double out_J = port.out_J(s);
   const double budget_J =
@@ -41,7 +41,7 @@ Vec3 removed_by_projection(const PortInTick& port, const Vec3& s, double balance
   return distance > radius ? Vec3((1 - radius / distance) * way) : Vec3(Vec3::Zero());
 }
 
-// What is removed from the signal s, zero if the energy suffices.
+// Returns what is removed from the signal s; zero if the energy suffices.
 Vec3 removed(const PortInTick& port, const Vec3& s, double balance_J, double max_for_debt) {
   if (port.response > 0) return removed_by_projection(port, s, balance_J, max_for_debt);
   const double part = share(std::max(0.0, port.out_J(s)), balance_J, port.offset, max_for_debt);
@@ -101,7 +101,7 @@ AdmittancePassivityController::AdmittancePassivityController(const PassivitySett
       max_yield_m_(settings.max_yield_m_per_s * tick_s),
       drift_share_(settings.drift_time_s > 0 ? std::min(1.0, tick_s / settings.drift_time_s) : 0.0) {}
 
-// With a response the way back has to be affordable as a whole; otherwise it waits.
+// The energy has to suffice for the whole way back if the port has a response; otherwise the way back waits.
 Vec3 AdmittancePassivityController::correction(const Vec3& motion_m, const Vec3& force_N) const {
   const Vec3 wanted_m = -drift_share_ * drift_m_;
   const double spare_J = energy_.balance_J() + force_N.dot(motion_m);

@@ -33,13 +33,13 @@
 // passive, so the loop has no guarantee.
 //
 // The signals of a tick are chosen before the tick, so a controller has to predict the energy of the tick.
-// With the published rule the motion at the port (at the slave: the force) is predicted to be that of the
-// last tick. A strong damping can reverse the motion within a tick; then the prediction has the wrong sign,
-// and the energy falls tick after tick. So the caller may give the response of the port: motion = motion
-// without a signal + response x signal. The energy is then a quadratic form in the signal, and the controller
-// projects the delayed signal onto the ball of signals that the energy allows, which is the smallest possible
-// change. Without a response the ball is the half-space of the published rule. observe() records the tick as
-// it was. What a wrong prediction leaves missing is a negative balance, and later ticks repay it.
+// The published rule predicts that the motion at the port (at the slave: the force) is that of the last tick.
+// A strong damping can reverse the motion within a tick; then the prediction has the wrong sign, and the
+// energy falls tick after tick. So the caller may give the response of the port: motion = motion without a
+// signal + response x signal. The energy is then a quadratic form in the signal, and the controller projects
+// the delayed signal onto the ball of signals that the energy allows, which is the smallest possible change.
+// Without a response the ball is the half-space of the published rule. observe() records the tick as it was.
+// What a wrong prediction leaves missing is a negative balance, and later ticks repay it.
 #pragma once
 
 #include <string>

@@ -61,6 +61,14 @@ TEST(SlaveMeasures, HaveNoValueForWhatDidNotHappen) {
   EXPECT_TRUE(std::isnan(command_packet_rate_per_s(trace_of({{0, 0, 0, 0}}))));
 }
 
+// The state of a slave is NaN before its first command.
+TEST(SlaveMeasures, IgnoreTicksBeforeTheFirstCommand) {
+  std::vector<Tick> ticks = kTouch;
+  ticks.insert(ticks.begin(), 2, {0, kUnknown, kUnknown, 0});
+  EXPECT_EQ(max_slave_force_N(trace_of(ticks)), 7);
+  EXPECT_EQ(min_slave_clearance_m(trace_of(ticks)), -0.002);
+}
+
 TEST(SlaveMeasures, BelongToRunsWithASlave) {
   const Trace with = trace_of(kTouch);
   Trace without;

@@ -152,7 +152,7 @@ TEST(DelayedPositionForce, AHoldActsLikeHalfATick) {
   EXPECT_NEAR(measured, expected, 0.1 * 0.5 * kTick_s);
 }
 
-// With a slave that is much faster than the hand: m s^2 + d s + k + g K e^(-s T).
+// The loop of a slave that is much faster than the hand: m s^2 + d s + k + g K e^(-s T).
 PositionForceLoop with_fast_slave(double m, double k, double d, double K) {
   return {m, k, d, 1, 1e5, 1, K, 0, 1};
 }

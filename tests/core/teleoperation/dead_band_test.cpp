@@ -186,7 +186,7 @@ TEST(DeadBand, SendsASineAsOftenAsASearchFinds) {
       }
 }
 
-// Where the sine stays positive, holding needs a packet for each change of the logarithm by ln(1 + k) or
+// Holding a positive sine needs a packet for each change of the logarithm by ln(1 + k) or
 // ln(1 / (1 - k)); both ends of a half wave and the sampling may cost one packet each.
 TEST(DeadBand, HoldsAPositiveSineByTheLogarithm) {
   const Wave wave{3, 1, 0.1};
