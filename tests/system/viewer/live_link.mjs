@@ -143,6 +143,11 @@ test("each page says who has the hand, and what is with the run and the connecti
     assert.ok(distance((await newest(one)).hip, there) < 1e-6, "the take-over moves nothing");
     await dragMovesTheHand(one);
   }
+  assert.equal(await page.evaluate(() => { // the hand is this page's again, which does not know yet where it is
+    for (const has of [false, true]) window.remoteTouch.page.showHand(has);
+    return document.querySelector("footer span").textContent;
+  }), "");
+  await hint(page, /^Drag to move the hand/);
 
   // A message that is too long ends the connection. The page connects again by itself; the other one has got the hand.
   await recordStates(page);

@@ -28,6 +28,7 @@ const plotted: [string, string, string][] = [
 
 const plottedS = 5;
 const watchedS = 5; // for missed deadlines
+const asleepMs = 5000; // between two pictures, of a page that was hidden or a machine that slept
 
 class LivePage {
   readonly run: LiveRun;
@@ -137,7 +138,7 @@ class LivePage {
   }
   private howToAct(): string {
     if (!this.isHand) return `The hand is ${this.run.stored.device}.`;
-    return this.hasHand && this.begun ? "Drag to move the hand, turn the wheel to push it." : "";
+    return this.mouse?.isActive ? "Drag to move the hand, turn the wheel to push it." : "";
   }
   // Empty: this page, or there is nothing to act on.
   private whoActs(): string {
@@ -177,6 +178,7 @@ class LivePage {
     foot.append(this.hint, this.steps, this.clock);
     this.showState();
     document.body.append(head, side, foot, about, help);
+    document.addEventListener("visibilitychange", () => { this.tickMs = performance.now(); }); // no picture, no tick
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     document.addEventListener("keydown", (event) => {
       const preset = ({ 1: "sensor", 2: "side", 3: "follow" } as Record<string, CameraPreset>)[event.key];
@@ -188,7 +190,7 @@ class LivePage {
     requestAnimationFrame(this.picture);
     if (this.pace.picture(nowMs)) for (const cloud of this.scene.clouds) cloud.setShare(this.pace.share);
     this.connection.acknowledge();
-    if (nowMs - this.pictureMs > 1000) this.tickMs = performance.now(); // the page was hidden or asleep
+    if (nowMs - this.pictureMs > asleepMs) this.tickMs = performance.now();
     this.pictureMs = nowMs;
     const tick = this.run.ticks - 1;
     if (tick < 0) {

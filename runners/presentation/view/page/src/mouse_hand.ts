@@ -61,6 +61,9 @@ export class MouseHand {
     this.active = active;
     if (begins) this.tell();
   }
+  get isActive(): boolean {
+    return this.active;
+  }
   // Returns the size of the present step, and the keys for other steps.
   get stepText(): string {
     const text = (step: Step) => `${steps[step].mm} mm, ${steps[step].degrees}°`;
