@@ -245,6 +245,9 @@ constexpr Row kMeasures[] = {
      command_packet_rate_per_s},
     {"force_packet_rate", "1/s", "mean number of forces sent in a second", slave, neither,
      force_packet_rate_per_s},
+    {"max_device_force", "N", "maximum force of the device on the hand", slave, neither, max_device_force_N},
+    {"frame_packet_rate", "1/s", "mean number of frames that arrived in a second", slave, neither,
+     frame_packet_rate_per_s},
 
     {"guidance_fraction", "1", "fraction of ticks with active guidance to a visible target", guidance,
      neither, guidance_fraction},

@@ -45,6 +45,12 @@ double first_slave_contact_time_s(const Trace& trace) {
   return time_of(trace, first_tick(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; }));
 }
 
+double max_device_force_N(const Trace& trace) {
+  double largest = kNoValue;
+  for (const Vec3& force : trace.device_force_N) largest = std::fmax(largest, force.norm());
+  return largest;
+}
+
 double slave_anticipation_s(const Trace& trace) {
   const auto is_felt = [&](std::size_t i) { return !trace.device_force_N[i].isZero(0); };
   return first_slave_contact_time_s(trace) - time_of(trace, first_tick(trace, is_felt));
@@ -52,6 +58,10 @@ double slave_anticipation_s(const Trace& trace) {
 
 double command_packet_rate_per_s(const Trace& trace) {
   return rate_per_s(trace, trace.command_packets);
+}
+
+double frame_packet_rate_per_s(const Trace& trace) {
+  return rate_per_s(trace, trace.frame_packets);
 }
 
 double force_packet_rate_per_s(const Trace& trace) {

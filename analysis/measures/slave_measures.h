@@ -16,6 +16,8 @@ double min_slave_clearance_m(const Trace& trace);
 // limited bandwidth and contact together. Ticks without a command that is finite do not count; NaN if there
 // are no others.
 double rms_slave_lag_m(const Trace& trace);
+// Maximum magnitude of the force of the device on the hand, N.
+double max_device_force_N(const Trace& trace);
 // Time of the first tick with a force on the slave, s; NaN if there is none.
 double first_slave_contact_time_s(const Trace& trace);
 // Time of first contact of the slave less that of the first tick in which the device exerts a force on the
@@ -24,5 +26,6 @@ double slave_anticipation_s(const Trace& trace);
 // Packets per second of the run. NaN for a run of one tick.
 double command_packet_rate_per_s(const Trace& trace);
 double force_packet_rate_per_s(const Trace& trace);
+double frame_packet_rate_per_s(const Trace& trace);
 
 }  // namespace remote_touch

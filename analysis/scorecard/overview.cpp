@@ -133,10 +133,17 @@ Table overview_table(const Scorecard& card) {
   return table;
 }
 
+std::string own_method(const std::vector<std::string>& methods) {
+  const char* const of_teleoperation = "slave-region";
+  const bool has_it = std::find(methods.begin(), methods.end(), of_teleoperation) != methods.end();
+  return has_it ? of_teleoperation : "tracked-sheet";
+}
+
 Table behind_table(const Scorecard& card) {
   using Row = Weakness;
-  const std::vector<Row> rows = weaknesses(card, kOwnMethod);
-  Table table{"behind", std::string("where ") + kOwnMethod + " is behind another method"};
+  const std::string own = own_method(card.methods);
+  const std::vector<Row> rows = weaknesses(card, own);
+  Table table{"behind", "where " + own + " is behind another method"};
   const auto add = [&](const char* name, const char* meaning, auto value) {
     add_column(table, rows, name, meaning, value);
   };

@@ -25,8 +25,9 @@ struct MethodSummary {
 };
 std::vector<MethodSummary> overview(const Scorecard& card);
 
-// The method of this project, whose weaknesses behind_table() lists.
-inline constexpr const char* kOwnMethod = "tracked-sheet";
+// Returns which of a card's methods is the one of this project, whose weaknesses behind_table() lists:
+// tracked-sheet, or slave-region on a card of teleoperation; tracked-sheet if the card has neither.
+std::string own_method(const std::vector<std::string>& methods);
 
 // Something in which a method is behind another one.
 struct Weakness {
@@ -44,7 +45,7 @@ struct Weakness {
 std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method);
 
 // Tables of a result: "overview", with a row for each method, and "behind", with a row for each weakness of
-// kOwnMethod.
+// own_method().
 Table overview_table(const Scorecard& card);
 Table behind_table(const Scorecard& card);
 

@@ -113,7 +113,7 @@ TRACE_COLUMN(hand_orientation, Eigen::Quaterniond, "hand_orientation", "1", roun
              t.hand->true_pose->orientation_W, "orientation of the hand, quaternion w x y z")
 
 TRACE_COLUMN(received_command_m, Vec3, "received_command", "m", slave, t.slave->command_W,
-             "command that the slave has received last, world frame")
+             "where the command that the slave has received last sends it, world frame")
 TRACE_COLUMN(slave_position_m, Vec3, "slave_position", "m", slave, t.slave->position_W,
              "centre of the slave's ball, world frame")
 TRACE_COLUMN(slave_force_N, Vec3, "slave_force", "N", slave, t.slave->force_N,
@@ -126,3 +126,5 @@ TRACE_COLUMN(command_packets, std::int32_t, "command_packets", "1", slave, t.sla
              "number of commands that were sent to the slave so far")
 TRACE_COLUMN(force_packets, std::int32_t, "force_packets", "1", slave, t.slave->force_packets,
              "number of forces that the slave has sent so far")
+TRACE_COLUMN(frame_packets, std::int32_t, "frame_packets", "1", slave, t.slave->frame_packets,
+             "number of frames that have arrived from the camera of the slave so far")

@@ -31,6 +31,7 @@ enum class NoiseUse : std::uint32_t {
   sensor_ray = 8,
   command_channel = 9,
   force_channel = 10,
+  registration = 11,
 };
 
 // The upper bound of the magnitude of every standard normal of this generator: sqrt(64 ln 2), rounded up.

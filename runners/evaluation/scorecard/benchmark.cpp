@@ -210,8 +210,12 @@ std::string held_meaning(double tolerance_m) {
 
 Method read_method(const std::string& name, const std::string& json) {
   const std::string label = "method " + name;
-  const Json object = read_object(json, label, {"title", "renderer"});
-  return {name, text_of(object, "title", label), object_of(object, "renderer", label)};
+  Json object =
+      read_object(json, label, {"title", "renderer", "feedback", "fixtures", "frame_link", "registration"});
+  Method method{name, text_of(object, "title", label), object_of(object, "renderer", label)};
+  for (const char* part : {"title", "renderer"}) object.erase(part);
+  if (!object.empty()) method.sections = object.dump();
+  return method;
 }
 
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
@@ -239,6 +243,17 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
 
 namespace {
 
+// Adds the sections of a method to the experiment of a scene. Throws InputError for one that the scene has,
+// too.
+void add_sections(const Json& sections, const std::string& scene, const std::string& method, Json& run) {
+  for (const auto& item : sections.items()) {
+    if (run.contains(item.key()))
+      throw InputError("method " + method + ": " + item.key(),
+                       "scene " + scene + " has its own: expected it in one of them");
+    run[item.key()] = item.value();
+  }
+}
+
 // Sets the scene's tool in a method's renderer. Throws InputError if the method states another tool, because
 // the card would then state a tool that was not run.
 void bring_tool(const Json& tool, const std::string& scene, const std::string& method, Json& renderer) {
@@ -261,6 +276,7 @@ Sweep sweep_of(const BenchmarkScene& scene, const Method& method, int replicates
   if (run.contains("seed"))
     throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);
+  if (!method.sections.empty()) add_sections(parse_json(method.sections, label), name, method.name, run);
   if (!scene.tool.empty()) bring_tool(parse_json(scene.tool, label), name, method.name, run["renderer"]);
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis. If the scene has its own noise, the axis is the seed with one value. There are
@@ -308,7 +324,12 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
               {"noise_sigma_m", scorecard_noise_m()},
               {"seed", kScorecardSeed},
               {"tuned_seeds", {1, kLastTunedSeed}}};
-  for (const Method& method : methods) all["methods"][method.name] = parse_json(method.renderer, method.name);
+  for (const Method& method : methods) {
+    Json& json = all["methods"][method.name];
+    json = parse_json(method.renderer, method.name);
+    if (!method.sections.empty())
+      json = Json{{"renderer", json}, {"sections", parse_json(method.sections, method.name)}};
+  }
   for (const BenchmarkScene& scene : scenes) {
     Json& json = all["scenes"][scene.name];
     json["experiment"] = parse_json(scene.experiment, scene.name);

@@ -1,5 +1,6 @@
 // The parts of a benchmark: methods, which are renderers with settings (data/methods), and scenes, which are
-// experiments without a renderer, with noise levels, measures and a rule of success (data/scenes).
+// experiments without a renderer, with noise levels, measures and a rule of success (data/scenes). A method
+// of teleoperation also has sections of the experiment: what the hand feels, and what keeps the slave away.
 #pragma once
 
 #include <string>
@@ -25,6 +26,7 @@ struct Method {
   std::string name, title;
   std::string renderer;   // JSON
   std::string file = {};  // the JSON file that it was read from; empty: data/methods or a renderer's defaults
+  std::string sections = {};  // JSON: sections of the experiment of a method of teleoperation; empty: none
 };
 
 struct BenchmarkScene {

@@ -47,11 +47,23 @@ bool judges_contact(const BenchmarkScene& scene) {
   return std::any_of(scene.success.begin(), scene.success.end(), is_of_contact);
 }
 
+const char* words_of(Compared kind) {
+  switch (kind) {
+    case Compared::hip:
+      return "for a HIP";
+    case Compared::tools:
+      return "for tools";
+    case Compared::teleoperation:
+      break;
+  }
+  return "of teleoperation";
+}
+
 // Throws InputError if a scene judges the contact of a renderer whose rest distance is not known. Its runs
 // would count as failures.
 void require_known_contact(const Benchmark& chosen) {
   for (const Method& method : chosen.methods) {
-    if (is_for_tools(method) || with_file_of(method, has_known_contact)) continue;
+    if (compared(method) != Compared::hip || with_file_of(method, has_known_contact)) continue;
     for (const BenchmarkScene& scene : chosen.scenes)
       if (judges_contact(scene))
         throw InputError("method " + method.name,
@@ -63,21 +75,26 @@ void require_known_contact(const Benchmark& chosen) {
 
 }  // namespace
 
-bool is_for_tools(const Method& method) {
-  return with_file_of(method, has_renderer_for_tools);
+Compared compared(const Method& method) {
+  if (!method.sections.empty()) return Compared::teleoperation;
+  return with_file_of(method, has_renderer_for_tools) ? Compared::tools : Compared::hip;
+}
+
+Compared compared(const BenchmarkScene& scene) {
+  if (!scene.tool.empty()) return Compared::tools;
+  return parse_json(scene.experiment, scene.name).contains("slave") ? Compared::teleoperation : Compared::hip;
 }
 
 Benchmark chosen_benchmark(const std::vector<std::string>& methods, const std::vector<std::string>& scenes,
                            int replicates, const std::string& folder) {
   Benchmark chosen{chosen_methods(methods), chosen_scenes(scenes), replicates, folder};
-  const bool tools = !methods.empty()  ? is_for_tools(chosen.methods.front())
-                     : !scenes.empty() ? is_for_tools(chosen.scenes.front())
-                                       : false;
-  const auto fits = [tools](const auto& each) { return is_for_tools(each) == tools; };
+  const Compared kind = !methods.empty()  ? compared(chosen.methods.front())
+                        : !scenes.empty() ? compared(chosen.scenes.front())
+                                          : Compared::hip;
+  const auto fits = [kind](const auto& each) { return compared(each) == kind; };
   if (methods.empty()) std::erase_if(chosen.methods, [&](const Method& method) { return !fits(method); });
   if (scenes.empty()) std::erase_if(chosen.scenes, [&](const BenchmarkScene& scene) { return !fits(scene); });
-  const char* const expected = tools ? "expected only those for tools, like the first"
-                                     : "expected only those for a HIP, like the first";
+  const std::string expected = std::string("expected only those ") + words_of(kind) + ", like the first";
   for (const Method& method : chosen.methods)
     if (!fits(method)) throw InputError("method " + method.name, expected);
   for (const BenchmarkScene& scene : chosen.scenes)

@@ -1,5 +1,7 @@
-// Chooses the methods and scenes that a scorecard compares: those of a HIP, or those of a tool. A scene for
-// tools names the tool. A method is for tools if its renderer has six degrees of freedom.
+// Chooses the methods and scenes that a scorecard compares: those of a HIP, those of a tool, or those of
+// teleoperation. A scene for tools names the tool; a scene of teleoperation has a slave. A method is for
+// tools if its renderer has six degrees of freedom, and for teleoperation if it has sections of the
+// experiment.
 #pragma once
 
 #include <string>
@@ -9,10 +11,9 @@
 
 namespace remote_touch {
 
-bool is_for_tools(const Method& method);
-inline bool is_for_tools(const BenchmarkScene& scene) {
-  return !scene.tool.empty();
-}
+enum class Compared { hip, tools, teleoperation };
+Compared compared(const Method& method);
+Compared compared(const BenchmarkScene& scene);
 
 // Returns the methods and scenes with these names or from these JSON files. No names of one kind: all of
 // data/ that fit the others; no names at all: all for a HIP. Throws InputError as chosen_methods() does, and

@@ -133,9 +133,10 @@ Json methods_json(const Scorecard& card) {
 
 // Returns the weaknesses of the project's own method; null if the card does not have that method.
 Json behind_json(const Scorecard& card) {
-  if (std::find(card.methods.begin(), card.methods.end(), kOwnMethod) == card.methods.end()) return {};
+  const std::string own = own_method(card.methods);
+  if (std::find(card.methods.begin(), card.methods.end(), own) == card.methods.end()) return {};
   Json list = Json::array();
-  for (const Weakness& one : weaknesses(card, kOwnMethod))
+  for (const Weakness& one : weaknesses(card, own))
     list.push_back({{"scene", one.scene},
                     {"what", one.what},
                     {"units", one.units},
@@ -145,7 +146,7 @@ Json behind_json(const Scorecard& card) {
                     {"other_mean", number_or_null(one.other_mean)},
                     {"p", number_or_null(one.p)},
                     {"significant", one.is_significant}});
-  return {{"method", kOwnMethod}, {"list", list}};
+  return {{"method", own}, {"list", list}};
 }
 
 Json thresholds_json(const Scorecard& card) {

@@ -62,7 +62,7 @@ std::string with_unit(double value, const std::string& units) {
   return digits(is_length ? 1e3 * value : value) + (units == "1" ? "" : is_length ? " mm" : " " + units);
 }
 
-std::string behind_text(const Table& behind, bool is_significant) {
+std::string behind_text(const Table& behind, const std::string& own, bool is_significant) {
   std::string rows;
   for (std::size_t i = 0; i < values_of<std::vector<std::string>>(behind, "scene").size(); ++i) {
     if ((values_of<std::vector<std::int32_t>>(behind, "significant")[i] != 0) != is_significant) continue;
@@ -74,8 +74,7 @@ std::string behind_text(const Table& behind, bool is_significant) {
             digits(number("p")) + " |\n";
   }
   if (rows.empty()) return "None.\n";
-  return std::string("| scene | what | ") + kOwnMethod +
-         " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
+  return "| scene | what | " + own + " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
 }
 
 // A threshold of perception, and the counts of each method as the text of two cells.
@@ -210,10 +209,10 @@ std::string stored_summary(const std::filesystem::path& file) {
     const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
     std::vector<ThresholdColumns> thresholds;  // cards that earlier versions stored have none
     if (hdf5.has("/tables/thresholds/measure")) thresholds = threshold_columns(table_in(hdf5, "thresholds"));
-    return std::string("Where ") + kOwnMethod + " is not the best, by more than chance:\n\n" +
-           behind_text(behind, true) +
+    const std::string own = own_method(values_of<std::vector<std::string>>(overview, "method"));
+    return "Where " + own + " is not the best, by more than chance:\n\n" + behind_text(behind, own, true) +
            "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
-           behind_text(behind, false) + "\nAll methods, means over " +
+           behind_text(behind, own, false) + "\nAll methods, means over " +
            std::to_string(values_of<std::vector<std::int32_t>>(overview, "scenes").at(0)) + " scenes:\n\n" +
            overview_text(overview, thresholds) + sources_text(thresholds);
   } catch (const std::out_of_range& missing) {

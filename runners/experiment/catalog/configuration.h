@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/dissertation/guidance/guided_renderer.h"
+#include "core/teleoperation/frame_dead_band.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/catalog/renderer_changes.h"
@@ -55,7 +56,9 @@ struct ExperimentConfiguration {
   std::optional<DeviceSettings> device;
   std::optional<SlaveSettings> slave;
   std::optional<LinkSettings> command_link, force_link;
+  std::optional<FrameDeadBandSettings> frame_link;
   std::optional<FeedbackSettings> feedback;
+  std::optional<RegistrationError> registration;
   std::optional<LiveSettings> live;
   std::optional<SafetyLimits> safety;
 

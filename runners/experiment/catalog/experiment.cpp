@@ -162,8 +162,8 @@ std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario& sce
       [&scenario](const Vec3& p_W, double time_s) { return scenario.signed_distance(p_W, time_s); },
       [&scenario](const Vec3& p_W, double time_s) { return scenario.true_normal(p_W, time_s); }};
   const double hand_mass_kg = c.operator_settings ? c.operator_settings->mass_kg : 0;
-  return Teleoperation({*c.slave, *c.command_link, *c.force_link, *c.feedback, hand_mass_kg}, c.run.key,
-                       1 / c.run.haptic_rate_hz, scene);
+  return Teleoperation({*c.slave, *c.command_link, *c.force_link, *c.feedback, *c.registration, hand_mass_kg},
+                       c.run.key, 1 / c.run.haptic_rate_hz, scene);
 }
 
 std::vector<LiveParameter> Experiment::live_parameters() const {

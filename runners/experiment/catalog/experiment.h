@@ -78,6 +78,10 @@ class Experiment {
   // Builds the slave and its links, in the true surface of the scenario, which must outlive it. Returns
   // nothing without a slave.
   std::optional<Teleoperation> build_teleoperation(const Scenario& scenario) const;
+  // Returns the settings that pass every frame on if there is no slave.
+  FrameDeadBandSettings frame_dead_band() const {
+    return configuration_.frame_link.value_or(FrameDeadBandSettings{});
+  }
   // Returns the phases in the sections of the experiment itself: changes of the renderer, schedules of
   // fixtures, and steps of the sequence that wait for a time.
   std::vector<Phase> phases() const { return setting_phases(configuration_); }

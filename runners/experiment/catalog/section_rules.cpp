@@ -134,7 +134,9 @@ void check_slave(ExperimentConfiguration& configuration) {
   if (!configuration.slave) {
     const std::pair<const char*, bool> needing[] = {{"command_link", configuration.command_link.has_value()},
                                                     {"force_link", configuration.force_link.has_value()},
-                                                    {"feedback", configuration.feedback.has_value()}};
+                                                    {"frame_link", configuration.frame_link.has_value()},
+                                                    {"feedback", configuration.feedback.has_value()},
+                                                    {"registration", configuration.registration.has_value()}};
     for (const auto& [name, is_given] : needing)
       if (is_given) throw InputError(name, "expected only in an experiment with the section slave");
     return;
@@ -144,7 +146,9 @@ void check_slave(ExperimentConfiguration& configuration) {
       throw InputError("slave", "expected a renderer without a tool, because the slave is a ball");
   if (!configuration.command_link) configuration.command_link.emplace();
   if (!configuration.force_link) configuration.force_link.emplace();
+  if (!configuration.frame_link) configuration.frame_link.emplace();
   if (!configuration.feedback) configuration.feedback.emplace();
+  if (!configuration.registration) configuration.registration.emplace();
 }
 
 void check_device(ExperimentConfiguration& configuration) {

@@ -18,6 +18,10 @@ struct Priority {
   When when;
 };
 constexpr Priority kPriorities[] = {
+    // Did the slave touch, how hard, and what did the hand feel of it?
+    {"max_slave_force", When::always},
+    {"min_slave_clearance", When::always},
+    {"max_device_force", When::always},
     // A region is violated if the slave comes too near to the surface behind it.
     {"min_slave_distance", When::fixtures},
     // Guidance has to lead the hand to its goal.

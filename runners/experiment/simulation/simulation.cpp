@@ -13,6 +13,7 @@
 #include "runners/experiment/simulation/fixture_notes.h"
 #include "runners/experiment/simulation/slave_notes.h"
 #include "runners/experiment/simulation/surface_watch.h"
+#include "runners/experiment/teleoperation/frame_link.h"
 
 namespace remote_touch {
 
@@ -146,6 +147,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   FrameStream frames(*scenario, std::move(processing), experiment.settings().transport,
                      experiment.settings().key, options.hash_frames, options.generate_all_points);
   ObservedFrames observed(*renderer, options);
+  FrameLink link(experiment.frame_dead_band(), observed, kernels);
   RendererChanges changes(experiment.changes(), *renderer);
   SimulatedHand hand = experiment.build_hand();
   std::optional<Teleoperation> remote = experiment.build_teleoperation(*scenario);
@@ -166,21 +168,26 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     if (trajectory->is_missed(time_s)) continue;
     changes.make_until(time_s);
-    frames.deliver_until(time_s, observed);
+    frames.deliver_until(time_s, link);
     const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();
     RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
     if (remote) out.slave_W = remote->command(device, out);  // the position that is sent
     hand.apply(remote ? remote->tick(device, out, time_s) : rendered_wrench(out));
+    std::optional<SlaveState> slave;
+    if (remote) {
+      slave = remote->state();
+      slave->frame_packets = link.sent();
+      link.observe_slave(slave->position_W, time_s);
+    }
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
     if (finds_contact)
       known.contact =
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     if (hand.follows_script()) known.expected_force_N = trajectory->expected_force_N(time_s);
-    trace.append(time_s, device, out, known, hand.state(),
-                 remote ? std::optional(remote->state()) : std::nullopt);
+    trace.append(time_s, device, out, known, hand.state(), slave);
     if (options.report) {
       surface.add(device.position_W, time_s);
       if (!out.tool)

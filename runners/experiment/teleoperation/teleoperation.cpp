@@ -37,6 +37,7 @@ void Teleoperation::Link::receive(double time_s) {
 Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
                              SlaveScene scene)
     : s_(settings),
+      X_registration_(registration_of(settings.registration, key)),
       slave_(settings.slave, tick_s, std::move(scene)),
       commands_(settings.commands, key, NoiseUse::command_channel),
       forces_(settings.forces, key, NoiseUse::force_channel),
@@ -45,8 +46,8 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
       state_(unknown_state()) {}
 
 void Teleoperation::move_slave(double time_s) {
-  const Slave::State& slave = slave_.move(*command_W_, time_s);
-  state_.command_W = *command_W_;
+  state_.command_W = X_registration_ * *command_W_;
+  const Slave::State& slave = slave_.move(state_.command_W, time_s);
   state_.position_W = slave.position_W, state_.force_N = slave.force_N;
   state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
 }
@@ -55,15 +56,14 @@ void Teleoperation::exchange_command(const Vec3& command_W, double time_s) {
   commands_.send(command_W, hand_port_.energy().in_J, time_s);
   commands_.receive(time_s);
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
-    command_W_ =
-        is_passive() ? slave_port_.command(*received, slave_.state().force_N, commands_.far_in_J) : *received;
+    command_W_ = is_passive() ? slave_port_.command(*received, slave_force(), commands_.far_in_J) : *received;
 }
 
 // Returns the force on the hand for the coming tick.
 Vec3 Teleoperation::exchange_force(double time_s) {
   const bool feels_slave = s_.feedback.force == Feedback::slave_force || is_passive();
   if (!feels_slave) return Vec3::Zero();
-  forces_.send(slave_.state().force_N, slave_port_.energy().in_J, time_s);
+  forces_.send(slave_force(), slave_port_.energy().in_J, time_s);
   forces_.receive(time_s);
   return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
 }
@@ -88,7 +88,7 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   move_slave(time_s);
   const Vec3 displacement_m = hand_W_ ? Vec3(device.position_W - *hand_W_) : Vec3(Vec3::Zero());
   if (is_passive() && !is_first) {
-    slave_port_.observe(slave_.state().force_N);
+    slave_port_.observe(slave_force());
     hand_port_.observe(displacement_m);
   }
   hand_W_ = device.position_W;

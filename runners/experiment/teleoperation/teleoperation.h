@@ -12,7 +12,8 @@ namespace remote_touch {
 
 class Teleoperation {
  public:
-  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels.
+  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels and of the
+  // registration.
   Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s, SlaveScene scene);
 
   // Returns the position that is sent to the slave: the command of the renderer with rendered feedback, else
@@ -50,6 +51,8 @@ class Teleoperation {
     double far_in_J = 0;
   };
 
+  // The force of the scene on the slave in the last tick, in the axes in which the hand works.
+  Vec3 slave_force() const { return X_registration_.linear().transpose() * slave_.state().force_N; }
   bool is_passive() const { return s_.feedback.force == Feedback::passive_slave_force; }
   void move_slave(double time_s);
   void exchange_command(const Vec3& command_W, double time_s);
@@ -57,6 +60,7 @@ class Teleoperation {
   Vec3 passive_force(const Vec3& force_N, const Vec3& displacement_m);
 
   const TeleoperationSettings s_;
+  const RigidTransform X_registration_;  // from a position that is sent to where the slave goes
   Slave slave_;
   Link commands_, forces_;
   ImpedancePassivityController hand_port_;

@@ -7,6 +7,7 @@
 #include "core/teleoperation/channel.h"
 #include "core/teleoperation/dead_band.h"
 #include "core/teleoperation/passivity_control.h"
+#include "core/teleoperation/registration_error.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {
@@ -43,6 +44,7 @@ struct TeleoperationSettings {
   SlaveSettings slave;
   LinkSettings commands, forces;
   FeedbackSettings feedback;
+  RegistrationError registration;
   // Mass of hand and device, which passivity control uses to predict the motion of the hand; 0: not known.
   double hand_mass_kg = 0;
 };

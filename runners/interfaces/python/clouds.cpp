@@ -165,16 +165,16 @@ py::array_t<double> uniforms_of(const NoiseKey& key, int use, std::uint32_t fram
 }
 
 // The names of the uses, in the order of NoiseUse.
-constexpr const char* kUses[] = {"point_position", "depth",           "transport",    "motion",
-                                 "colour",         "dropout",         "sensor_point", "sensor_frame",
-                                 "sensor_ray",     "command_channel", "force_channel"};
+constexpr const char* kUses[] = {"point_position", "depth",           "transport",     "motion",
+                                 "colour",         "dropout",         "sensor_point",  "sensor_frame",
+                                 "sensor_ray",     "command_channel", "force_channel", "registration"};
 
 int use_of(const py::object& given) {
   const auto refuse = [&]() -> int {
     std::string known;
     for (const char* name : kUses) known += std::string(name) + ", ";
     throw InputError("use = " + std::string(py::str(given)),
-                     "expected " + known + "or a number from 11 to 15");
+                     "expected " + known + "or a number from 12 to 15");
   };
   if (py::isinstance<py::str>(given)) {
     const auto* const found = std::find(std::begin(kUses), std::end(kUses), given.cast<std::string>());

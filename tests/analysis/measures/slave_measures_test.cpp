@@ -32,6 +32,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
     slave.position_W = Vec3(1, 2 + tick.lag_m, 3);
     slave.peak_force_N = tick.peak_N, slave.clearance_m = tick.clearance_m;
     slave.command_packets = 1 + number, slave.force_packets = 1 + number / 2;
+    slave.frame_packets = 1 + number / 4;
     trace.append(0.001 * number, {}, out, {}, hand, slave);
   }
   return trace;
@@ -50,6 +51,8 @@ TEST(SlaveMeasures, AreThoseOfTheSlave) {
   EXPECT_NEAR(slave_anticipation_s(trace), 0.002, 1e-15);
   EXPECT_NEAR(command_packet_rate_per_s(trace), 1000, 1e-9);
   EXPECT_NEAR(force_packet_rate_per_s(trace), 500, 1e-9);
+  EXPECT_EQ(max_device_force_N(trace), 3);
+  EXPECT_NEAR(frame_packet_rate_per_s(trace), 250, 1e-9);
 }
 
 TEST(SlaveMeasures, HaveNoValueForWhatDidNotHappen) {
@@ -81,7 +84,7 @@ TEST(SlaveMeasures, BelongToRunsWithASlave) {
     EXPECT_TRUE(std::isnan(value_of(measure, without))) << measure.name;
     ++measures;
   }
-  EXPECT_EQ(measures, 8);
+  EXPECT_EQ(measures, 10);
   EXPECT_EQ(value_of(measure_named("max_slave_force"), with), 7);
 }
 

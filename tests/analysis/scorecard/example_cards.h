@@ -28,6 +28,8 @@ inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
   return result;
 }
 
+inline constexpr const char* kOwnMethod = "tracked-sheet";
+
 // Scorecard of the methods kOwnMethod, proxy and penalty; the sweeps of each scene are in this order.
 inline Scorecard card_of(const std::vector<std::vector<SweepResult>>& scenes,
                          const std::vector<std::pair<std::string, Better>>& measures = {

@@ -147,7 +147,7 @@ TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
   for (const double i : {1.0, 2.0}) {
     HandState hand;
     hand.true_pose = HandState::Pose{{i, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
-    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13};
+    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13, 14};
     trace.append(i, {}, {}, {}, hand, slave);
   }
   const std::vector<Column> columns = trace.columns();
@@ -155,6 +155,7 @@ TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
   EXPECT_EQ(values<double>(trace, "slave_position"), (std::vector<double>{7, 8, 1, 7, 8, 2}));
   EXPECT_EQ(values<double>(trace, "slave_peak_force"), (std::vector<double>{11, 12}));
   EXPECT_EQ(values<std::int32_t>(trace, "force_packets"), (std::vector<std::int32_t>{13, 13}));
+  EXPECT_EQ(values<std::int32_t>(trace, "frame_packets"), (std::vector<std::int32_t>{14, 14}));
   const std::optional<Trace> restored = again(columns);
   ASSERT_TRUE(restored);
   EXPECT_TRUE(restored->has_slave());

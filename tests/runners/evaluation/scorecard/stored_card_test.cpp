@@ -93,7 +93,7 @@ TEST_F(StoredCards, DifferWhereSomethingIsDefinedAnew) {
 // One of three runs of the own method is behind the proxy's, which is too few to show it.
 TEST_F(StoredCards, SayFirstWhereTheOwnMethodIsNotTheBest) {
   Scorecard card = card_;
-  card.methods[1] = kOwnMethod;
+  card.methods[1] = own_method(card.methods);
   write_stored_card(file_, card, config_of(plan_));
   const std::string text = stored_summary(file_);
   EXPECT_EQ(text.find("Where tracked-sheet is not the best, by more than chance:\n"), 0u) << text;

@@ -22,7 +22,7 @@ constexpr const char* kAll = R"({"scenario": {"name": "camera-scene"}, "faults":
     "fixtures": [{"name": "everywhere", "role": "guidance", "label": "all", "radius_m": 0.01}], "guidance": {},
     "sequence": [{"action": "activate", "fixture": "all"}], "renderer": {"name": "proxy"},
     "changes": [{"time_s": 1, "parameter": "renderer.r3_m", "value": 0.02}],
-    "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "slave": {}, "command_link": {}, "force_link": {}, "feedback": {},
+    "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "slave": {}, "command_link": {}, "force_link": {}, "frame_link": {}, "feedback": {}, "registration": {},
     "live": {}, "safety": {}})";
 
 std::string why(const std::string& assignment) {
@@ -113,7 +113,8 @@ TEST(Sections, LeftOutAndNullAreTheSame) {
         json.erase(section.key);
       if (section.key == std::string("fixtures")) json.erase("guidance");  // guidance needs a fixture
       if (section.key == std::string("slave"))
-        for (const char* needing : {"command_link", "force_link", "feedback"}) json.erase(needing);
+        for (const char* needing : {"command_link", "force_link", "frame_link", "feedback", "registration"})
+          json.erase(needing);
       return Experiment::from_json(json).to_json();
     };
     SCOPED_TRACE(section.key);

@@ -36,6 +36,13 @@ TEST(MainMeasures, ProxyRunsReportTheTrueSurfaceFirst) {
                                                       "force_fraction", "unconverged_fraction"}));
 }
 
+TEST(MainMeasures, OfASlaveBeginWithItsContact) {
+  const Trace trace = run("steer-robot", {});
+  EXPECT_EQ(main_names(trace, Fixtures::some),
+            (Names{"max_slave_force", "min_slave_clearance", "max_device_force", "min_slave_distance",
+                   "max_force"}));
+}
+
 TEST(MainMeasures, HaveOthersIfTheTruthIsUnknown) {
   Trace trace = run("fig4.12", {});
   for (double& distance_m : trace.signed_distance_m) distance_m = std::nan("");

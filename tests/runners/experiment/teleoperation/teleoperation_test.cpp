@@ -75,6 +75,22 @@ TEST(Teleoperation, WithoutFeedbackSendsTheHip) {
   EXPECT_EQ(ticks.back().slave.command_W.y(), -0.01);
 }
 
+// The slave goes where the wrong registration sends it; what the hand feels is turned back.
+TEST(Teleoperation, TheRegistrationMovesTheSlaveAndTurnsItsForce) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  s.registration = {0.003, 10};
+  const RigidTransform X = registration_of(s.registration, {});
+  const std::vector<Tick> ticks = descent(s);
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const Vec3 sent(0, std::max(-0.01, 0.02 - 0.05 * static_cast<double>(i - 1) * kTick_s), 0);
+    EXPECT_NEAR((ticks[i].slave.command_W - X * sent).norm(), 0, 1e-15) << i;
+    EXPECT_NEAR((ticks[i].felt.force_N - X.linear().transpose() * ticks[i].slave.force_N).norm(), 0, 1e-12)
+        << i;
+  }
+  EXPECT_GT(ticks.back().felt.force_N.norm(), 1);
+  EXPECT_NEAR(ticks.back().slave.force_N.normalized().y(), 1, 1e-12);  // the ground is where it was
+}
+
 // The command takes the delay and one tick, in which the slave moves to it. The force takes the delay.
 TEST(Teleoperation, TheForceOfTheSlaveComesBackAfterTheDelays) {
   for (const int delay : {0, 30}) {

@@ -1,0 +1,64 @@
+// The error of the registration of a slave: its size, its directions, and that it belongs to the key.
+#include "core/teleoperation/registration_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/geometry/rotation.h"
+
+namespace remote_touch::registration_error_test {
+namespace {
+
+constexpr int kDraws = 2000;
+
+NoiseKey key(int replicate) {
+  return {7, 0, static_cast<std::uint64_t>(replicate)};
+}
+
+TEST(RegistrationError, NoErrorIsTheIdentity) {
+  const Vec3 p(0.1, -0.2, 0.3);
+  EXPECT_EQ(registration_of({}, key(3)) * p, p);
+}
+
+TEST(RegistrationError, HasTheSizeThatIsAskedFor) {
+  for (int i = 0; i < 20; ++i) {
+    const RigidTransform X = registration_of({0.004, 2}, key(i));
+    EXPECT_NEAR(X.translation().norm(), 0.004, 1e-15);
+    const Eigen::Quaterniond turn(X.linear());
+    EXPECT_NEAR(rotation_vector(turn).norm(), 2 * kRadiansPerDegree, 1e-12);
+  }
+}
+
+// The mean of n unit vectors that are uniform on the sphere has the length 1 / sqrt(n), and the mean of their
+// products is a third of the identity. A direction of every run would not be random.
+TEST(RegistrationError, DirectionsAreUniformAndIndependent) {
+  Vec3 offsets = Vec3::Zero(), axes = Vec3::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  double products = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const RigidTransform X = registration_of({1, 10}, key(i));
+    const Vec3 axis = rotation_vector(Eigen::Quaterniond(X.linear())).normalized();
+    offsets += X.translation(), axes += axis, products += axis.dot(X.translation());
+    spread += X.translation() * X.translation().transpose();
+  }
+  const double allowed = 4 / std::sqrt(kDraws);
+  EXPECT_LT(offsets.norm() / kDraws, allowed);
+  EXPECT_LT(axes.norm() / kDraws, allowed);
+  EXPECT_LT(std::abs(products) / kDraws, allowed);
+  EXPECT_LT((spread / kDraws - Eigen::Matrix3d::Identity() / 3).norm(), allowed);
+}
+
+TEST(RegistrationError, BelongsToTheKey) {
+  const RegistrationError error{0.01, 5};
+  EXPECT_TRUE(registration_of(error, key(1)).isApprox(registration_of(error, key(1)), 0));
+  EXPECT_FALSE(registration_of(error, key(1)).isApprox(registration_of(error, key(2)), 0.001));
+  // A larger error has the same direction.
+  EXPECT_LT(
+      (registration_of({0.02, 5}, key(1)).translation() - 2 * registration_of(error, key(1)).translation())
+          .norm(),
+      1e-15);
+}
+
+}  // namespace
+}  // namespace remote_touch::registration_error_test
