@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "analysis/measures/passivity_measures.h"
+#include "analysis/measures/slave_measures.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
 namespace {
+
+// A hand of 0.5 kg has this energy at 4.5 m/s. Rendered surfaces give a hand at most 1.6 J in the scenes of
+// the scorecard.
+constexpr double kMuchEnergy_J = 5;
 
 // Returns true if every command that the slave had is the first one that it was meant to have, and later ones
 // were meant for it. Ticks before the first command have NaN.
@@ -34,6 +41,15 @@ std::vector<Note> slave_notes(const Trace& trace) {
     notes.push_back(
         {"slave without command",
          "the slave received no command after its first: all were lost, late or in the dead-band"});
+  if (const double given_J = max_energy_injected_J(trace); given_J > kMuchEnergy_J) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "the device gave the hand up to %.3g J, with a force of up to %.3g N: the loop of hand, links and "
+        "slave oscillates",
+        given_J, max_device_force_N(trace));
+    notes.push_back({"slave loop gains energy", text});
+  }
   return notes;
 }
 

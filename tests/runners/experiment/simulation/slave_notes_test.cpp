@@ -1,4 +1,4 @@
-// Notes on a slave that could not touch or got no command.
+// Notes on a slave that could not touch, got no command, or is part of an unstable loop.
 #include "runners/experiment/simulation/slave_notes.h"
 
 #include <gtest/gtest.h>
@@ -32,6 +32,13 @@ TEST(SlaveNotes, SayThatNoCommandArrived) {
             Kinds{"slave without command"});
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=1", "command_link.delay_s=2"}),
             Kinds{"slave without command"});
+}
+
+// Position-force with the whole force and a delay is unstable against a stiff scene.
+TEST(SlaveNotes, SayThatTheLoopIsUnstable) {
+  EXPECT_EQ(notes_of("steer-robot", {"duration_s=3", "feedback.force=slave-force"}),
+            Kinds{"slave loop gains energy"});
+  EXPECT_EQ(notes_of("steer-robot", {"duration_s=3", "feedback.force=none"}), Kinds{});
 }
 
 TEST(SlaveNotes, SayThatThereIsNoSurfaceToTouch) {
