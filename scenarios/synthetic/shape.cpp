@@ -182,7 +182,8 @@ double Shape::distance_to_corner(const Vec3& p_S) const {
 
 // The wave repeats every height in each period, so that its nearest point is at most a period away along x.
 // That point is an end, or a point at which the normal of the wave passes through p: there the slope of the
-// distance changes its sign. Every such change between samples is refined.
+// distance changes its sign. Every such change between samples is refined. Only samples that are no farther
+// from p along x than the wave above or below p can be next to the nearest point.
 double Shape::distance_to_wave(const Vec3& p_S) const {
   constexpr int kSamples = 64;
   const double x = std::clamp(p_S.x(), x0_, x1_);
@@ -193,10 +194,15 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
   };
   double squared = std::min(squared_at(from), squared_at(to));
   const double squared_to_ends = squared;
-  double before = from;
+  const auto sample = [&](int i) { return from + (to - from) * i / kSamples; };
+  const double reach = std::sqrt(squared_at(x)), samples_per_m = kSamples / (to - from);
+  const auto clamped = [](double i) { return static_cast<int>(std::clamp<double>(i, 0, kSamples)); };
+  const int first = clamped(std::floor((p_S.x() - reach - from) * samples_per_m) - 1);
+  const int last = clamped(std::ceil((p_S.x() + reach - from) * samples_per_m) + 1);
+  double before = first == 0 ? from : sample(first);
   bool falls = distance_along_wave(p_S, before).value <= 0;
-  for (int i = 1; i <= kSamples; ++i) {
-    const double next = from + (to - from) * i / kSamples;
+  for (int i = first + 1; i <= last; ++i) {
+    const double next = sample(i);
     const bool rises = distance_along_wave(p_S, next).value > 0;
     if (falls && rises) squared = std::min(squared, squared_at(foot_on_wave(p_S, before, next)));
     before = next, falls = !rises;
