@@ -43,16 +43,29 @@ Parameters parameters(SlaveSettings& s) {
 
 std::string validate(const SlaveSettings& s) {
   // The rule is stable for w T < 2 without damping; half of that leaves room for the dampers.
-  const double step_s = kMaxTick_s / s.steps_per_tick;
   const double w = angular_frequency(s);
   const double stiffness = w * w + s.contact_stiffness_N_per_m / s.mass_kg;
   const double damping = 2 * s.damping_ratio * w + s.contact_damping_Ns_per_m / s.mass_kg;
-  if (stiffness * step_s * step_s + damping * step_s <= 1) return {};
-  return "steps_per_tick = " + std::to_string(s.steps_per_tick) + ": expected more, or a larger mass_kg";
+  const double largest_step_s = 2 / (damping + std::sqrt(damping * damping + 4 * stiffness));
+  const double least = std::ceil(kMaxTick_s / largest_step_s);
+  if (s.steps_per_tick >= least) return {};
+  return "steps_per_tick = " + std::to_string(s.steps_per_tick) + ": expected " +
+         std::to_string(static_cast<int>(least)) + " or more, for these frequencies and dampers";
 }
 
 Slave::Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene)
     : s_(settings), tick_s_(tick_s), scene_(std::move(scene)) {}
+
+// Twice the distance that the ball can move in a tick, and 10 mm for the scene, which does not reach it
+// either unless it is faster than 10 m/s.
+bool Slave::is_far(const Vec3& reference_velocity) const {
+  constexpr double kSceneMotion_m = 0.01;
+  const double w = angular_frequency(s_);
+  const double drive = w * w * (reference_W_ - state_.position_W).norm() +
+                       2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W).norm();
+  const double motion_m = tick_s_ * (state_.velocity_W.norm() + reference_velocity.norm() + tick_s_ * drive);
+  return state_.clearance_m > kSceneMotion_m + 2 * motion_m;
+}
 
 Vec3 Slave::contact_force(double before_s, double now_s) {
   const double depth_before = depth_m_;
@@ -61,17 +74,17 @@ Vec3 Slave::contact_force(double before_s, double now_s) {
   // A ball that the scene reaches from an unknown distance has no known speed of approach.
   const double speed = std::isnan(depth_before) ? 0 : (depth_m_ - depth_before) / (now_s - before_s);
   const double force = s_.contact_stiffness_N_per_m * depth_m_ + s_.contact_damping_Ns_per_m * speed;
-  const Vec3 normal = scene_.normal(state_.position_W, now_s);
-  if (!(force > 0) || !normal.allFinite()) return Vec3::Zero();
-  return force * normal;
+  if (!(force > 0)) return Vec3::Zero();
+  if (!normal_W_) normal_W_ = scene_.normal(state_.position_W, now_s);
+  return normal_W_->allFinite() ? Vec3(force * *normal_W_) : Vec3(Vec3::Zero());
 }
 
-void Slave::step(const Vec3& reference_velocity, double before_s, double now_s) {
+void Slave::step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s) {
   const double w = angular_frequency(s_), step_s = tick_s_ / s_.steps_per_tick;
   const Vec3 drive = cut(w * w * (reference_W_ - state_.position_W) +
                              2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W),
                          s_.max_acceleration_m_per_s2);
-  const Vec3 force = contact_force(before_s, now_s);
+  const Vec3 force = can_touch ? contact_force(before_s, now_s) : Vec3(Vec3::Zero());
   state_.velocity_W += step_s * (drive + force / s_.mass_kg);
   state_.position_W += step_s * state_.velocity_W;
   reference_W_ += step_s * reference_velocity;
@@ -88,8 +101,11 @@ const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
     const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
     state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
     const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
+    const bool can_touch = !is_far(reference_velocity);
+    if (!can_touch) depth_m_ = -state_.clearance_m;
+    normal_W_.reset();
     for (int i = 0; i < s_.steps_per_tick; ++i)
-      step(reference_velocity, begin_s + (i - 1) * step_s, begin_s + i * step_s);
+      step(reference_velocity, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
   }
   state_.clearance_m = scene_.signed_distance(state_.position_W, time_s) - s_.radius_m;
   return state_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/geometry/vector.h"
@@ -38,8 +39,9 @@ struct SlaveScene {
 // drive, which is the first two terms divided by m, is limited to max_acceleration_m_per_s2 in magnitude.
 //
 // f = max(0, K d + B d') n, with d = radius_m - signed distance of the centre, where d > 0; n is the normal
-// of the true surface. d' includes the motion of the surface. There is no friction, and no contact where the
-// distance is not known.
+// of the true surface where the ball touches first in a tick. d' includes the motion of the surface. There is
+// no friction, and no contact where the distance is not known. A surface that approaches with more than 10
+// m/s may be noticed a tick later.
 //
 // The motion is integrated in steps of a tick / steps_per_tick by the semi-implicit rule. Its error is of
 // the order of w T and sqrt(K / m) T, where T is the duration of a step.
@@ -62,14 +64,16 @@ class Slave {
 
  private:
   Vec3 contact_force(double before_s, double now_s);
-  void step(const Vec3& reference_velocity, double before_s, double now_s);
+  bool is_far(const Vec3& reference_velocity) const;
+  void step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s);
 
   const SlaveSettings s_;
   const double tick_s_;
   const SlaveScene scene_;
   State state_;
   Vec3 reference_W_ = Vec3::Zero();
-  double depth_m_ = 0;  // d after the last step; NaN: not known
+  double depth_m_ = 0;            // d after the last step; NaN: not known
+  std::optional<Vec3> normal_W_;  // of the surface, in this tick
   bool is_placed_ = false;
 };
 

@@ -153,9 +153,30 @@ TEST(Slave, NeedsMoreStepsForAStifferContact) {
   SlaveSettings s;
   EXPECT_EQ(validate(s), "");
   s.contact_stiffness_N_per_m = 1e6, s.mass_kg = 0.1;
-  EXPECT_NE(validate(s).find("steps_per_tick = 10"), std::string::npos);
-  s.steps_per_tick = 1000;
+  const std::string refusal = validate(s);
+  EXPECT_EQ(refusal.find("steps_per_tick = 10: expected "), 0u) << refusal;
+  const int least = std::stoi(refusal.substr(refusal.find("expected ") + 9));
+  s.steps_per_tick = least - 1;
+  EXPECT_NE(validate(s), "");
+  s.steps_per_tick = least;
   EXPECT_EQ(validate(s), "");
+}
+
+// Far from the scene, the distance is asked at the end of each tick only. A surface that comes fast is
+// noticed.
+TEST(Slave, AsksForTheDistanceInEveryStepOnlyNearTheScene) {
+  int asked = 0;
+  const auto height_m = [](double t) { return t < 0.5 ? 0 : 5 * (t - 0.5); };
+  const SlaveScene ground = plane(height_m);
+  const SlaveScene counted{[&](const Vec3& p, double t) { return ++asked, ground.signed_distance(p, t); },
+                           ground.normal};
+  Slave slave({}, kTick_s, counted);
+  for (int tick = 0; tick <= 500; ++tick) slave.move({0, 0.1, 0}, tick * kTick_s);
+  EXPECT_EQ(asked, 502);  // the first call asks twice
+  int first_ms = 0;
+  for (int tick = 501; tick <= 530 && first_ms == 0; ++tick)
+    if (slave.move({0, 0.1, 0}, tick * kTick_s).peak_force_N > 0) first_ms = tick;
+  EXPECT_EQ(first_ms, 520);  // 95 mm at 5 m/s
 }
 
 }  // namespace
