@@ -1,0 +1,110 @@
+// A slave robot with a rigid tool in contact with the true scene. It follows a commanded pose.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/teleoperation/slave.h"
+#include "core/teleoperation/slave_tool.h"
+
+namespace remote_touch {
+
+// The centre of mass of the tool follows the commanded position as the ball of a Slave does, with the same
+// drive and limits. The orientation follows its command likewise, about every axis through the centre:
+//
+//   w_dot = w_0^2 e + 2 zeta w_0 (w_c - w) + tau / (m r^2),
+//
+// where e is the rotation vector from the orientation to the reference, w and w_c are the angular velocities
+// of tool and reference, and w_0 = 2 pi natural_frequency_hz, all in the world frame. The moment of inertia
+// is m r^2 about every axis, with the mass m of the slave and the radius of gyration r of its tool. The
+// limits of rotation are max_speed_m_per_s / r and max_acceleration_m_per_s2 / r.
+//
+// Contact: point i of the tool has the depth d_i, the distance behind the true surface, negative outside, the
+// normal n_i of the surface, and the weight a_i, its area divided by the mean area. The force is that of a
+// spring on one depth of the whole tool,
+//
+//   g = s ln(sum a_i exp(d_i / s)), F = max(0, K g + B g') where g > 0, f_i = F q_i n_i,
+//   q_i = a_i exp(d_i / s) / sum a_j exp(d_j / s), s = kRounding_m.
+//
+// - g is a smooth maximum of the depths. A single point has g = d: K is the stiffness of a point, of an edge
+//   and of a face alike, and that of the ball. A face of n points has g = d + s ln n, so it is felt by 0.2 mm
+//   at most before it touches.
+// - The shares q_i are those with which g depends on each d_i. So the spring has the potential K g^2 / 2 and
+//   creates no energy, and the damper takes B g'^2. Force and torque are continuous while the contact moves
+//   over the tool: the resultant of a face acts where the face is deepest, within F / K and s.
+// - Springs at all points instead would make a face as many times stiffer as it has points; if they shared K,
+//   the corner of a tool would be soft.
+// There is no friction, and no contact where distance or normal are not known.
+//
+// Steps: the scene is asked once per tick, not in each of the steps_per_tick. At the start of a tick, points
+// that may touch in it have distance and normal of the surface, and its speed is the change of their distance
+// over the tick. In the steps each point sees its plane, and rotations since the start are small. The error
+// of a depth is of the order of x^2 / (2 R), where x is the path of the point in a tick and R the radius of
+// curvature of surface or path: 0.1 um for 0.1 m/s and 50 mm. A point may touch if it is nearer than
+// 2 speed T + kSceneSpeed T, with the largest speed of a point of the tool and the duration T of a tick, so
+// a surface that approaches faster than kSceneSpeed may be felt one tick late.
+class ToolSlave {
+ public:
+  static constexpr double kRounding_m = 5e-5;
+  static constexpr double kSceneSpeed_m_per_s = 2;
+
+  struct Pose {
+    Vec3 position_W = Vec3::Zero();  // of the tool's centre of mass
+    Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  };
+  // The position is that of the centre of mass. clearance_m is the least distance of a point of the tool. It
+  // is exact below kExactClearance_m. Beyond, it is the distance of that point which leads against the normal
+  // at the centre, which is exact over a plane, or a lower bound if that normal is not known.
+  struct State : Slave::State {
+    Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+    Vec3 angular_velocity_W = Vec3::Zero();
+    Vec3 torque_Nm = Vec3::Zero();  // mean torque about the centre of mass in the last tick, world frame
+  };
+  static constexpr double kExactClearance_m = 0.01;
+
+  // pre: both validate() are empty, tick_s > 0.
+  ToolSlave(const SlaveSettings& settings, const SlaveTool& tool, double tick_s, SlaveScene scene);
+
+  // Moves the slave as Slave::move() does. pre: the command is finite, its orientation a unit quaternion.
+  const State& move(const Pose& command, double time_s);
+  const State& state() const { return state_; }
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;  // a linear part and an angular one, about the centre of mass
+  // A point that may touch in this tick. Its depth falls by `normal` times the displacement of the tool since
+  // the start of the tick, and by rate_m_per_s times the time: normal = (n, arm x n).
+  struct Touch {
+    Vector6 normal;
+    double weight, start_m;
+    double rate_m_per_s;  // of the surface, positive if it recedes
+    double depth_m;       // now
+    Vec3 arm_W;           // from the centre of mass, at the start of the tick
+  };
+  // Motion of the reference in this tick, and its distance from the tool at the start.
+  struct Drive {
+    Vector6 rate_per_s, error;
+  };
+  void find_touches(double time_s);
+  double clearance(double least_m, double time_s) const;
+  void ask_scene(double begin_s, double end_s);
+  Drive start_drive(const Pose& command);
+  Vector6 contact_wrench(const Vector6& moved, const Vector6& velocity, double since_s);
+  Vector6 drive(const Drive& drive, const Vector6& moved, const Vector6& velocity, double since_s) const;
+  void move_through_tick(const Drive& drive);
+
+  const SlaveSettings s_;
+  const SlaveTool tool_;
+  const SlaveToolTree tree_;
+  const double tick_s_, mean_area_m2_;
+  const SlaveScene scene_;
+  State state_;
+  Pose reference_;
+  std::vector<Touch> touches_;
+  double last_s_ = 0;
+  bool is_placed_ = false;
+};
+
+// Returns the reason why the steps are too long for the contact of this tool, else nothing.
+std::string validate(const SlaveSettings& s, const SlaveTool& tool, double tick_s);
+
+}  // namespace remote_touch
