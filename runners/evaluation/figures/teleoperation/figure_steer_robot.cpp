@@ -9,7 +9,7 @@
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/slave_measures.h"
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/extremes.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {

@@ -1,0 +1,10 @@
+// The figures of teleoperation: a device with limits, and a slave robot behind a channel.
+#pragma once
+
+#include "runners/evaluation/figures/context/figure_context.h"
+
+namespace remote_touch {
+
+MakeFigure figure_device_wall, figure_steer_robot;
+
+}  // namespace remote_touch
