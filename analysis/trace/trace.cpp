@@ -25,7 +25,8 @@ bool has(const TraceTick& tick, TracePart part) {
          (part == TracePart::replay && tick.truth.expected_force_N) ||
          (part == TracePart::measured_surface && tick.truth.measured_distance_m) ||
          (part == TracePart::rounded_hand && tick.hand && tick.hand->true_pose) ||
-         (part == TracePart::slave && tick.slave);
+         (part == TracePart::slave && tick.slave) ||
+         (part == TracePart::slave_tool && tick.slave && tick.slave->tool);
 }
 
 bool has(const Trace& trace, TracePart part) {
@@ -34,7 +35,8 @@ bool has(const Trace& trace, TracePart part) {
          (part == TracePart::hand && trace.has_hand()) || (part == TracePart::replay && trace.has_replay()) ||
          (part == TracePart::measured_surface && trace.has_measured_surface()) ||
          (part == TracePart::rounded_hand && trace.has_rounded_hand()) ||
-         (part == TracePart::slave && trace.has_slave());
+         (part == TracePart::slave && trace.has_slave()) ||
+         (part == TracePart::slave_tool && trace.has_slave_tool());
 }
 
 template <class Number>

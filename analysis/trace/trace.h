@@ -51,6 +51,7 @@ struct Trace {
   bool has_hand() const { return !intended_position_m.empty(); }
   bool has_rounded_hand() const { return !hand_position_m.empty(); }
   bool has_slave() const { return !slave_position_m.empty(); }
+  bool has_slave_tool() const { return !slave_orientation.empty(); }
   bool has_replay() const { return !expected_force_N.empty(); }
   bool has_measured_surface() const { return !measured_distance_m.empty(); }
   bool has_contact() const { return !contact.empty(); }
@@ -78,8 +79,19 @@ struct Trace {
 
 // The runs that have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
 // simulated operator or device, those that replay a contact whose force is known, those with a measured
-// surface beside the true one, those whose device rounds the pose of the hand, those with a slave.
-enum class TracePart { always, tool, guidance, hand, replay, measured_surface, rounded_hand, slave };
+// surface beside the true one, those whose device rounds the pose of the hand, those with a slave, those
+// whose slave has a tool.
+enum class TracePart {
+  always,
+  tool,
+  guidance,
+  hand,
+  replay,
+  measured_surface,
+  rounded_hand,
+  slave,
+  slave_tool
+};
 
 struct TraceColumn {
   const char* name;

@@ -115,16 +115,22 @@ TRACE_COLUMN(hand_orientation, Eigen::Quaterniond, "hand_orientation", "1", roun
 TRACE_COLUMN(received_command_m, Vec3, "received_command", "m", slave, t.slave->command_W,
              "where the command that the slave has received last sends it, world frame")
 TRACE_COLUMN(slave_position_m, Vec3, "slave_position", "m", slave, t.slave->position_W,
-             "centre of the slave's ball, world frame")
+             proxy_or_tool("centre of the slave's ball, world frame",
+                           "centre of mass of the slave's tool, world frame"))
 TRACE_COLUMN(slave_force_N, Vec3, "slave_force", "N", slave, t.slave->force_N,
              "mean force of the scene on the slave in the last tick, world frame")
 TRACE_COLUMN(slave_peak_force_N, double, "slave_peak_force", "N", slave, t.slave->peak_force_N,
              "largest magnitude of this force in the last tick")
 TRACE_COLUMN(slave_clearance_m, double, "slave_clearance", "m", slave, t.slave->clearance_m,
-             "distance of the slave's ball from the true surface, negative in contact")
+             proxy_or_tool("distance of the slave's ball from the true surface, negative in contact",
+                           "distance of the slave's tool from the true surface, negative in contact"))
 TRACE_COLUMN(command_packets, std::int32_t, "command_packets", "1", slave, t.slave->command_packets,
              "number of commands that were sent to the slave so far")
 TRACE_COLUMN(force_packets, std::int32_t, "force_packets", "1", slave, t.slave->force_packets,
              "number of forces that the slave has sent so far")
 TRACE_COLUMN(frame_packets, std::int32_t, "frame_packets", "1", slave, t.slave->frame_packets,
              "number of frames that have arrived from the camera of the slave so far")
+TRACE_COLUMN(slave_orientation, Eigen::Quaterniond, "slave_orientation", "1", slave_tool,
+             t.slave->tool->orientation_W, "orientation of the slave's tool, quaternion w x y z")
+TRACE_COLUMN(slave_torque_Nm, Vec3, "slave_torque", "N m", slave_tool, t.slave->tool->torque_Nm,
+             "mean torque of the scene on the slave's tool about its centre of mass, in the last tick")

@@ -101,6 +101,8 @@ const char* runs_with(TracePart part) {
       return "a run with a measured surface beside the true one";
     case TracePart::slave:
       return "a run with a slave";
+    case TracePart::slave_tool:
+      return "a run with a slave that has a tool";
     case TracePart::rounded_hand:
       return "a run whose device rounds the pose of the hand";
     case TracePart::hand:

@@ -33,8 +33,10 @@ Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool me
   std::optional<HandState> state;
   if (hand) state.emplace();
   if (hand && remote) state->true_pose.emplace();
-  trace.append(0.25, device, out, truth, state,
-               remote ? std::optional<SlaveState>(SlaveState{}) : std::nullopt);
+  std::optional<SlaveState> slave;
+  if (remote) slave.emplace();
+  if (remote && tool) slave->tool.emplace();
+  trace.append(0.25, device, out, truth, state, slave);
   return trace;
 }
 
@@ -147,10 +149,14 @@ TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
   for (const double i : {1.0, 2.0}) {
     HandState hand;
     hand.true_pose = HandState::Pose{{i, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
-    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13, 14};
+    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13, 14, {}};
+    slave.tool = SlaveToolState{Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {i, 20, 21}};
     trace.append(i, {}, {}, {}, hand, slave);
   }
   const std::vector<Column> columns = trace.columns();
+  EXPECT_EQ(values<double>(trace, "slave_orientation"),
+            (std::vector<double>{0.5, 0.5, -0.5, 0.5, 0.5, 0.5, -0.5, 0.5}));
+  EXPECT_EQ(values<double>(trace, "slave_torque"), (std::vector<double>{1, 20, 21, 2, 20, 21}));
   EXPECT_EQ(values<double>(trace, "hand_position"), (std::vector<double>{1, 2, 3, 2, 2, 3}));
   EXPECT_EQ(values<double>(trace, "slave_position"), (std::vector<double>{7, 8, 1, 7, 8, 2}));
   EXPECT_EQ(values<double>(trace, "slave_peak_force"), (std::vector<double>{11, 12}));
@@ -159,8 +165,18 @@ TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
   const std::optional<Trace> restored = again(columns);
   ASSERT_TRUE(restored);
   EXPECT_TRUE(restored->has_slave());
+  EXPECT_TRUE(restored->has_slave_tool());
   EXPECT_TRUE(restored->has_rounded_hand());
   EXPECT_EQ(restored->columns().back().values, columns.back().values);
+}
+
+TEST(TraceColumns, ASlaveThatIsABallHasNoOrientation) {
+  const Trace trace = one_tick(false, false, true, false, false, true);
+  EXPECT_TRUE(trace.has_slave());
+  EXPECT_FALSE(trace.has_slave_tool());
+  const std::vector<std::string> list = names(trace.columns());
+  for (const char* name : {"slave_orientation", "slave_torque"})
+    EXPECT_EQ(std::count(list.begin(), list.end(), name), 0) << name;
 }
 
 // The only column of a replay or of a measured surface may be missing: the trace is then one without it.
