@@ -2,13 +2,12 @@
 // touching, and what touches harder without one. Chapter 8 asks this and does not measure it.
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
 
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/slave_measures.h"
 #include "analysis/statistics/extremes.h"
+#include "analysis/theory/slave_following.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
@@ -25,12 +24,8 @@ struct Link {
   double frequency_hz, delay_s;  // natural frequency of the slave, and delay of its commands
 };
 
-// Returns the largest distance between the organ and a slave that follows it as it was age_s ago: the organ
-// moves as A sin(u t), and the slave's response to u is G = (2 w s + w^2) / (s + w)^2 with s = i u.
 double violation_m(const Link& link, double age_s) {
-  const double u = 2 * std::numbers::pi * kShake_hz, w = 2 * std::numbers::pi * link.frequency_hz;
-  const std::complex<double> s(0, u), followed = (2.0 * w * s + w * w) / ((s + w) * (s + w));
-  return kAmplitude_m * std::abs(1.0 - followed * std::exp(-s * (link.delay_s + age_s)));
+  return following_error_m({kAmplitude_m, kShake_hz, link.frequency_hz, link.delay_s + age_s});
 }
 
 // Bounds of the radius without noise: the organ is seen at once, or a frame interval late.
