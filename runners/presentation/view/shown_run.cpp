@@ -42,9 +42,9 @@ std::vector<Vec3> vectors(const ColumnSource& columns, const std::string& name) 
   return list;
 }
 
-// Returns a length among the renderer's parameters, or 0 if it has none of that name.
-double length_m(const Json& renderer, const char* name) {
-  return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
+// Returns a length among the parameters of a section, or 0 if it has none of that name.
+double length_m(const Json& section, const char* name) {
+  return section.contains(name) && section[name].is_number() ? section[name].get<double>() : 0;
 }
 
 // Returns the columns of numbers. Hashes are left out, because they mean nothing to a reader.
@@ -148,12 +148,17 @@ struct ShownRun::State {
   }
   void find_action() {
     BoundingBox box;
-    for (const Vec3& p : vectors(*source.columns, "hip_position"))
-      if (p.allFinite()) box.extend(p);
+    for (const char* name : {"hip_position", "slave_position"}) {
+      if (!source.columns->has(name)) continue;
+      for (const Vec3& p : vectors(*source.columns, name))
+        if (p.allFinite()) box.extend(p);
+    }
     if (path.time_s.empty() || box.isEmpty())
       throw InputError(source.name, "has no tick with a position: expected a run of one tick or more");
     box.extend(bounding_box(path.proxy_W));
-    const Vec3 room = (0.15 * box.sizes()).cwiseMax(kRoom_m + (path.tool ? path.tool->reach_m : 0));
+    const double slave_m = configuration.contains("slave") ? length_m(configuration["slave"], "radius_m") : 0;
+    const double reach_m = std::max(path.tool ? path.tool->reach_m : 0, slave_m);
+    const Vec3 room = (0.15 * box.sizes()).cwiseMax(kRoom_m + reach_m);
     shown_box_W = {box.min() - room, box.max() + room};
   }
 

@@ -35,7 +35,7 @@ class ShownRun {
   std::size_t frame_count() const;  // number of frames in use, at least 1
 
   // The part of the scene that is shown. Initially it is the region of the action: the positions of HIP and
-  // proxy or tool, and some room around them. The first json() fixes it.
+  // proxy or tool, and slave, and some room around them. The first json() fixes it.
   const BoundingBox& box_W() const;
   void set_box(const BoundingBox& box_W);
 

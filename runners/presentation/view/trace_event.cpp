@@ -37,6 +37,14 @@ void find_first_contact(const ColumnSource& trace, std::vector<TraceEvent>& even
                       "The first contact with the measured points."});
 }
 
+void find_first_slave_contact(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+  const auto force_N = values_or_none<double>(trace, "slave_peak_force");
+  const auto first = std::find_if(force_N.begin(), force_N.end(), [](double size_N) { return size_N > 0; });
+  if (first != force_N.end())
+    events.push_back({static_cast<std::size_t>(first - force_N.begin()), "slave contact",
+                      "The slave touches the true surface for the first time."});
+}
+
 std::string text_with(const char* format, double value) {
   char text[80];
   std::snprintf(text, sizeof text, format, value);
@@ -126,6 +134,7 @@ std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vecto
   std::vector<TraceEvent> events;
   find_pop_throughs(trace, held_depth_m, events);
   find_first_contact(trace, events);
+  find_first_slave_contact(trace, events);
   find_largest_forces(trace, events);
   if (trace.has("budget_exhausted"))
     find_spells(trace, "budget_exhausted", 1, events);

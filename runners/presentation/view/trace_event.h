@@ -17,6 +17,7 @@ struct TraceEvent {
 // Returns the events in the order of their ticks:
 //   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
 //   first contact  the first tick with a contact
+//   slave contact  the first tick with a force of the scene on the slave
 //   force jump     the largest change of the force from one tick to the next
 //   largest force  the first tick with the largest force
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,

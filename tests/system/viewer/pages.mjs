@@ -88,6 +88,38 @@ async function cubeIsWhereTheColumnMeasures(page, ticks) {
   }
 }
 
+// The ball of a run's slave, the command that it received and the force on it, as they are drawn: m and N. null: nothing is drawn.
+async function drawnSlave(page, at, run = 0) {
+  await goTo(page, at);
+  return page.evaluate((which) => {
+    const { scene } = window.remoteTouch, { object, shape, force, line } = scene.slaves[which], end = line.geometry.getAttribute("position");
+    if (!object.visible) return null;
+    const arrowMm = force.object.visible ? force.tip.position.y + force.tip.scale.y : 0, along = shape.position.clone().set(0, 1, 0);
+    const metres = (mm) => mm.map((x) => x / 1000);
+    return {
+      radius: shape.geometry.parameters.radius / 1000, position: metres(shape.position.toArray()), command: metres([end.getX(1), end.getY(1), end.getZ(1)]),
+      arrowAt: metres(force.object.position.toArray()), force: along.applyQuaternion(force.object.quaternion).multiplyScalar(arrowMm / scene.mmPerN).toArray(),
+      longest: scene.longestMm / scene.mmPerN,
+    };
+  }, run);
+}
+
+function areClose(drawn, stored, most, what) {
+  assert.ok(drawn.every((x, k) => Math.abs(x - stored[k]) <= most), `${what}: drawn ${drawn}, stored ${stored}`);
+}
+
+async function slaveIsWhereItsColumnsSay(page, trace, ticks) {
+  const stored = columns(trace, ticks, "slave_position", "received_command", "slave_force");
+  for (const [i, t] of ticks.entries()) {
+    const drawn = await drawnSlave(page, t), force = stored.slave_force[i], newtons = Math.hypot(...force);
+    areClose([drawn.radius], [0.005], 1e-9, "radius");
+    areClose(drawn.position, stored.slave_position[i], 1e-7, `ball at tick ${t}`);
+    areClose(drawn.command, stored.received_command[i], 1e-7, `command at tick ${t}`);
+    if (newtons > 0) areClose(drawn.arrowAt, drawn.position, 1e-7, `arrow at tick ${t}`);
+    areClose(drawn.force, force.map((x) => x * Math.min(1, drawn.longest / newtons || 1)), 1e-5, `force at tick ${t}`);
+  }
+}
+
 async function picturesPerSecond(page) {
   return page.evaluate(() => new Promise((done) => {
     const { player, scene } = window.remoteTouch, draw = scene.draw.bind(scene), begin = performance.now();
@@ -179,6 +211,45 @@ test("a sweep: a click on its map shows another run", async () => {
     assert.equal(await proxyEnd(), before, "the click goes back to the first run");
     assert.equal(await page.locator("header").count(), 1);
     await showsMotion(page, [100, 700]);
+  });
+});
+
+test("a slave is drawn where its columns say, with the force on it", async () => {
+  remoteTouch("run", "steer-robot", "--set", "feedback.force=slave-force", "--set", "feedback.gain=0.5", "--set",
+    "duration_s=1.2", "--set", "scenario.columns=20", "--set", "scenario.rows=20", "-o", "slave.h5");
+  remoteTouch("view", "slave.h5", "-o", "slave.html");
+  await withPage("slave.html", {}, async (page) => {
+    const first = await tick(page), [strongest, tooStrong] = await page.evaluate(() => {
+      const { runs: [run], scene } = window.remoteTouch, newtons = Array.from({ length: run.ticks }, (_, t) => run.column("slave_force").magnitude(t));
+      const most = Math.max(...newtons);
+      return [newtons.indexOf(most), most > scene.longestMm / scene.mmPerN];
+    });
+    const { slave_peak_force: [before, at] } = columns("slave.h5", [first - 1, first], "slave_peak_force");
+    assert.ok(before === 0 && at > 0, `the page opens at the first contact: ${before} N, then ${at} N`);
+    assert.ok(tooStrong, "the arrow of the strongest force is shorter than the force");
+    await slaveIsWhereItsColumnsSay(page, "slave.h5", [100, first, first + 1, strongest]);
+    const shown = await picture(page);
+    await page.evaluate(() => { window.remoteTouch.scene.slaves[0].object.visible = false; });
+    assert.notEqual((await picture(page)).hash, shown.hash, "it is in the picture");
+    assert.match(await page.textContent(".legend"), /max \d+ mm.*slave: ball, force on it, line to the command it received/);
+    assert.match(await page.textContent("aside"), /force on the slave .*clearance of the slave /);
+    // A slave that starts late: as before the first command.
+    await page.evaluate(() => {
+      for (const { name, numbers, width } of window.remoteTouch.runs[0].columns.values())
+        if (/^slave_(?!command)|^received/.test(name)) numbers.fill(Number.NaN, 0, 500 * width);
+    });
+    assert.equal(await drawnSlave(page, 499), null);
+    assert.notEqual(await drawnSlave(page, 500), null);
+  });
+});
+
+test("a run without a slave beside one with a slave", async () => {
+  remoteTouch("view", "a.h5", "slave.h5", "-o", "slaves.html");
+  await withPage("slaves.html", {}, async (page) => {
+    assert.equal(await drawnSlave(page, 1000, 0), null);
+    areClose((await drawnSlave(page, 1000, 1)).position, columns("slave.h5", [1000], "slave_position").slave_position[0], 1e-7, "ball");
+    const beside = await page.textContent("aside");
+    for (const text of [/HIP, proxy and slave of run 2/, /slave: ball/, /force on the slave in run 2/]) assert.match(beside, text);
   });
 });
 

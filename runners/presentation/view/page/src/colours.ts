@@ -6,7 +6,8 @@ export const table = {
   proxy: ["#5590ee", "#146bab"],
   force: ["#f57a3a", "#b34c00"],
   normal: ["#2ba46f", "#00a67c"],
-  slave: ["#f399c4", "#9c3c52"],
+  slave: ["#f399c4", "#9c3c52"], // its command
+  robot: ["#8b50ff", "#5b3fd6"], // the slave itself
   truth: ["#59b4eb", "#3691ba"],
   velocity: ["#bb70b2", "#822055"],
   second: ["#8a8a8e", "#81939f"],
@@ -24,7 +25,7 @@ export const components = [["#e0525f", "#a81e3c"], ["#7fd06a", "#4f9a2a"], ["#7f
 // Kinds of events, on both grounds.
 export const eventColours: Record<string, string> = {
   "pop-through": "#df225d", divergence: "#7b5bf0", "force jump": "#bf7c00", "largest force": "#c86034", "first contact": "#228f6b",
-  "not converged": "#7f8291", task: "#0088bd",
+  "not converged": "#7f8291", task: "#0088bd", "slave contact": "#ff2dcd",
 };
 
 const onLight = new Map<string, string>([...Object.values(table), ...components].map(([dark, light]) => [dark, light ?? dark]));
@@ -38,8 +39,9 @@ export function curveColour(colour: string, isDark = darkPage.matches): string {
 
 // The colour of the thing that a column of a trace belongs to.
 export function columnColour(name: string): string {
-  const things: [RegExp, Thing][] = [[/^hip/, "hip"], [/force|torque/, "force"], [/normal|contact/, "normal"], [/slave/, "slave"],
-    [/signed_distance/, "truth"], [/velocity/, "velocity"], [/proxy|tool|nearest/, "proxy"]];
+  const things: [RegExp, Thing][] = [[/^slave_(?!command|distance)/, "robot"], [/^hip/, "hip"], [/force|torque/, "force"],
+    [/normal|contact/, "normal"], [/slave|received_command/, "slave"], [/signed_distance/, "truth"], [/velocity/, "velocity"],
+    [/proxy|tool|nearest/, "proxy"]];
   return colours[things.find(([pattern]) => pattern.test(name))?.[1] ?? "second"];
 }
 

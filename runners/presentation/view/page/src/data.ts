@@ -145,6 +145,11 @@ export class Run {
   nearHand(_frame: Frame, _tick: number): number[] {
     return [];
   }
+  // The radius of the slave's ball; 0 in a run without a slave.
+  get slaveRadiusM(): number {
+    const { slave } = this.stored.configuration as { slave?: { radius_m: number } };
+    return slave && this.columns.has("slave_position") ? slave.radius_m : 0;
+  }
   numbers(packed: Packed): Numbers {
     return unpacked(this.buffer, packed);
   }

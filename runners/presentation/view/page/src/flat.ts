@@ -26,6 +26,7 @@ export class FlatView {
     for (const run of this.runs) {
       const t = Math.min(tick, run.ticks - 1), hip = run.vector("hip_position", t), force = run.vector(run.forceName, t);
       dot(run.vector("proxy_position", t), Math.max(factor * run.contactRadiusM, 4), `${colours.proxy}88`);
+      if (run.slaveRadiusM > 0) dot(run.vector("slave_position", t), Math.max(factor * run.slaveRadiusM, 4), `${colours.robot}88`);
       dot(hip, 4, colours.hip);
       pen.strokeStyle = colours.force;
       pen.lineWidth = 2;

@@ -9,9 +9,29 @@ export const longestForce = 0.3;
 // The arrow of a velocity of 1 m/s, mm: how far the surface moves in 1/15 s.
 export const mmPerMetreASecond = 1000 / 15;
 
-function ball(radius: number, colour: string, opacity = 1): THREE.Mesh {
+export function ball(radius: number, colour: string, opacity = 1): THREE.Mesh {
   return new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20),
     new THREE.MeshStandardMaterial({ color: colour, transparent: opacity < 1, opacity, depthWrite: opacity === 1 }));
+}
+
+// The mesh of the tool of a run; empty without one.
+export function toolMesh(run: Run, colour: string, opacity: number): THREE.Mesh {
+  const stored = run.stored.tool, geometry = new THREE.BufferGeometry();
+  if (stored) {
+    const places = Float32Array.from(run.numbers(stored.vertices), (x) => 1000 * x);
+    geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
+    geometry.setIndex(new THREE.BufferAttribute(run.numbers(stored.triangles) as Uint32Array, 1));
+  }
+  const flat = geometry.toNonIndexed();
+  flat.computeVertexNormals();
+  return new THREE.Mesh(flat, new THREE.MeshStandardMaterial({
+    color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: opacity > 0.5,
+  }));
+}
+
+export function turn(object: THREE.Object3D, run: Run, orientation: string, tick: number): void {
+  const [w, x, y, z] = run.rotation(orientation, tick);
+  object.quaternion.set(x, y, z, w);
 }
 
 function isKnown(v: Vector): boolean {
@@ -21,13 +41,14 @@ function isKnown(v: Vector): boolean {
 const upwards = new THREE.Vector3(0, 1, 0);
 
 // An arrow whose length and direction change. head: its length, mm.
-class Arrow {
+export class Arrow {
   readonly object = new THREE.Group();
   private readonly shaft: THREE.Mesh;
   private readonly tip: THREE.Mesh;
   // always: seen also through what is before it.
   constructor(colour: string, private readonly head: number, private readonly longest = Number.POSITIVE_INFINITY, always = false) {
-    const material = new THREE.MeshStandardMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.35, depthTest: !always });
+    const material = new THREE.MeshStandardMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.35, depthTest: !always,
+      transparent: always }); // it is drawn after the translucent things, which would tint it
     this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 10).translate(0, 0.5, 0), material);
     this.tip = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 16).translate(0, 0.5, 0), material);
     this.object.add(this.shaft, this.tip);
@@ -67,9 +88,9 @@ export class HandView {
     this.hip = ball(dot, hipColour);
     this.slave = ball(0.8 * dot, colours.slave);
     this.goal = ball(1.5 * dot, colours.guidance, 0.5);
-    this.proxy = run.stored.tool ? this.tool(proxyColour, second ? 0.45 : 0.8)
+    this.proxy = run.stored.tool ? toolMesh(run, proxyColour, second ? 0.45 : 0.8)
       : ball(1000 * run.stored.contact_radius_m || dot, proxyColour, second ? 0.4 : 0.5);
-    this.ghost = run.stored.tool ? this.tool(hipColour, 0.18) : null;
+    this.ghost = run.stored.tool ? toolMesh(run, hipColour, 0.18) : null;
     this.spheres = this.toolSpheres();
     if (this.spheres) this.proxy.add(this.spheres);
     this.force = new Arrow(colours.force, 1.3 * head, longestForce * sizeMm, true);
@@ -122,28 +143,10 @@ export class HandView {
     spheres.frustumCulled = false;
     return spheres;
   }
-  private tool(colour: string, opacity: number): THREE.Mesh {
-    const stored = this.run.stored.tool;
-    const geometry = new THREE.BufferGeometry();
-    if (stored) {
-      const places = Float32Array.from(this.run.numbers(stored.vertices), (x) => 1000 * x);
-      geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
-      geometry.setIndex(new THREE.BufferAttribute(this.run.numbers(stored.triangles) as Uint32Array, 1));
-    }
-    const flat = geometry.toNonIndexed();
-    flat.computeVertexNormals();
-    return new THREE.Mesh(flat, new THREE.MeshStandardMaterial({
-      color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: opacity > 0.5,
-    }));
-  }
   private turnTools(hip: Vector, tick: number): void {
-    const turn = (object: THREE.Object3D, name: string) => {
-      const [w, x, y, z] = this.run.rotation(name, tick);
-      object.quaternion.set(x, y, z, w);
-    };
-    turn(this.proxy, "tool_orientation");
+    turn(this.proxy, this.run, "tool_orientation", tick);
     if (!this.ghost) return;
-    turn(this.ghost, "hip_orientation");
+    turn(this.ghost, this.run, "hip_orientation", tick);
     this.place(this.ghost, hip);
   }
   private place(object: THREE.Object3D, at: Vector): void {

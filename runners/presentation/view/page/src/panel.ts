@@ -43,7 +43,8 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   const two = (mm: number) => digits(Number(mm.toPrecision(2)));
   add(colours.hip, tool ? "HIP and device's pose" : "HIP: where the hand is");
   add(colours.proxy, tool ? "tool" : `proxy${run.contactRadiusM > 0 ? ", radius r_c" : ""}; path of 0.3 s`);
-  if (runs.length === 2) add(colours.second, "HIP and proxy of run 2");
+  const hasSlave = runs.some((one) => one.slaveRadiusM > 0);
+  if (runs.length === 2) add(colours.second, `${runs[1].slaveRadiusM > 0 ? "HIP, proxy and slave" : "HIP and proxy"} of run 2`);
   add(colours.force, `${run.forceName === "force" ? "force" : "force of the device"}: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
   add(colours.normal, "surface normal");
   add(colours.touching, "points that touch");
@@ -54,6 +55,7 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");
   if (slaveDiffers(run)) add(colours.slave, "slave command, if not the proxy");
+  if (hasSlave) add(colours.robot, `slave: ${tool ? "tool" : "ball"}, force on it, line to the command it received`);
   return list;
 }
 

@@ -294,7 +294,8 @@ export function forceCurves(runs: Run[]): Curve[] {
 export function curvesOf(runs: Run[], name: string, colour: string, label: string): Curve[] {
   return runs.flatMap((run, i) => {
     const column = run.columns.get(name);
-    return column ? [{ column, colour: i === 0 ? colour : colours.second, label: i === 0 ? label : "in run 2", dashed: i > 0 }] : [];
+    const inSecond = runs[0].columns.has(name) ? "in run 2" : `${label} in run 2`;
+    return column ? [{ column, colour: i === 0 ? colour : colours.second, label: i === 0 ? label : inSecond, dashed: i > 0 }] : [];
   });
 }
 

@@ -135,8 +135,10 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", pla
   const dialogs = { help: helpDialog(), about: aboutDialog(runs, licence) };
   const head = headerOf(heading || run.stored.title || run.stored.file, picture, dialogs, () => pictureName(run.stored.file, player.tick, "png"));
   const side = document.createElement("aside"), details = detailsOf(values, player);
+  // The force on a slave can be far above that on the hand, which gives the scale.
+  const longestMm = runs.some((one) => one.slaveRadiusM > 0) ? picture.scene?.longestMm : undefined;
   side.append(...notes(runs), ...(runs.length === 2 ? [whichIsWhich(runs)] : []), ...(top ? [top] : []), list.element,
-    legend(runs, picture.scene?.mmPerN ?? 5), plots.element, details, ...shownPoints(runs));
+    legend(runs, picture.scene?.mmPerN ?? 5, longestMm), plots.element, details, ...shownPoints(runs));
   const parts = [head, picture.box, side, timeline.element, dialogs.help, dialogs.about];
   document.body.append(...parts);
   player.onChange(() => {

@@ -28,12 +28,13 @@ function changes(curve: Curve): boolean {
 function standardCurves(runs: Run[]): Curve[][] {
   const run = runs[0], components = runs.length === 1 ? componentCurves(run, run.forceName, "force") : [];
   const lists = [forceCurves(runs), components, curvesOf(runs, "signed_distance", colours.truth, distanceLabel(run)),
+    curvesOf(runs, "slave_force", colours.robot, "force on the slave"), curvesOf(runs, "slave_clearance", colours.robot, "clearance of the slave"),
     curvesOf(runs, "contact_count", colours.normal, "contacts"), curvesOf(runs, "surface_velocity", colours.velocity, "velocity estimate")];
   for (const [name, colour] of runs.length === 2 ? [["force", colours.force], ["proxy_position", colours.proxy]] : []) {
     const column = differenceOf(runs, name);
     if (column) lists.push([{ column, colour, label: column.name, dashed: false }]);
   }
-  return lists.map((curves) => curves.filter(changes)).filter((curves) => curves.length > 0);
+  return lists.filter((curves) => curves.some(changes));
 }
 
 export class RunPlots {

@@ -5,6 +5,7 @@ import { CloudView } from "./cloud";
 import { round125, type Run, type Vector } from "./data";
 import { DepthCue } from "./depth_cue";
 import { HandView, longestForce } from "./hand";
+import { SlaveView } from "./slave_view";
 import { TrueMeshesView } from "./true_meshes";
 import { TruthView } from "./truth";
 import { acrossForce, distanceOf } from "./viewpoint";
@@ -17,11 +18,17 @@ const labelHeight = 0.022; // where the camera sees 0.7 at a distance of 1
 
 export type CameraPreset = "sensor" | "side" | "follow" | "across";
 
+// Returns the largest force on a hand, or, if no hand feels one, on a slave.
 function largestForce(runs: Run[]): number {
-  let largest = 0;
-  for (const run of runs)
-    for (let tick = 0; tick < run.ticks; ++tick) largest = Math.max(largest, run.column(run.forceName).magnitude(tick) || 0);
-  return largest;
+  const largest = (nameOf: (run: Run) => string) => {
+    let found = 0;
+    for (const run of runs) {
+      const column = run.columns.get(nameOf(run));
+      if (column) for (let tick = 0; tick < run.ticks; ++tick) found = Math.max(found, column.magnitude(tick) || 0);
+    }
+    return found;
+  };
+  return largest((run) => run.forceName) || largest(() => "slave_force");
 }
 
 // A text that faces the camera, as large from near as from far.
@@ -59,6 +66,7 @@ export class SceneView {
   private readonly camera = new THREE.PerspectiveCamera(40, 1, 1, 1e5);
   private readonly controls: OrbitControls;
   private readonly hands: HandView[];
+  private readonly slaves: SlaveView[];
   private readonly truths: TruthView[];
   private readonly trueMeshes: TrueMeshesView;
   private readonly cue: DepthCue;
@@ -91,10 +99,11 @@ export class SceneView {
     const pointMm = this.handSize < this.size ? 0.35 * this.proxyMm : 0.005 * this.size;
     this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, pointMm));
     this.hands = runs.map((run, i) => new HandView(run, this.handSize, this.mmPerN, i > 0));
+    this.slaves = runs.map((run, i) => new SlaveView(run, this.handSize, this.mmPerN, i > 0));
     this.truths = runs.slice(0, 1).map((run) => new TruthView(run));
     this.trueMeshes = new TrueMeshesView(runs[0]);
     this.cue = new DepthCue(runs[0], runs[0].stored.tool ? 0.2 * this.proxyMm : this.proxyMm);
-    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, ...this.hands, this.cue]) this.scene.add(part.object);
+    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, ...this.hands, ...this.slaves, this.cue]) this.scene.add(part.object);
     this.light();
     this.scene.add(this.axes());
     this.controls = new OrbitControls(this.camera, canvas);
@@ -115,7 +124,7 @@ export class SceneView {
   show(tick: number): void {
     this.tick = tick;
     for (const part of [...this.truths, this.trueMeshes, ...this.clouds, this.cue]) part.show(Math.min(tick, this.runs[0].ticks - 1));
-    this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
+    for (const each of [this.hands, this.slaves]) each.forEach((part, i) => { part.show(Math.min(tick, this.runs[i].ticks - 1)); });
     if (this.follows) this.followProxy(tick);
     if (this.isLive) this.draw();
     else this.drawSoon();
@@ -223,10 +232,11 @@ export class SceneView {
     const preferred = sensor ? new THREE.Vector3(...sensor.forward).negate() : new THREE.Vector3(0.35, 0.3, 1).normalize();
     return acrossForce(along, normal, preferred);
   }
-  // Returns the distance, mm, at which the camera sees proxy, hand and force together, and the proxy is wide enough.
+  // Returns the distance, mm, at which the camera sees proxy, hand, slave and force together, and the proxy is wide enough.
   private nearDistance(): number {
     const arrow = Math.min(this.mmPerN * this.vector(this.runs[0].forceName).length(), this.longestMm);
-    const hand = 1000 * this.vector("hip_position").distanceTo(this.vector("proxy_position"));
+    const proxy = this.vector("proxy_position"), away = (name: string) => 1000 * this.vector(name).distanceTo(proxy);
+    const hand = Math.max(away("hip_position"), this.slaves[0].object.visible ? away("slave_position") : 0);
     const least = this.runs[0].stored.tool ? 0 : 5 * this.proxyMm, { clientWidth: width, clientHeight: height } = this.canvas;
     const radius = 1.2 * (Math.max(hand, arrow, least) + this.proxyMm);
     const most = distanceOf((this.proxyMm * (height || 480)) / leastProxyPx, this.camera.fov, 1);
