@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace remote_touch {
 
 namespace {
 
-constexpr int kPointsInLeaf = 4;
+constexpr int kToolPointsInLeaf = 4;
 
 struct Cell {
   Vec3 p_T = Vec3::Zero();
@@ -80,7 +80,7 @@ SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inert
 SlaveToolTree::SlaveToolTree(const std::vector<Vec3>& points_T)
     : points_T_(points_T), order_(points_T.size()) {
   std::iota(order_.begin(), order_.end(), 0);
-  if (!order_.empty()) add(0, static_cast<int>(order_.size()));
+  add(0, static_cast<int>(order_.size()));
 }
 
 // Returns the index of the new node.
@@ -94,7 +94,7 @@ int SlaveToolTree::add(int begin, int end) {
     node.radius_m = std::max(node.radius_m, (point(*i) - node.centre_T).norm());
   const int index = static_cast<int>(nodes_.size());
   nodes_.push_back(node);
-  if (end - begin <= kPointsInLeaf) return index;
+  if (end - begin <= kToolPointsInLeaf) return index;
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   std::sort(first, last,
@@ -104,30 +104,6 @@ int SlaveToolTree::add(int begin, int end) {
   nodes_[static_cast<std::size_t>(index)].left = left;
   nodes_[static_cast<std::size_t>(index)].right = right;
   return index;
-}
-
-double SlaveToolTree::visit(double near_m, const Distance& distance, const Visit& visitor) const {
-  return nodes_.empty() ? std::numeric_limits<double>::infinity()
-                        : visit(nodes_.front(), near_m, distance, visitor);
-}
-
-double SlaveToolTree::visit(const Node& node, double near_m, const Distance& distance,
-                            const Visit& visitor) const {
-  double least_m = std::numeric_limits<double>::infinity();
-  if (distance(node.centre_T) - node.radius_m >= near_m) return least_m;  // NaN: not known, so look closer
-  if (node.left >= 0) {
-    const double left_m = visit(nodes_[static_cast<std::size_t>(node.left)], near_m, distance, visitor);
-    return std::fmin(left_m, visit(nodes_[static_cast<std::size_t>(node.right)], near_m, distance, visitor));
-  }
-  bool is_known = false;
-  for (int i = node.begin; i < node.end; ++i) {
-    const int point = order_[static_cast<std::size_t>(i)];
-    const double d_m = distance(points_T_[static_cast<std::size_t>(point)]);
-    visitor(point, d_m);
-    is_known = is_known || !std::isnan(d_m);
-    least_m = std::fmin(least_m, d_m);
-  }
-  return is_known ? least_m : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace remote_touch

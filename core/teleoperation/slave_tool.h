@@ -1,7 +1,8 @@
 // The surface of a rigid tool as points that a slave robot touches the scene with.
 #pragma once
 
-#include <functional>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/geometry/vector.h"
@@ -22,19 +23,25 @@ struct SlaveTool {
 // farthest from the origin is kept with the area of all, so edges and corners of the tool are not lost. The
 // spacing is the smallest of a series that gives no more than max_points.
 // pre: mesh in frame T, with an area; inertia_m2: about the origin, divided by the mass.
-SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inertia_m2, int max_points = 200);
+SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inertia_m2, int max_points = 100);
 
 // Spheres around the points of a tool, so that few positions of the scene need to be asked.
 class SlaveToolTree {
  public:
+  // pre: there is a point.
   explicit SlaveToolTree(const std::vector<Vec3>& points_T);
 
-  using Distance = std::function<double(const Vec3& p_T)>;
-  using Visit = std::function<void(int point, double distance_m)>;
-  // Visits at least all points that are nearer to the surface than near_m or whose distance is not known.
-  // Returns the smallest distance of a visited point; +infinity if there is none, NaN if none is known.
-  // pre: distance is Lipschitz with 1, as a distance is.
-  double visit(double near_m, const Distance& distance, const Visit& visit) const;
+  // Calls visitor(point, distance_m) at least for all points that are nearer to the surface than near_m or
+  // whose distance is not known. Returns the smallest distance of all points if it is less than near_m or
+  // exact_m. Otherwise returns +infinity or a larger distance, or NaN if no distance that it asked is known.
+  // pre: distance(p_T) returns the signed distance of a position, or NaN; it is Lipschitz with 1.
+  template <class Distance, class Visitor>
+  double visit(double near_m, double exact_m, const Distance& distance, const Visitor& visitor) const {
+    Search search{near_m, exact_m};
+    visit(0, search, distance, visitor);
+    const bool is_unknown = search.has_visited && std::isinf(search.least_m);
+    return is_unknown ? std::numeric_limits<double>::quiet_NaN() : search.least_m;
+  }
 
  private:
   struct Node {
@@ -44,7 +51,30 @@ class SlaveToolTree {
     int left = -1, right = -1;  // nodes; -1 in a leaf
   };
   int add(int begin, int end);
-  double visit(const Node& node, double near_m, const Distance& distance, const Visit& visit) const;
+
+  struct Search {
+    double near_m, exact_m;
+    double least_m = std::numeric_limits<double>::infinity();
+    bool has_visited = false;
+    double reach_m() const { return std::fmax(near_m, std::fmin(exact_m, least_m)); }
+  };
+  template <class Distance, class Visitor>
+  void visit(int index, Search& search, const Distance& distance, const Visitor& visitor) const {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (distance(node.centre_T) - node.radius_m >= search.reach_m()) return;  // false if it is not known
+    if (node.left >= 0) {
+      visit(node.left, search, distance, visitor);
+      visit(node.right, search, distance, visitor);
+      return;
+    }
+    search.has_visited = true;
+    for (int i = node.begin; i < node.end; ++i) {
+      const int point = order_[static_cast<std::size_t>(i)];
+      const double distance_m = distance(points_T_[static_cast<std::size_t>(point)]);
+      visitor(point, distance_m);
+      search.least_m = std::fmin(search.least_m, distance_m);
+    }
+  }
 
   const std::vector<Vec3> points_T_;
   std::vector<int> order_;

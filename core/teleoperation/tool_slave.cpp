@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNegligible = 20;  // of x in exp(-x), a share of 2e-9
 
-Vec3 cut(const Vec3& v, double max_length) {
+Vec3 at_most(const Vec3& v, double max_length) {
   return max_length > 0 ? limited_length(v, max_length) : v;
 }
 
@@ -75,7 +75,7 @@ void ToolSlave::find_touches(double time_s) {
   const double near_m = tick_s_ * (2 * speed + kSceneSpeed_m_per_s);
   touches_.clear();
   const double least_m = tree_.visit(
-      std::max(near_m, kExactClearance_m),
+      near_m, kExactClearance_m,
       [&](const Vec3& p_T) { return scene_.signed_distance(state_.position_W + R_WT * p_T, time_s); },
       [&](int point, double distance_m) {
         const auto i = static_cast<std::size_t>(point);
@@ -86,9 +86,9 @@ void ToolSlave::find_touches(double time_s) {
   state_.clearance_m = clearance(least_m, time_s);
 }
 
-// least_m: of the points that are near; infinite if there is none.
+// least_m: the smallest distance of a point if it is below kExactClearance_m; NaN: not known.
 double ToolSlave::clearance(double least_m, double time_s) const {
-  if (!std::isinf(least_m)) return least_m;
+  if (!(least_m >= kExactClearance_m)) return least_m;
   const Vec3 normal_W = scene_.normal(state_.position_W, time_s);
   if (!normal_W.allFinite()) return scene_.signed_distance(state_.position_W, time_s) - tool_.reach_m;
   const Vec3 normal_T = state_.orientation_W.conjugate() * normal_W;
@@ -138,9 +138,9 @@ ToolSlave::Drive ToolSlave::start_drive(const Pose& command) {
   };
   Drive d;
   d.error << reference_.position_W - state_.position_W, turn(state_.orientation_W, reference_.orientation_W);
-  const Vec3 velocity = cut((command.position_W - reference_.position_W) / tick_s_, s_.max_speed_m_per_s);
-  const Vec3 rate = cut(turn(reference_.orientation_W, command.orientation_W) / tick_s_,
-                        s_.max_speed_m_per_s / tool_.gyration_m);
+  const Vec3 velocity = at_most((command.position_W - reference_.position_W) / tick_s_, s_.max_speed_m_per_s);
+  const Vec3 rate = at_most(turn(reference_.orientation_W, command.orientation_W) / tick_s_,
+                            s_.max_speed_m_per_s / tool_.gyration_m);
   d.rate_per_s << velocity, rate;
   reference_.position_W += tick_s_ * velocity;
   reference_.orientation_W = (rotation(tick_s_ * rate) * reference_.orientation_W).normalized();
@@ -154,8 +154,8 @@ ToolSlave::Vector6 ToolSlave::drive(const Drive& d, const Vector6& moved, const 
   const Vector6 wanted = w * w * (d.error + since_s * d.rate_per_s - moved) +
                          2 * s_.damping_ratio * w * (d.rate_per_s - velocity);
   Vector6 limited;
-  limited << cut(wanted.head<3>(), s_.max_acceleration_m_per_s2),
-      cut(wanted.tail<3>(), s_.max_acceleration_m_per_s2 / tool_.gyration_m);
+  limited << at_most(wanted.head<3>(), s_.max_acceleration_m_per_s2),
+      at_most(wanted.tail<3>(), s_.max_acceleration_m_per_s2 / tool_.gyration_m);
   return limited;
 }
 

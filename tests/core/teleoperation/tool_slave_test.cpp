@@ -355,9 +355,9 @@ TEST(SlaveToolTree, VisitsEveryPointThatIsNear) {
     const Vec3 centre(any(random), any(random), any(random));
     const auto distance = [&](const Vec3& p) { return (p - centre).norm() - 0.03; };
     std::vector<int> visits(tool.points_T.size());
-    const double near_m = std::abs(any(random));
+    const double near_m = std::abs(any(random)), exact_m = std::abs(any(random));
     double least = std::numeric_limits<double>::infinity();
-    const double found = tree.visit(near_m, distance, [&](int i, double d) {
+    const double found = tree.visit(near_m, exact_m, distance, [&](int i, double d) {
       EXPECT_EQ(d, distance(tool.points_T[static_cast<std::size_t>(i)]));
       ++visits[static_cast<std::size_t>(i)];
     });
@@ -368,7 +368,7 @@ TEST(SlaveToolTree, VisitsEveryPointThatIsNear) {
         EXPECT_EQ(visits[i], 1) << trial;
       }
     }
-    if (least < near_m) {
+    if (least < std::max(near_m, exact_m)) {
       EXPECT_EQ(found, least);
     }
   }
