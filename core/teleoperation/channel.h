@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -85,6 +86,9 @@ class Channel {
   // pre: validate(settings) is empty.
   Channel(const ChannelSettings& settings, const NoiseKey& key, NoiseUse use)
       : reorders_(settings.reorders), fates_(settings, key, use) {}
+
+  // Makes room for packets in transit, so that send() does not allocate while there are no more of them.
+  void reserve(std::size_t packets) { in_transit_.reserve(packets); }
 
   // pre: time_s is finite and no smaller than in earlier calls of send() and receive().
   void send(double time_s, Sample sample) {

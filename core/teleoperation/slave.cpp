@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -100,6 +101,7 @@ const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
   } else {
     const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
     state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
+    if (time_s - last_s_ > 1.5 * tick_s_) depth_m_ = std::numeric_limits<double>::quiet_NaN();
     const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
     const bool can_touch = !is_far(reference_velocity);
     if (!can_touch) depth_m_ = -state_.clearance_m;
@@ -107,6 +109,7 @@ const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
     for (int i = 0; i < s_.steps_per_tick; ++i)
       step(reference_velocity, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
   }
+  last_s_ = time_s;
   state_.clearance_m = scene_.signed_distance(state_.position_W, time_s) - s_.radius_m;
   return state_;
 }

@@ -58,7 +58,8 @@ class Slave {
     double clearance_m = 0;  // distance of the ball from the surface; negative in contact; NaN: not known
   };
   // Moves the slave from time_s - tick to time_s. command_W: the position that it has received last. In the
-  // first call the slave is put at the command, at rest.
+  // first call the slave is put at the command, at rest. If the last call was for an earlier time than
+  // time_s - tick, the slave stood still meanwhile, and the scene has no known speed of approach.
   const State& move(const Vec3& command_W, double time_s);
   const State& state() const { return state_; }
 
@@ -74,6 +75,7 @@ class Slave {
   Vec3 reference_W_ = Vec3::Zero();
   double depth_m_ = 0;            // d after the last step; NaN: not known
   std::optional<Vec3> normal_W_;  // of the surface, in this tick
+  double last_s_ = 0;   // time of the last call
   bool is_placed_ = false;
 };
 

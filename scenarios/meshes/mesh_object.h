@@ -38,6 +38,11 @@ NearestOnObjects nearest_on_objects(std::span<const MeshObject> objects,
                                     std::span<const std::optional<RigidTransform>> X_PO, const Vec3& p_P,
                                     double reach_m);
 
+// Replaces the result by objects[i] if that is nearer, by the same rules. Does not allocate. Pre: p_P is
+// finite.
+void take_nearer(NearestOnObjects& result, std::span<const MeshObject> objects, std::size_t i,
+                 const RigidTransform& X_PO, const Vec3& p_P, double reach_m);
+
 // Returns the surfaces of the objects at their poses X_WO. Pre: as many poses as objects.
 std::vector<PosedMesh> posed_meshes(std::span<const MeshObject> objects,
                                     std::span<const std::optional<RigidTransform>> X_WO);

@@ -84,8 +84,13 @@ std::vector<std::optional<RigidTransform>> MeshScene::poses(double time_s) const
   return X_WO;
 }
 
+// Makes no list of poses, because a slave of a live session asks here, and its loop must not allocate.
 NearestOnObjects MeshScene::nearest(const Vec3& p_W, double time_s) const {
-  return nearest_on_objects(objects_, poses(time_s), p_W, kReach_m);
+  NearestOnObjects result;
+  if (!p_W.allFinite()) return result;
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    take_nearer(result, objects_, i, meshes_[i].path.at(moving_time_s(time_s)), p_W, kReach_m);
+  return result;
 }
 
 double MeshScene::signed_distance(const Vec3& p_W, double time_s) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -14,10 +15,18 @@
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
 
 namespace {
+
+constexpr const char* kRecordedSession = "live-session";
+
+void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<RecordingPart>& all) {
+  const std::vector<RecordingPart> own = scenario.factory->inputs();
+  all.insert(all.end(), own.begin(), own.end());
+}
 
 // Throws InputError if a file that was named as an experiment is a sweep.
 void refuse_sweep(const Json& configuration, const std::string& label) {
@@ -80,6 +89,9 @@ std::vector<RecordingPart> Experiment::inputs(const std::vector<std::string>& ex
   for (const ExperimentSection& section : experiment_sections())
     if (section.add_inputs && std::ranges::find(except, section.key) == except.end())
       section.add_inputs(configuration_, all);
+  if (!configuration_.slave || std::ranges::find(except, "scenario") != except.end()) return all;
+  for (auto recorded = recorded_experiment(); recorded; recorded = recorded->recorded_experiment())
+    add_inputs(recorded->configuration_.scenario, all);
   return all;
 }
 
@@ -155,15 +167,52 @@ SimulatedHand Experiment::build_hand() const {
   return {configuration_.operator_settings, device, 1 / configuration_.run.haptic_rate_hz};
 }
 
-std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario& scenario) const {
+std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario* touched, Hand hand) const {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const ExperimentConfiguration& c = configuration_;
   if (!c.slave) return {};
-  const SlaveScene scene{
-      [&scenario](const Vec3& p_W, double time_s) { return scenario.signed_distance(p_W, time_s); },
-      [&scenario](const Vec3& p_W, double time_s) { return scenario.true_normal(p_W, time_s); }};
-  const double hand_mass_kg = c.operator_settings ? c.operator_settings->mass_kg : 0;
+  const SlaveScene scene{[touched](const Vec3& p_W, double time_s) {
+                           return touched ? touched->signed_distance(p_W, time_s) : kUnknown;
+                         },
+                         [touched](const Vec3& p_W, double time_s) {
+                           return touched ? touched->true_normal(p_W, time_s)
+                                          : Vec3(Vec3::Constant(kUnknown));
+                         }};
+  const bool knows_mass = hand == Hand::simulated && c.operator_settings;
+  const double hand_mass_kg = knows_mass ? c.operator_settings->mass_kg : 0;
   return Teleoperation({*c.slave, *c.command_link, *c.force_link, *c.feedback, *c.registration, hand_mass_kg},
                        c.run.key, 1 / c.run.haptic_rate_hz, scene);
+}
+
+std::optional<Experiment> Experiment::recorded_experiment() const {
+  if (configuration_.scenario.name != kRecordedSession) return {};
+  for (const Parameter& p : configuration_.scenario.factory->settings())
+    if (const auto* const path = std::get_if<std::string*>(&p.value)) {
+      const SessionReader session{find_recording(**path)};
+      if (session.depth() != kSimulatedDepth) return {};
+      return from_json(parse_json(stored_configuration(session.config()), **path + " config"));
+    }
+  return {};
+}
+
+std::unique_ptr<const Scenario> Experiment::build_recorded_scene(const Kernels& kernels) const {
+  const bool is_recorded = configuration_.scenario.name == kRecordedSession;
+  return configuration_.slave && is_recorded ? simulated_scene(kernels) : nullptr;
+}
+
+std::unique_ptr<const Scenario> Experiment::build_simulated_scene(const Kernels& kernels) const {
+  return configuration_.slave ? simulated_scene(kernels) : nullptr;
+}
+
+// See build_simulated_scene(), also for an experiment without a slave.
+std::unique_ptr<const Scenario> Experiment::simulated_scene(const Kernels& kernels) const {
+  if (configuration_.scenario.name == kRecordedSession) {
+    const std::optional<Experiment> recorded = recorded_experiment();
+    return recorded ? recorded->simulated_scene(kernels) : nullptr;
+  }
+  auto scenario = configuration_.scenario.factory->build(configuration_.run.key, kernels);
+  if (!scenario->truth_text().empty()) return nullptr;
+  return scenario;
 }
 
 std::vector<LiveParameter> Experiment::live_parameters() const {
@@ -181,6 +230,8 @@ std::vector<LiveParameter> Experiment::live_parameters() const {
 }
 
 double Experiment::max_stiffness_N_per_m() const {
+  if (configuration_.slave && configuration_.feedback->force != Feedback::rendered)
+    return felt_stiffness_N_per_m(*configuration_.slave, *configuration_.feedback);
   double holds = max_renderer_stiffness(configuration_), pulls = 0;
   for (const FixtureValues& v : configuration_.fixture_values()) {
     if (v.role == FixtureRole::forbidden)

@@ -48,7 +48,8 @@ class Experiment {
   // configuration, or the value of a change at 0 s. Returns null if there is none.
   nlohmann::ordered_json value_at_start(const std::string& path) const;
   // Returns the recordings that a run reads, as named in the configuration; the file system is not searched.
-  // except: keys of sections that this run does not read.
+  // With a slave and a recorded live session, reads the session and adds the files of its scene. except: keys
+  // of sections that this run does not read.
   std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
 
   // Builds the scenario, with the faults of the sensor if the experiment has any.
@@ -75,9 +76,20 @@ class Experiment {
   // images. Adds nothing if the CPU processes them. Must be called after build_processing().
   void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
-  // Builds the slave and its links, in the true surface of the scenario, which must outlive it. Returns
-  // nothing without a slave.
-  std::optional<Teleoperation> build_teleoperation(const Scenario& scenario) const;
+  // Builds the slave and its links. Returns nothing without a slave. touched: the slave touches the true
+  // surface of this scenario, which must outlive it; null: nothing. hand: whether passivity control may use
+  // the mass in the section operator, which a real hand does not have.
+  enum class Hand { simulated, real };
+  std::optional<Teleoperation> build_teleoperation(const Scenario* touched,
+                                                   Hand hand = Hand::simulated) const;
+  // Builds the scene that a slave touches in real time, with a simulated camera: the scenario without the
+  // faults of the sensor, or build_recorded_scene() if the scenario is a recorded live session. Returns null
+  // if there is no slave, and if the scenario is a recording, because its true surface is read from files.
+  std::unique_ptr<const Scenario> build_simulated_scene(const Kernels& kernels) const;
+  // Returns null unless there is a slave, and the scenario is a recorded live session whose camera was
+  // simulated. Then builds the scene that the camera saw, as build_simulated_scene() does: the session itself
+  // has no true surface.
+  std::unique_ptr<const Scenario> build_recorded_scene(const Kernels& kernels) const;
   // Returns the settings that pass every frame on if there is no slave.
   FrameDeadBandSettings frame_dead_band() const {
     return configuration_.frame_link.value_or(FrameDeadBandSettings{});
@@ -88,7 +100,8 @@ class Experiment {
   // The button presses of the simulated operator, and the changes of the grip.
   std::vector<Phase> operator_phases() const { return remote_touch::operator_phases(configuration_); }
   // Returns an upper bound, over all poses, of how fast |force| grows with the device's displacement: the
-  // stiffest spring of the renderer or of a forbidden region, plus the springs of all guidance.
+  // stiffest spring of the renderer or of a forbidden region, plus the springs of all guidance. If the hand
+  // feels a slave instead, it is the stiffness of drive and contact of the slave in series, times the gain.
   double max_stiffness_N_per_m() const;
   // Returns the live parameters of the renderer, in the order of Renderer::live_parameters(), then those of
   // the scenario.
@@ -100,6 +113,11 @@ class Experiment {
   SafetyLimits safety() const { return configuration_.safety.value_or(SafetyLimits{}); }
 
  private:
+  // Returns the experiment that was run in a live session with a simulated camera, if the scenario is the
+  // recording of it.
+  std::optional<Experiment> recorded_experiment() const;
+  std::unique_ptr<const Scenario> simulated_scene(const Kernels& kernels) const;
+
   ExperimentConfiguration configuration_;
 };
 

@@ -274,6 +274,10 @@ std::string SessionReader::ended() const {
   return attribute(file_.attributes(), "ended");
 }
 
+std::string SessionReader::depth() const {
+  return attribute(file_.attributes(), "depth");
+}
+
 DeviceState SessionReader::device(std::size_t i) const {
   return {Vec3(position_[3 * i], position_[3 * i + 1], position_[3 * i + 2]),
           {orientation_[4 * i], orientation_[4 * i + 1], orientation_[4 * i + 2], orientation_[4 * i + 3]},

@@ -24,6 +24,9 @@ struct SessionTick {
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
+// The address of the sensor, attribute `depth`, if the experiment's scenario was the camera.
+inline constexpr const char* kSimulatedDepth = "sim:";
+
 // The value of the attribute `ended` of a recording that was interrupted and then recovered.
 inline constexpr const char* kInterruptedRecording = "interrupted";
 
@@ -112,6 +115,8 @@ class SessionReader {
   // Returns the reason why the recording ended. It is kInterruptedRecording if the program did not end the
   // recording, and empty in recordings of earlier versions.
   std::string ended() const;
+  // The address of the sensor, such as "sim:"; empty in recordings of earlier versions.
+  std::string depth() const;
   double haptic_rate_hz() const { return haptic_rate_hz_; }
   const SensorView& view() const { return view_; }
   std::size_t frame_count() const { return captured_s_.size(); }

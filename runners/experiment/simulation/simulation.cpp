@@ -7,7 +7,6 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "core/rendering/rendered_wrench.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/fixture_notes.h"
@@ -150,7 +149,9 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   FrameLink link(experiment.frame_dead_band(), observed, kernels);
   RendererChanges changes(experiment.changes(), *renderer);
   SimulatedHand hand = experiment.build_hand();
-  std::optional<Teleoperation> remote = experiment.build_teleoperation(*scenario);
+  const auto recorded_scene = experiment.build_recorded_scene(kernels);
+  std::optional<Teleoperation> remote =
+      experiment.build_teleoperation(recorded_scene ? recorded_scene.get() : scenario.get());
   const std::size_t ticks = tick_count(experiment, *trajectory);
   const RenderedContact contact = experiment.rendered_contact();
   const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
@@ -173,8 +174,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    if (remote) out.slave_W = remote->command(device, out);  // the position that is sent
-    hand.apply(remote ? remote->tick(device, out, time_s) : rendered_wrench(out));
+    hand.apply(commanded_wrench(remote ? &*remote : nullptr, device, out, time_s));
     std::optional<SlaveState> slave;
     if (remote) {
       slave = remote->state();

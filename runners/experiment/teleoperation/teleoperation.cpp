@@ -1,5 +1,7 @@
 #include "runners/experiment/teleoperation/teleoperation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -22,6 +24,13 @@ double response_m_per_N(double mass_kg, double tick_s) {
 
 }  // namespace
 
+// A packet per tick is in transit, and those that the slave sends in missed ticks.
+Teleoperation::Link::Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s)
+    : channel(settings.channel, key, use), sender(settings.dead_band) {
+  const double longest_s = settings.channel.delay_s + settings.channel.jitter_s;
+  channel.reserve(static_cast<std::size_t>(longest_s / tick_s) + kMaxMissedTicks + 2);
+}
+
 void Teleoperation::Link::send(const Vec3& value, double in_J, double time_s) {
   if (const std::optional<DeadBandSample> sample = sender.send(value, time_s))
     channel.send(time_s, {*sample, in_J});
@@ -38,9 +47,10 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
                              SlaveScene scene)
     : s_(settings),
       X_registration_(registration_of(settings.registration, key)),
+      tick_s_(tick_s),
       slave_(settings.slave, tick_s, std::move(scene)),
-      commands_(settings.commands, key, NoiseUse::command_channel),
-      forces_(settings.forces, key, NoiseUse::force_channel),
+      commands_(settings.commands, key, NoiseUse::command_channel, tick_s),
+      forces_(settings.forces, key, NoiseUse::force_channel, tick_s),
       hand_port_(settings.feedback.passivity, tick_s, response_m_per_N(settings.hand_mass_kg, tick_s)),
       slave_port_(settings.feedback.passivity, tick_s),
       state_(unknown_state()) {}
@@ -52,25 +62,53 @@ void Teleoperation::move_slave(double time_s) {
   state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
 }
 
-void Teleoperation::exchange_command(const Vec3& command_W, double time_s) {
-  commands_.send(command_W, hand_port_.energy().in_J, time_s);
+double Teleoperation::ticks_since_last(double time_s) const {
+  return std::max(1.0, std::round((time_s - last_s_) / tick_s_));
+}
+
+// ticks: since the last tick. All but the last of them were missed.
+void Teleoperation::move_slave_until(double time_s, double ticks) {
+  double peak_N = 0;
+  for (int left = static_cast<int>(std::min(ticks - 1, 1.0 * kMaxMissedTicks)); left > 0; --left) {
+    const double at_s = time_s - left * tick_s_;
+    move_slave(at_s);
+    peak_N = std::max(peak_N, state_.peak_force_N);
+    if (is_passive()) slave_port_.observe(slave_force());
+    receive_command(at_s);
+    send_force(at_s);
+  }
+  move_slave(time_s);
+  state_.peak_force_N = std::max(peak_N, state_.peak_force_N);
+}
+
+// Returns the motion of the hand since the last tick.
+Vec3 Teleoperation::displacement_m(const DeviceState& device) {
+  if (!device.position_W.allFinite()) return Vec3::Zero();
+  const Vec3 before_W = hand_W_.value_or(device.position_W);
+  hand_W_ = device.position_W;
+  return device.position_W - before_W;
+}
+
+void Teleoperation::receive_command(double time_s) {
   commands_.receive(time_s);
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
     command_W_ = is_passive() ? slave_port_.command(*received, slave_force(), commands_.far_in_J) : *received;
 }
 
+void Teleoperation::send_force(double time_s) {
+  if (feels_slave()) forces_.send(slave_force(), slave_port_.energy().in_J, time_s);
+}
+
 // Returns the force on the hand for the coming tick.
-Vec3 Teleoperation::exchange_force(double time_s) {
-  const bool feels_slave = s_.feedback.force == Feedback::slave_force || is_passive();
-  if (!feels_slave) return Vec3::Zero();
-  forces_.send(slave_force(), slave_port_.energy().in_J, time_s);
+Vec3 Teleoperation::receive_force(double time_s) {
+  if (!feels_slave()) return Vec3::Zero();
   forces_.receive(time_s);
   return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
 }
 
-// displacement_m: of the hand in the tick that has ended.
-Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& displacement_m) {
-  const Vec3 expected_m = s_.hand_mass_kg > 0 ? hand_port_.free_displacement() : displacement_m;
+// last_displacement_m: of the hand, in the tick that has ended.
+Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& last_displacement_m) {
+  const Vec3 expected_m = s_.hand_mass_kg > 0 ? hand_port_.free_displacement() : last_displacement_m;
   return hand_port_.force(force_N, expected_m, forces_.far_in_J);
 }
 
@@ -85,20 +123,29 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   if (is_first) command_W_ = command_W;
   if (!command_W_) return is_rendered ? rendered_wrench(out) : Wrench{};
 
-  move_slave(time_s);
-  const Vec3 displacement_m = hand_W_ ? Vec3(device.position_W - *hand_W_) : Vec3(Vec3::Zero());
+  const double ticks = is_first ? 1 : ticks_since_last(time_s);
+  move_slave_until(time_s, ticks);
+  last_s_ = time_s;
+  const Vec3 moved_m = displacement_m(device);
   if (is_passive() && !is_first) {
     slave_port_.observe(slave_force());
-    hand_port_.observe(displacement_m);
+    hand_port_.observe(moved_m);
   }
-  hand_W_ = device.position_W;
-  if (command_W.allFinite()) exchange_command(command_W, time_s);
-  Wrench wrench = is_rendered ? rendered_wrench(out) : Wrench{exchange_force(time_s), Vec3::Zero()};
+  if (command_W.allFinite()) commands_.send(command_W, hand_port_.energy().in_J, time_s);
+  receive_command(time_s);
+  send_force(time_s);
+  Wrench wrench = is_rendered ? rendered_wrench(out) : Wrench{receive_force(time_s), Vec3::Zero()};
   if (s_.feedback.force == Feedback::slave_force) wrench.force_N *= s_.feedback.gain;
-  if (is_passive()) wrench.force_N = passive_force(wrench.force_N, displacement_m);
+  if (is_passive()) wrench.force_N = passive_force(wrench.force_N, moved_m / ticks);
   state_.command_packets = static_cast<std::int32_t>(commands_.sender.packets());
   state_.force_packets = static_cast<std::int32_t>(forces_.sender.packets());
   return wrench;
+}
+
+Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, RenderOutput& out, double time_s) {
+  if (!remote) return rendered_wrench(out);
+  out.slave_W = remote->command(device, out);
+  return remote->tick(device, out, time_s);
 }
 
 }  // namespace remote_touch

@@ -23,11 +23,18 @@ class Teleoperation {
   // Must be called once per tick, after the renderer. Moves the slave to time_s with the command that it had
   // at the tick before, sends the new command and the slave's force, and receives what has arrived by
   // time_s. Returns the wrench that the device is commanded to exert until the next tick. The slave starts,
-  // at rest, at the first command that is finite, whatever the delay.
+  // at rest, at the first command that is finite, whatever the delay. A command that is not finite is not
+  // sent, and a position of the device that is not finite counts as the one before.
+  //
+  // The slave has a clock of its own. If the caller has left out ticks, the slave makes up to kMaxMissedTicks
+  // of them first, at their times: it moves, receives commands that were under way, and sends its forces. It
+  // stands still in the part of a longer pause before that. Allocates nothing.
   Wrench tick(const DeviceState& device, const RenderOutput& out, double time_s);
 
-  // Returns the state after the last tick. Before the first command all its numbers are NaN, except the
-  // counts of packets.
+  static constexpr int kMaxMissedTicks = 20;
+
+  // Returns the state after the last tick. Its peak force is that of the time since the tick before. Before
+  // the first command all its numbers are NaN, except the counts of packets.
   const SlaveState& state() const { return state_; }
 
   // The energies at both ports since the start; of passivity control only.
@@ -41,8 +48,7 @@ class Teleoperation {
     double in_J = 0;
   };
   struct Link {
-    Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use)
-        : channel(settings.channel, key, use), sender(settings.dead_band) {}
+    Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s);
     void send(const Vec3& value, double in_J, double time_s);
     void receive(double time_s);
     Channel<Packet> channel;
@@ -54,20 +60,32 @@ class Teleoperation {
   // The force of the scene on the slave in the last tick, in the axes in which the hand works.
   Vec3 slave_force() const { return X_registration_.linear().transpose() * slave_.state().force_N; }
   bool is_passive() const { return s_.feedback.force == Feedback::passive_slave_force; }
+  bool feels_slave() const { return s_.feedback.force == Feedback::slave_force || is_passive(); }
   void move_slave(double time_s);
-  void exchange_command(const Vec3& command_W, double time_s);
-  Vec3 exchange_force(double time_s);
-  Vec3 passive_force(const Vec3& force_N, const Vec3& displacement_m);
+  double ticks_since_last(double time_s) const;
+  void move_slave_until(double time_s, double ticks);
+  Vec3 displacement_m(const DeviceState& device);
+  void receive_command(double time_s);
+  void send_force(double time_s);
+  Vec3 receive_force(double time_s);
+  Vec3 passive_force(const Vec3& force_N, const Vec3& last_displacement_m);
 
   const TeleoperationSettings s_;
   const RigidTransform X_registration_;  // from a position that is sent to where the slave goes
+  const double tick_s_;
   Slave slave_;
   Link commands_, forces_;
   ImpedancePassivityController hand_port_;
   AdmittancePassivityController slave_port_;
-  std::optional<Vec3> hand_W_;     // position of the hand at the last tick
+  double last_s_ = 0;              // time of the last tick
+  std::optional<Vec3> hand_W_;     // last finite position of the hand
   std::optional<Vec3> command_W_;  // the command for the coming tick of the slave
   SlaveState state_;
 };
+
+// One tick of the hand's side of any run. Sets out.slave_W to the position that is sent, and returns the
+// wrench that the device is commanded to exert. remote: null without a slave; then this is the wrench of the
+// renderer.
+Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, RenderOutput& out, double time_s);
 
 }  // namespace remote_touch

@@ -1,5 +1,7 @@
 #include "runners/experiment/teleoperation/teleoperation_settings.h"
 
+#include <numbers>
+
 namespace remote_touch {
 
 Parameters parameters(FeedbackSettings& s) {
@@ -15,6 +17,12 @@ std::string validate(const FeedbackSettings& s) {
   if (s.force != Feedback::slave_force && s.gain != 1)
     return "gain = " + std::to_string(s.gain) + ": expected 1 unless force = slave-force";
   return {};
+}
+
+double felt_stiffness_N_per_m(const SlaveSettings& slave, const FeedbackSettings& feedback) {
+  if (feedback.force == Feedback::none || slave.contact_stiffness_N_per_m == 0) return 0;
+  const double w = 2 * std::numbers::pi * slave.natural_frequency_hz;
+  return feedback.gain / (1 / (slave.mass_kg * w * w) + 1 / slave.contact_stiffness_N_per_m);
 }
 
 Parameters parameters(LinkSettings& s) {

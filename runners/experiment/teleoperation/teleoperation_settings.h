@@ -31,6 +31,10 @@ struct FeedbackSettings {
 Parameters parameters(FeedbackSettings& s);
 std::string validate(const FeedbackSettings& s);
 
+// Returns how fast the force on the hand grows with its displacement, at rest and without a delay: drive and
+// contact of the slave in series, times the gain. pre: force is not rendered.
+double felt_stiffness_N_per_m(const SlaveSettings& slave, const FeedbackSettings& feedback);
+
 // One direction of the connection: which samples are sent, and how they travel.
 struct LinkSettings {
   ChannelSettings channel;

@@ -2,14 +2,30 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+
+#include "runners/experiment/hand/device_motors.h"
 
 namespace remote_touch {
+
+namespace {
+
+// Returns the hand of the simulation that replays this tick: an ideal device, which exerts what it is
+// commanded to exert. A run without a slave has none.
+std::optional<HandState> hand_state(const LiveTick& tick) {
+  if (!tick.slave) return {};
+  const DeviceState& device = tick.device;
+  const Wrench wrench = exerted({}, device.orientation_W, tick.command);
+  return HandState{device.position_W, device.orientation_W, wrench.force_N, wrench.torque_Nm};
+}
+
+}  // namespace
 
 void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (trace.length() < max_rows) {
     trace.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
-                 {kUnknown, kUnknown, tick.hash});
+                 {kUnknown, kUnknown, tick.hash}, hand_state(tick), tick.slave);
     row_step_s.push_back(tick.step_s);
   }
   ++ticks;
@@ -28,7 +44,8 @@ void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
   }
   exhausted_ticks += tick.out.tool && tick.out.tool->budget_exhausted ? 1 : 0;
   zero_force_ticks += tick.gate == GateState::waiting || tick.gate == GateState::latched ? 1 : 0;
-  contact_ticks += tick.out.contact_count > 0 || tick.out.force_N.norm() > 0 ? 1 : 0;
+  contact_ticks +=
+      tick.out.contact_count > 0 || tick.out.force_N.norm() > 0 || tick.command.force_N.norm() > 0 ? 1 : 0;
   stale_ticks += static_cast<double>(tick.number - taken_at_) > kStaleFrame_s * haptic_rate_hz ? 1 : 0;
   max_force_N = std::max(max_force_N, tick.written.force_N.norm());
 }

@@ -15,13 +15,14 @@ namespace remote_touch {
 struct LiveLog {
   static constexpr std::size_t kMaxRows = 1'800'000;  // half an hour at 1 kHz: 0.4 GB, more with a tool
 
-  Trace trace;                     // the first max_rows ticks
-  std::vector<double> row_step_s;  // time for taking the frame and rendering, for each tick of the trace
+  // The first max_rows ticks. With a slave, device_force is the force that was commanded, before the gate.
+  Trace trace;
+  std::vector<double> row_step_s;  // LiveTick::step_s of each tick of the trace
   std::size_t max_rows = kMaxRows;
   std::int64_t ticks = 0;
   bool is_whole() const { return trace.length() == static_cast<std::size_t>(ticks); }
 
-  Samples step_s;                     // time for taking the frame and rendering, every tick
+  Samples step_s;                     // LiveTick::step_s of every tick
   Samples interval_s;                 // time between the starts of ticks
   GreatestOfPieces pieces;            // greatest interval in each piece of the run
   Samples latency_s;                  // sensor's time stamp to the first write it affects, every frame taken
@@ -29,7 +30,7 @@ struct LiveLog {
   std::int64_t missed_ticks = 0;      // tick numbers that were skipped
   std::int64_t exhausted_ticks = 0;   // ticks that ended before the tool came to rest
   std::int64_t zero_force_ticks = 0;  // ticks in which the gate was waiting or latched
-  std::int64_t contact_ticks = 0;     // ticks that touched a point or whose rendered force was not zero
+  std::int64_t contact_ticks = 0;     // ticks that touched a point, or with a force of the renderer or slave
   std::int64_t stale_ticks = 0;       // ticks before which no new frame came for kStaleFrame_s
   std::int64_t reversed_frames = 0;   // frames taken although older than the one before; should be 0
   double max_force_N = 0;             // greatest force written to the device

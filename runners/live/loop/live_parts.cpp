@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "runners/experiment/simulation/slave_notes.h"
+
 namespace remote_touch {
 
 namespace {
@@ -43,6 +45,7 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       rate_hz_(experiment.settings().haptic_rate_hz),
       switches_(std::make_shared<FixtureSwitches>()),
       renderer_(experiment.build_renderer(*options.kernels, switches_)),
+      slave_(experiment, options.depth, *options.kernels),
       device_(std::move(device)),
       rows_(kRows),
       contact_(experiment),
@@ -78,12 +81,14 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
       ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_,
-                 &experiment.changes(), options.controls ? &options.controls->requested() : nullptr},
+                 &experiment.changes(), options.controls ? &options.controls->requested() : nullptr,
+                 slave_.remote()},
       DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
       rate_hz_, start_ns, options.stall_s);
   if (options.controls && device_->traits().actuated_axes > 0 && !options.device.starts_with("sim:"))
     options.controls->limit_stiffness();
   if (force_scale_ < 1) report_force_scale();
+  if (const std::string why = slave_.why_untouching(); !why.empty()) report_line(why);
 }
 
 std::unique_ptr<SessionRecorder> LiveParts::recorder(const Experiment& experiment, const SensorView& view,
@@ -93,6 +98,7 @@ std::unique_ptr<SessionRecorder> LiveParts::recorder(const Experiment& experimen
   if (options_.controls)
     for (const LiveParameter& parameter : options_.controls->parameters()) names.push_back(parameter.name);
   TextAttributes provenance = options_.provenance;
+  provenance.emplace_back("depth", options_.depth);
   experiment.add_depth_device(provenance);
   return std::make_unique<SessionRecorder>(options_.record, view, registered, provenance, names);
 }
@@ -174,6 +180,7 @@ RunReport LiveParts::report(const LiveLog& log) const {
   RunReport report = report_of(
       {options_.depth, camera_->view(), camera_->sensed(), camera_->counts(), log, rate_hz_, phases_});
   for (Note& note : contact_.notes(*options_.kernels)) report.notes.push_back(std::move(note));
+  for (Note& note : slave_notes(log.trace)) report.notes.push_back(std::move(note));
   return report;
 }
 

@@ -13,6 +13,7 @@
 #include "runners/live/loop/live_contact.h"
 #include "runners/live/loop/live_logger.h"
 #include "runners/live/loop/live_run.h"
+#include "runners/live/loop/live_slave.h"
 
 namespace remote_touch {
 
@@ -75,6 +76,7 @@ class LiveParts {
   std::exception_ptr loop_failure_;  // exception that ended the loop, for finish()
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
+  LiveSlave slave_;
   const std::unique_ptr<HapticDevice> device_;
   std::mutex pending_lines_mutex_;
   std::vector<std::string> pending_lines_;  // lines from the camera's thread, for report_changes()

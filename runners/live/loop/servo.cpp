@@ -17,10 +17,6 @@ bool is_released(const DeviceFault& fault) {
   return fault && std::string_view(fault.what) == kReleased.what;
 }
 
-Wrench wrench_of(const RenderOutput& out) {
-  return {out.force_N, out.tool ? out.tool->torque_Nm : Vec3(Vec3::Zero())};
-}
-
 }  // namespace
 
 Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits,
@@ -141,11 +137,14 @@ void Servo::one_tick() {
 
   const double read_s = links_.clock.now_s();
   take_frame(row_);
-  row_.out = links_.renderer.step(row_.device, static_cast<double>(row_.number) / rate_hz_);
+  const double time_s = static_cast<double>(row_.number) / rate_hz_;
+  row_.out = links_.renderer.step(row_.device, time_s);
+  row_.command = commanded_wrench(links_.remote, row_.device, row_.out, time_s);
+  if (links_.remote) row_.slave = links_.remote->state();
   const double command_time_s = links_.clock.now_s();
   row_.step_s = static_cast<float>(command_time_s - read_s);
 
-  row_.written = gate_.pass(command_time_s, reading, fault, placement_.to_device(wrench_of(row_.out)),
+  row_.written = gate_.pass(command_time_s, reading, fault, placement_.to_device(row_.command),
                             1e-9 * static_cast<double>(begin_ns));
   const DeviceFault refused = links_.device.write(row_.written);
   if (refused) {

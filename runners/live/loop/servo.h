@@ -6,9 +6,11 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/renderer_changes.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/heartbeat.h"
 #include "runners/live/devices/safety_gate.h"
@@ -30,12 +32,14 @@ struct LiveTick {
   std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;
   RenderOutput out;
-  ParameterChanges changed;  // changes made before this tick
-  int taken = -1;            // index of the frame that the renderer received before this tick; -1: none
-  std::uint64_t hash = 0;    // hash of the newest frame taken
-  Wrench written;            // wrench written to the device, in its axes; zero if the device refused it
+  std::optional<SlaveState> slave;  // present if the experiment has a slave
+  Wrench command;                   // wrench that the device was commanded to exert, before the gate
+  ParameterChanges changed;         // changes made before this tick
+  int taken = -1;          // index of the frame that the renderer received before this tick; -1: none
+  std::uint64_t hash = 0;  // hash of the newest frame taken
+  Wrench written;          // wrench written to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
-  float step_s = 0;             // time for taking the frame and rendering
+  float step_s = 0;             // time for taking the frame, rendering and the slave
   float since_last_tick_s = 0;  // time from the start of the tick before to the start of this one
   float latency_s = 0;          // if a frame was taken: sensor's time stamp to the write that it affects
   float waited_s = 0;           // if a frame was taken: its time from ready to taken
@@ -56,13 +60,14 @@ struct ServoLinks {
   // Changes of the experiment, and changes that the user requests while it runs; null: none.
   const std::vector<RendererChange>* scripted = nullptr;
   Ring<ParameterChanges>* requested = nullptr;
+  Teleoperation* remote = nullptr;  // null: no slave, so the hand feels the force of the renderer
 };
 
 // The servo allocates nothing, takes no lock, opens no file and reads no clock but the given one, except in
 // the device's calls. Ticks are numbered by the clock: a missed one leaves a gap; if the device is faster
 // than the rate, each tick still has its own number. The time of a tick is rounded up to a full period. A
 // tick is moved to a later number if a frame was captured while the device was read, so that no frame is used
-// before it was captured.
+// before it was captured. A slave moves in the ticks that are missing, too, see Teleoperation.
 class Servo final : public DeviceCycle {
  public:
   // stall_s: longest time without a tick before the heartbeat releases the device.

@@ -7,7 +7,7 @@ namespace remote_touch {
 void LiveRows::append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   trace_.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
-                {kUnknown, kUnknown, tick.hash});
+                {kUnknown, kUnknown, tick.hash}, {}, tick.slave);
   const Wrench written_W = placement.in_world(tick.written);
   force_N_.insert(force_N_.end(), written_W.force_N.begin(), written_W.force_N.end());
   torque_Nm_.insert(torque_Nm_.end(), written_W.torque_Nm.begin(), written_W.torque_Nm.end());

@@ -355,6 +355,17 @@ TEST(Channel, ReceivesTheSameHoweverOftenItIsAsked) {
   EXPECT_EQ(seldom.counts().overtaken, often.counts().overtaken);
 }
 
+TEST(Channel, AllocatesNothingWithinItsReserve) {
+  Channel<int> channel({1, 0, 0, 1, false}, {}, kUse);
+  channel.reserve(1002);
+  const std::size_t before = allocation_count();
+  for (int k = 0; k < 3000; ++k) {
+    channel.send(k * kTick_s, k);
+    channel.receive(k * kTick_s);
+  }
+  EXPECT_EQ(allocation_count(), before);
+}
+
 TEST(Channel, AllocatesNothingOnceItsBufferHasGrown) {
   Channel<int> channel({0.05, 0.05, 0.1, 5, false}, {}, kUse);
   const auto run = [&](int begin, int end) {

@@ -128,6 +128,69 @@ TEST(Teleoperation, TheSlaveStartsAtTheFirstCommand) {
   EXPECT_EQ(remote.state().position_W, Vec3(1, 2, 3));
 }
 
+// The slave follows a command that arrives in the middle of the ticks that are missing.
+TEST(Teleoperation, TheSlaveMovesInTicksThatAreLeftOut) {
+  const auto run = [](bool leaves_out) {
+    Teleoperation remote(with(Feedback::slave_force, 0.005), {}, kTick_s, ground());
+    double peak_N = 0;
+    for (int i = 0; i <= 400; ++i) {
+      if (leaves_out && i > 100 && i <= 120) continue;
+      const double y = i < 100 ? 0.0052 : -0.01;
+      remote.tick({{0, y, 0}}, {}, i * kTick_s);
+      peak_N = std::max(peak_N, remote.state().peak_force_N);
+    }
+    SlaveState end = remote.state();
+    end.peak_force_N = peak_N;
+    return end;
+  };
+  const SlaveState all = run(false), some = run(true);
+  EXPECT_NEAR((some.position_W - all.position_W).norm(), 0, 1e-9);
+  EXPECT_NEAR((some.force_N - all.force_N).norm(), 0, 1e-6);
+  EXPECT_GT(all.peak_force_N, all.force_N.norm() + 1) << "the impact, which is in the ticks that are missing";
+  EXPECT_NEAR(some.peak_force_N, all.peak_force_N, 1e-6);
+  EXPECT_EQ(some.force_packets, all.force_packets);
+  EXPECT_EQ(some.command_packets, all.command_packets - 20);
+}
+
+// After a pause longer than kMaxMissedTicks the surface is elsewhere. Its motion in the pause is no approach.
+TEST(Teleoperation, TheSlaveStandsStillInTheFirstPartOfALongPause) {
+  TeleoperationSettings s = with(Feedback::none);
+  s.slave.natural_frequency_hz = 0.1;
+  const SlaveScene rising{[](const Vec3& p, double time_s) { return p.y() - 0.01 * time_s; },
+                          [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+  Teleoperation remote(s, {}, kTick_s, rising);
+  remote.tick({{0, 0.105, 0}}, {}, 0);
+  remote.tick({{0, 0.105, 0}}, {}, 10.121);  // the surface is 1 mm inside the ball when it moves again
+  EXPECT_NEAR(remote.state().peak_force_N, 0.001 * s.slave.contact_stiffness_N_per_m, 1);
+  EXPECT_GT(remote.state().position_W.y(), 0.107);
+}
+
+// A device with a fault reports NaN for some ticks. The motion of the hand meanwhile counts in the tick
+// after.
+TEST(Teleoperation, AHandWithoutAPositionLeavesNoTrace) {
+  Teleoperation remote(with(Feedback::passive_slave_force, 0.005), {}, kTick_s, ground());
+  double felt_N = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double y = i >= 200 && i < 210 ? std::numeric_limits<double>::quiet_NaN() : 0.02 - 2e-5 * i;
+    const Wrench felt = remote.tick({{0, y, 0}}, {}, i * kTick_s);
+    ASSERT_TRUE(felt.force_N.allFinite()) << i;
+    felt_N = std::max(felt_N, felt.force_N.norm());
+  }
+  EXPECT_TRUE(remote.state().position_W.allFinite());
+  EXPECT_TRUE(std::isfinite(remote.hand_energy().balance_J()));
+  EXPECT_GT(felt_N, 0.3);
+}
+
+// The hand at rest 1 cm below the ground commands the ball, of 5 mm, 1.5 cm beyond the first contact.
+TEST(Teleoperation, TheStiffnessIsThatOfDriveAndContactInSeries) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  s.feedback.gain = 0.5;
+  EXPECT_NEAR(descent(s, 3000).back().felt.force_N.y(), 0.015 * felt_stiffness_N_per_m(s.slave, s.feedback),
+              1e-3);
+  s.feedback.force = Feedback::none;
+  EXPECT_EQ(felt_stiffness_N_per_m(s.slave, s.feedback), 0);
+}
+
 TEST(Teleoperation, ADeadBandSavesPackets) {
   TeleoperationSettings s = with(Feedback::slave_force);
   const std::int32_t all = descent(s).back().slave.force_packets;

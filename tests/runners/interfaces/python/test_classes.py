@@ -22,6 +22,31 @@ for experiment in (PRESS, AT_REST):
 ''')
 
 
+def test_a_slave_touches_a_scene_of_python_and_follows_a_renderer_of_python(in_python):
+    in_python(PENALTY + '''
+class Table(rt.Scenario):
+    "the plane y = 0"
+    frame_rate_hz, frame_count = 30, 1
+    def cloud(self, frame):
+        x, z = (grid.ravel() for grid in np.meshgrid(np.linspace(-0.02, 0.02, 30), np.linspace(-0.02, 0.02, 30)))
+        return np.column_stack([x, 0 * x, z])
+    def signed_distance(self, p, time_s):
+        return p[1]
+rt.register(Table, "python-table")
+PUSH = {"scenario": {"name": Table}, "renderer": {"name": Penalty}, "slave": {}, "duration_s": 0.6,
+        "trajectory": {"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.002, 0, 0.1]]}}
+sent = rt.run(PUSH)
+np.testing.assert_array_equal(sent.slave_command, sent.hip_position)  # the position that the class sends
+assert sent.slave_position.dims == ("time", "xyz") and sent.slave_force.attrs["units"] == "N"
+np.testing.assert_allclose(sent.slave_clearance, sent.slave_position[:, 1] - 0.005, atol=1e-12)
+assert float(sent.max_slave_force) > 1 and float(sent.slave_force[-1, 1]) > 1
+assert "slave without surface" not in sent.attrs.get("notes", "")
+felt = rt.run(PUSH, set={"feedback": {"force": "slave-force"}})
+np.testing.assert_array_equal(felt.device_force, felt.slave_force)  # without a delay
+np.testing.assert_array_equal(felt.slave_position, sent.slave_position)
+''')
+
+
 def test_a_run_without_what_a_renderer_needs_is_refused(in_python):
     in_python(PENALTY + '''
 class Careful(Penalty):

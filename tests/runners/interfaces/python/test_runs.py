@@ -9,12 +9,13 @@ import remote_touch as rt
 import xarray
 from conftest import PRESS, ROOT, assert_same_file, digest_in
 
-EXPERIMENTS = [  # with a proxy, with regions, with a tool, with guidance and a hand; the last two for a part of their time
+EXPERIMENTS = [  # with a proxy, regions, a tool, guidance and a hand, a slave; the last three for a part of their time
     ("fig4.12", {}, 7),
     ("fig4.12", {"scenario.noise_sigma_m": 0.003, "renderer": {"name": "tracked-sheet"}}, None),
     ("fig5.5", {"duration_s": 0.5}, 3),
     ("fig6.3", {"duration_s": 0.1}, None),
     ("fig7.5", {"duration_s": 0.1}, 2),
+    ("steer-robot", {"duration_s": 0.3, "feedback": {"force": "slave-force"}}, None),
 ]
 
 
