@@ -34,9 +34,10 @@ Parameters parameters(SlaveSettings& s) {
        "largest speed of the reference that the slave follows; 0: no limit"},
       {"max_acceleration_m_per_s2", &s.max_acceleration_m_per_s2, 0, 1000,
        "largest acceleration that the drive can give to the slave; 0: no limit"},
-      {"radius_m", &s.radius_m, 1e-4, 1, "radius of the ball with which the slave touches the scene"},
+      {"radius_m", &s.radius_m, 1e-4, 1,
+       "radius of the ball with which the slave touches the scene, if it has no tool"},
       {"contact_stiffness_N_per_m", &s.contact_stiffness_N_per_m, 0, 1e6,
-       "stiffness of the contact of ball and scene; 0: the ball feels nothing"},
+       "stiffness of the contact of ball or tool and scene; 0: the slave feels nothing"},
       {"contact_damping_Ns_per_m", &s.contact_damping_Ns_per_m, 0, 10000, "damping of this contact"},
       {"steps_per_tick", &s.steps_per_tick, 1, 1000, "steps of the slave's motion in a tick"},
   };

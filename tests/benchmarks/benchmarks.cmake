@@ -35,6 +35,9 @@ target_link_libraries(raster_benchmark PRIVATE core scenarios benchmark::benchma
 add_executable(mesh_distance_benchmark benchmarks/checked_benchmark.cpp benchmarks/mesh_distance_benchmark.cpp)
 target_link_libraries(mesh_distance_benchmark PRIVATE runners benchmark::benchmark)
 
+add_executable(slave_benchmark benchmarks/checked_benchmark.cpp benchmarks/slave_benchmark.cpp)
+target_link_libraries(slave_benchmark PRIVATE runners benchmark::benchmark)
+
 add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/dissertation/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)

@@ -16,6 +16,7 @@
 #include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
+#include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
@@ -26,6 +27,22 @@ constexpr const char* kRecordedSession = "live-session";
 void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<RecordingPart>& all) {
   const std::vector<RecordingPart> own = scenario.factory->inputs();
   all.insert(all.end(), own.begin(), own.end());
+}
+
+// Returns the tool of the renderer for the slave, nothing if the renderer has none. Throws InputError if the
+// steps of the slave are too long for it. See load_tool() for the tool itself.
+std::optional<SlaveTool> slave_tool(const ExperimentConfiguration& configuration) {
+  if (!renders_tool(configuration)) return {};
+  Json of_renderer = Json::object(), of_tool = Json::object();
+  write_parameters(configuration.renderer.factory->settings(), of_renderer);
+  ToolSettings settings;
+  for (const Parameter& p : parameters(settings)) of_tool[p.name] = of_renderer[p.name];
+  read_parameters(of_tool, parameters(settings), "renderer");
+  const auto tool = load_tool(settings);
+  SlaveTool made = make_slave_tool(tool->mesh, tool->inertia_m2);
+  const std::string problem = validate(*configuration.slave, made, 1 / configuration.run.haptic_rate_hz);
+  if (!problem.empty()) throw InputError("slave." + problem);
+  return made;
 }
 
 // Throws InputError if a file that was named as an experiment is a sweep.
@@ -180,8 +197,9 @@ std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario* tou
                          }};
   const bool knows_mass = hand == Hand::simulated && c.operator_settings;
   const double hand_mass_kg = knows_mass ? c.operator_settings->mass_kg : 0;
-  return Teleoperation({*c.slave, *c.command_link, *c.force_link, *c.feedback, *c.registration, hand_mass_kg},
-                       c.run.key, 1 / c.run.haptic_rate_hz, scene);
+  return Teleoperation(
+      {*c.slave, *c.command_link, *c.force_link, *c.feedback, *c.registration, hand_mass_kg, slave_tool(c)},
+      c.run.key, 1 / c.run.haptic_rate_hz, scene);
 }
 
 std::optional<Experiment> Experiment::recorded_experiment() const {

@@ -130,6 +130,35 @@ void check_sequence(ExperimentConfiguration& configuration) {
           "expected a button of operator.presses (any button in experiments with a section live)");
 }
 
+namespace {
+
+bool has_setting(const Part<RendererEntry>& renderer, const std::string& name) {
+  const Parameters settings = renderer.factory->settings();
+  return std::ranges::any_of(settings, [&](const Parameter& p) { return p.name == name; });
+}
+
+// The slave has the tool of the renderer.
+void check_slave_tool(const ExperimentConfiguration& configuration) {
+  if (!has_setting(configuration.renderer, "tool_mesh"))
+    throw InputError("slave", "the tool of the renderer " + configuration.renderer.name +
+                                  " is not known: expected a built-in renderer, or one without a tool");
+  const double radius_m = configuration.slave->radius_m;
+  if (radius_m != SlaveSettings{}.radius_m)
+    throw InputError("slave.radius_m = " + shown(radius_m),
+                     "expected the default for a slave with a tool, whose surface touches the scene");
+  if (configuration.feedback->force == Feedback::passive_slave_force)
+    throw InputError("feedback.force = passive-slave-force",
+                     "expected another for a slave with a tool: passivity control balances the energy of "
+                     "force and position, not that of torque and rotation");
+}
+
+}  // namespace
+
+bool renders_tool(const ExperimentConfiguration& configuration) {
+  return find_entry(renderers(), configuration.renderer.name, "renderer.name").degrees_of_freedom ==
+         DegreesOfFreedom::six;
+}
+
 void check_slave(ExperimentConfiguration& configuration) {
   if (!configuration.slave) {
     const std::pair<const char*, bool> needing[] = {{"command_link", configuration.command_link.has_value()},
@@ -141,14 +170,12 @@ void check_slave(ExperimentConfiguration& configuration) {
       if (is_given) throw InputError(name, "expected only in an experiment with the section slave");
     return;
   }
-  for (const Parameter& p : configuration.renderer.factory->settings())
-    if (p.name == "tool_mesh")
-      throw InputError("slave", "expected a renderer without a tool, because the slave is a ball");
   if (!configuration.command_link) configuration.command_link.emplace();
   if (!configuration.force_link) configuration.force_link.emplace();
   if (!configuration.frame_link) configuration.frame_link.emplace();
   if (!configuration.feedback) configuration.feedback.emplace();
   if (!configuration.registration) configuration.registration.emplace();
+  if (renders_tool(configuration)) check_slave_tool(configuration);
 }
 
 void check_device(ExperimentConfiguration& configuration) {

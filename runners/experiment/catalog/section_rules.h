@@ -14,9 +14,12 @@ void check_changes(ExperimentConfiguration& configuration);
 void check_sequence(ExperimentConfiguration& configuration);
 // Friction and damping of the device need a hand with a mass.
 void check_device(ExperimentConfiguration& configuration);
-// Links and feedback need a slave. With one, adds those that were left out with default
-// values, so that results store the settings used. The slave is a ball, so the renderer must have no tool.
+// Links and feedback need a slave. With one, adds those that were left out with default values, so that
+// results store the settings used. If the renderer has a tool, the slave has the same one, so it must be
+// known; passivity control is for a ball only.
 void check_slave(ExperimentConfiguration& configuration);
+// True if the renderer has a tool, which a slave then has as well.
+bool renders_tool(const ExperimentConfiguration& configuration);
 
 // Returns the largest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
 double max_renderer_stiffness(const ExperimentConfiguration& configuration);

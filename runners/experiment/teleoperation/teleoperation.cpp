@@ -31,33 +31,43 @@ Teleoperation::Link::Link(const LinkSettings& settings, const NoiseKey& key, Noi
   channel.reserve(static_cast<std::size_t>(longest_s / tick_s) + kMaxMissedTicks + 2);
 }
 
-void Teleoperation::Link::send(const Vec3& value, double in_J, double time_s) {
-  if (const std::optional<DeadBandSample> sample = sender.send(value, time_s))
-    channel.send(time_s, {*sample, in_J});
+void Teleoperation::Link::send(const Vec3& value, Packet rest, double time_s) {
+  const std::optional<DeadBandSample> sample = sender.send(value, time_s);
+  if (!sample) return;
+  rest.sample = *sample;
+  channel.send(time_s, rest);
 }
 
 void Teleoperation::Link::receive(double time_s) {
   const std::optional<Packet> packet = channel.receive(time_s);
   if (!packet) return;
   receiver.receive(packet->sample, time_s);
-  far_in_J = packet->in_J;
+  newest = *packet;
 }
 
 Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
-                             SlaveScene scene)
+                             const SlaveScene& scene)
     : s_(settings),
       X_registration_(registration_of(settings.registration, key)),
       tick_s_(tick_s),
-      slave_(settings.slave, tick_s, std::move(scene)),
+      slave_(settings.slave, tick_s, scene),
       commands_(settings.commands, key, NoiseUse::command_channel, tick_s),
       forces_(settings.forces, key, NoiseUse::force_channel, tick_s),
       hand_port_(settings.feedback.passivity, tick_s, response_m_per_N(settings.hand_mass_kg, tick_s)),
       slave_port_(settings.feedback.passivity, tick_s),
-      state_(unknown_state()) {}
+      state_(unknown_state()) {
+  if (!settings.tool) return;
+  tool_slave_.emplace(settings.slave, *settings.tool, tick_s, scene);
+  state_.tool.emplace();
+}
 
 void Teleoperation::move_slave(double time_s) {
-  state_.command_W = X_registration_ * *command_W_;
-  const Slave::State& slave = slave_.move(state_.command_W, time_s);
+  const Vec3 goal_W = X_registration_ * *command_W_;
+  const Eigen::Quaterniond turn(X_registration_.linear());
+  const Slave::State& slave = tool_slave_ ? tool_slave_->move({goal_W, turn * command_orientation_W_}, time_s)
+                                          : slave_.move(goal_W, time_s);
+  if (tool_slave_) state_.tool = {tool_slave_->state().orientation_W, tool_slave_->state().torque_Nm};
+  state_.command_W = goal_W;
   state_.position_W = slave.position_W, state_.force_N = slave.force_N;
   state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
 }
@@ -91,12 +101,16 @@ Vec3 Teleoperation::displacement_m(const DeviceState& device) {
 
 void Teleoperation::receive_command(double time_s) {
   commands_.receive(time_s);
+  if (commands_.receiver.shown(time_s)) command_orientation_W_ = commands_.newest.orientation_W;
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
-    command_W_ = is_passive() ? slave_port_.command(*received, slave_force(), commands_.far_in_J) : *received;
+    command_W_ =
+        is_passive() ? slave_port_.command(*received, slave_force(), commands_.newest.in_J) : *received;
 }
 
 void Teleoperation::send_force(double time_s) {
-  if (feels_slave()) forces_.send(slave_force(), slave_port_.energy().in_J, time_s);
+  if (!feels_slave()) return;
+  const Vec3 torque_Nm = tool_slave_ ? in_axes_of_hand(tool_slave_->state().torque_Nm) : Vec3(Vec3::Zero());
+  forces_.send(slave_force(), {.in_J = slave_port_.energy().in_J, .torque_Nm = torque_Nm}, time_s);
 }
 
 // Returns the force on the hand for the coming tick.
@@ -109,18 +123,28 @@ Vec3 Teleoperation::receive_force(double time_s) {
 // last_displacement_m: of the hand, in the tick that has ended.
 Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& last_displacement_m) {
   const Vec3 expected_m = s_.hand_mass_kg > 0 ? hand_port_.free_displacement() : last_displacement_m;
-  return hand_port_.force(force_N, expected_m, forces_.far_in_J);
+  return hand_port_.force(force_N, expected_m, forces_.newest.in_J);
 }
 
 Vec3 Teleoperation::command(const DeviceState& device, const RenderOutput& out) const {
   return s_.feedback.force == Feedback::rendered ? out.slave_W : device.position_W;
 }
 
+Eigen::Quaterniond Teleoperation::command_orientation(const DeviceState& device,
+                                                      const RenderOutput& out) const {
+  if (!tool_slave_) return Eigen::Quaterniond::Identity();
+  const bool is_tool = s_.feedback.force == Feedback::rendered && out.tool && out.slave_W == out.proxy_W;
+  const Eigen::Quaterniond q = is_tool ? out.tool->orientation_W : device.orientation_W;
+  return Eigen::Quaterniond(q.coeffs() / q.norm());
+}
+
 Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, double time_s) {
   const bool is_rendered = s_.feedback.force == Feedback::rendered;
   const Vec3 command_W = command(device, out);
-  const bool is_first = !command_W_ && command_W.allFinite();
-  if (is_first) command_W_ = command_W;
+  const Eigen::Quaterniond orientation_W = command_orientation(device, out);
+  const bool is_valid = command_W.allFinite() && orientation_W.coeffs().allFinite();
+  const bool is_first = !command_W_ && is_valid;
+  if (is_first) command_W_ = command_W, command_orientation_W_ = orientation_W;
   if (!command_W_) return is_rendered ? rendered_wrench(out) : Wrench{};
 
   const double ticks = is_first ? 1 : ticks_since_last(time_s);
@@ -131,11 +155,14 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
     slave_port_.observe(slave_force());
     hand_port_.observe(moved_m);
   }
-  if (command_W.allFinite()) commands_.send(command_W, hand_port_.energy().in_J, time_s);
+  const Packet rest{.in_J = hand_port_.energy().in_J, .orientation_W = orientation_W};
+  if (is_valid) commands_.send(command_W, rest, time_s);
   receive_command(time_s);
   send_force(time_s);
-  Wrench wrench = is_rendered ? rendered_wrench(out) : Wrench{receive_force(time_s), Vec3::Zero()};
-  if (s_.feedback.force == Feedback::slave_force) wrench.force_N *= s_.feedback.gain;
+  Wrench wrench =
+      is_rendered ? rendered_wrench(out) : Wrench{receive_force(time_s), forces_.newest.torque_Nm};
+  if (s_.feedback.force == Feedback::slave_force)
+    wrench.force_N *= s_.feedback.gain, wrench.torque_Nm *= s_.feedback.gain;
   if (is_passive()) wrench.force_N = passive_force(wrench.force_N, moved_m / ticks);
   state_.command_packets = static_cast<std::int32_t>(commands_.sender.packets());
   state_.force_packets = static_cast<std::int32_t>(forces_.sender.packets());

@@ -6,19 +6,24 @@
 #include "analysis/trace/slave_state.h"
 #include "core/numeric/noise.h"
 #include "core/rendering/rendered_wrench.h"
+#include "core/teleoperation/tool_slave.h"
 #include "runners/experiment/teleoperation/teleoperation_settings.h"
 
 namespace remote_touch {
 
 class Teleoperation {
  public:
-  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels and of the
-  // registration.
-  Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s, SlaveScene scene);
+  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels and of the registration.
+  Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
+                const SlaveScene& scene);
 
   // Returns the position that is sent to the slave: the command of the renderer with rendered feedback, else
   // the HIP.
   Vec3 command(const DeviceState& device, const RenderOutput& out) const;
+  // Returns the orientation that is sent with it: that of the same pose, with rendered feedback the
+  // renderer's tool, unless the commanded position is the HIP. A slave without a tool gets the identity. NaN
+  // if the device has no orientation.
+  Eigen::Quaterniond command_orientation(const DeviceState& device, const RenderOutput& out) const;
 
   // Must be called once per tick, after the renderer. Moves the slave to time_s with the command that it had
   // at the tick before, sends the new command and the slave's force, and receives what has arrived by
@@ -42,25 +47,31 @@ class Teleoperation {
   const PortEnergy& slave_energy() const { return slave_port_.energy(); }
 
  private:
-  // A sample beside the energy that has entered the channel at its port, see passivity_control.h.
+  // A sample beside the energy that has entered the channel at its port, see passivity_control.h, and what
+  // belongs to the position or force of a tool. The dead-band compares only the sample.
   struct Packet {
-    DeadBandSample sample;
+    DeadBandSample sample = {};
     double in_J = 0;
+    Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+    Vec3 torque_Nm = Vec3::Zero();
   };
   struct Link {
     Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s);
-    void send(const Vec3& value, double in_J, double time_s);
+    // rest: the packet without its sample.
+    void send(const Vec3& value, Packet rest, double time_s);
     void receive(double time_s);
     Channel<Packet> channel;
     DeadBandSender sender;
     DeadBandReceiver receiver;
-    double far_in_J = 0;
+    Packet newest;  // the packet that was received last
   };
 
+  Vec3 in_axes_of_hand(const Vec3& v_W) const { return X_registration_.linear().transpose() * v_W; }
   // The force of the scene on the slave in the last tick, in the axes in which the hand works.
-  Vec3 slave_force() const { return X_registration_.linear().transpose() * slave_.state().force_N; }
+  Vec3 slave_force() const { return in_axes_of_hand(slave().force_N); }
   bool is_passive() const { return s_.feedback.force == Feedback::passive_slave_force; }
   bool feels_slave() const { return s_.feedback.force == Feedback::slave_force || is_passive(); }
+  const Slave::State& slave() const { return tool_slave_ ? tool_slave_->state() : slave_.state(); }
   void move_slave(double time_s);
   double ticks_since_last(double time_s) const;
   void move_slave_until(double time_s, double ticks);
@@ -74,12 +85,14 @@ class Teleoperation {
   const RigidTransform X_registration_;  // from a position that is sent to where the slave goes
   const double tick_s_;
   Slave slave_;
+  std::optional<ToolSlave> tool_slave_;  // instead of slave_
   Link commands_, forces_;
   ImpedancePassivityController hand_port_;
   AdmittancePassivityController slave_port_;
   double last_s_ = 0;              // time of the last tick
   std::optional<Vec3> hand_W_;     // last finite position of the hand
   std::optional<Vec3> command_W_;  // the command for the coming tick of the slave
+  Eigen::Quaterniond command_orientation_W_ = Eigen::Quaterniond::Identity();
   SlaveState state_;
 };
 

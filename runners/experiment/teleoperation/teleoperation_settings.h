@@ -1,6 +1,7 @@
 // The settings of a run with teleoperation: the slave, the links to it and back, and what the hand feels.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/parameters/parameter.h"
@@ -9,6 +10,7 @@
 #include "core/teleoperation/passivity_control.h"
 #include "core/teleoperation/registration_error.h"
 #include "core/teleoperation/slave.h"
+#include "core/teleoperation/slave_tool.h"
 
 namespace remote_touch {
 
@@ -51,6 +53,7 @@ struct TeleoperationSettings {
   RegistrationError registration;
   // Mass of hand and device, which passivity control uses to predict the motion of the hand; 0: not known.
   double hand_mass_kg = 0;
+  std::optional<SlaveTool> tool;  // of the slave; none: it is a ball
 };
 
 }  // namespace remote_touch

@@ -1,0 +1,176 @@
+// A slave with a tool behind its links: orientations that are sent, torques that come back, and experiments.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/trace/trace.h"
+#include "core/geometry/rotation.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::steered_tool_test {
+namespace {
+
+constexpr double kTick_s = 0.001;
+
+SlaveScene ground() {
+  return {[](const Vec3& p, double) { return p.y(); }, [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+}
+
+// A tool of one point, 3 cm beside its centre of mass and 1 cm below.
+TeleoperationSettings with(Feedback force, int delay_ticks = 0) {
+  TeleoperationSettings s;
+  s.feedback.force = force;
+  s.commands.channel.delay_s = s.forces.channel.delay_s = delay_ticks * kTick_s;
+  s.tool = SlaveTool{{{0.03, -0.01, 0}}, {1e-4}, 0.02, 0.04};
+  return s;
+}
+
+DeviceState device(double y, const Vec3& turn) {
+  DeviceState d;
+  d.position_W = Vec3(0, y, 0), d.orientation_W = rotation(turn);
+  return d;
+}
+
+TEST(SteeredTool, TheOrientationTravelsWithTheCommand) {
+  for (const int delay : {0, 30}) {
+    TeleoperationSettings s = with(Feedback::none, delay);
+    s.slave.natural_frequency_hz = 20;
+    Teleoperation remote(s, {}, kTick_s, ground());
+    double largest = 0;
+    for (int i = 0; i < 1500; ++i) {
+      const double t = i * kTick_s;
+      remote.tick(device(1, {0, 0, 0.5 * t}), {}, t);
+      const double late = t - (delay + 1) * kTick_s;  // of the command that the slave has reached
+      const double lag = remote.state().tool->orientation_W.angularDistance(rotation({0, 0, 0.5 * late}));
+      if (i > 1000) largest = std::max(largest, lag);
+    }
+    EXPECT_LT(largest, 1e-4) << delay;  // the drive knows the speed of the command
+  }
+}
+
+TEST(SteeredTool, FollowsTheToolOfTheRendererOrTheDevice) {
+  const Teleoperation remote(with(Feedback::rendered), {}, kTick_s, ground());
+  RenderOutput out;
+  out.tool.emplace().orientation_W = rotation({0, 1, 0});
+  out.proxy_W = out.slave_W = Vec3(1, 2, 3);
+  const DeviceState hand = device(0.5, {1, 0, 0});
+  EXPECT_EQ(remote.command_orientation(hand, out).coeffs(), out.tool->orientation_W.coeffs());
+  out.slave_W = hand.position_W;  // a renderer with slave_command = hip
+  EXPECT_EQ(remote.command_orientation(hand, out).coeffs(), hand.orientation_W.coeffs());
+  out.slave_W = out.proxy_W;
+  const Teleoperation direct(with(Feedback::slave_force), {}, kTick_s, ground());
+  EXPECT_EQ(direct.command_orientation(hand, out).coeffs(), hand.orientation_W.coeffs());
+}
+
+TEST(SteeredTool, ForceAndTorqueComeBackAfterTheDelay) {
+  for (const int delay : {0, 30}) {
+    TeleoperationSettings s = with(Feedback::slave_force, delay);
+    s.feedback.gain = 0.5;
+    Teleoperation remote(s, {}, kTick_s, ground());
+    std::vector<SlaveState> states;
+    for (int i = 0; i < 1000; ++i) {
+      const Wrench felt = remote.tick(device(std::max(0.02 - 0.05 * i * kTick_s, 0.0), {}), {}, i * kTick_s);
+      states.push_back(remote.state());
+      if (i < delay) continue;
+      const SlaveState& sent = states[static_cast<std::size_t>(i - delay)];
+      ASSERT_EQ(felt.force_N, 0.5 * sent.force_N) << i;
+      ASSERT_EQ(felt.torque_Nm, 0.5 * sent.tool->torque_Nm) << i;
+    }
+    EXPECT_GT(states.back().force_N.y(), 1) << delay;
+    EXPECT_GT(states.back().tool->torque_Nm.z(), 0.02) << delay;  // the arm is along x, the force along y
+  }
+}
+
+TEST(SteeredTool, WaitsForACommandWithAnOrientation) {
+  Teleoperation remote(with(Feedback::none), {}, kTick_s, ground());
+  DeviceState hand = device(1, {});
+  hand.orientation_W.coeffs().setZero();
+  remote.tick(hand, {}, 0);
+  ASSERT_TRUE(remote.state().tool);
+  EXPECT_TRUE(std::isnan(remote.state().tool->orientation_W.w()));
+  remote.tick(device(1, {}), {}, kTick_s);
+  EXPECT_EQ(remote.state().tool->orientation_W.w(), 1);
+  remote.tick(hand, {}, 2 * kTick_s);
+  EXPECT_EQ(remote.state().command_packets, 1);
+}
+
+// The dead-band does not compare orientations, so a silence bounds how late they are.
+TEST(SteeredTool, ADeadBandHoldsBackAnOrientationUntilTheSilenceEnds) {
+  TeleoperationSettings s = with(Feedback::none);
+  s.commands.dead_band.least = 0.001, s.commands.dead_band.longest_silence_s = 0.1;
+  Teleoperation remote(s, {}, kTick_s, ground());
+  for (int i = 0; i < 1000; ++i) remote.tick(device(1, {0, i * kTick_s, 0}), {}, i * kTick_s);
+  EXPECT_GE(remote.state().command_packets, 10);
+  EXPECT_LE(remote.state().command_packets, 11);
+  EXPECT_GT(rotation_vector(remote.state().tool->orientation_W).y(), 0.5);
+}
+
+TEST(SteeredTool, AllocatesNothingInATick) {
+  TeleoperationSettings s = with(Feedback::slave_force, 20);
+  Teleoperation remote(s, {}, kTick_s, ground());
+  double peak_N = 0;
+  const auto steer = [&](int i) {
+    remote.tick(device(std::max(0.02 - 0.05 * i * kTick_s, 0.0), {0.1, 0, 0}), {}, i * kTick_s);
+    peak_N = std::max(peak_N, remote.state().peak_force_N);
+  };
+  steer(0);
+  const std::size_t before = allocation_count();
+  for (int i = 1; i < 1000; ++i) {
+    if (i % 100 < 90) steer(i);
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(peak_N, 1);
+}
+
+Trace run(const std::vector<std::string>& overrides) {
+  return simulate(Experiment::load("steer-tool", overrides), {});
+}
+
+// Over the surface, the slave without a delay comes to the pose of the rendered tool.
+TEST(SteeredTool, CoincidesWithTheRenderedTool) {
+  const Trace trace = run(
+      {R"(trajectory={"name": "poses", "poses": [[0, 0.05, 0, 0, 0, 0, 0], [0.01, 0.06, 0, 10, 0, 20, 0.2]]})",
+       "duration_s=0.5", "command_link.delay_s=0", "slave.natural_frequency_hz=20"});
+  ASSERT_TRUE(trace.has_slave_tool());
+  const std::size_t last = trace.length() - 1;
+  EXPECT_NEAR((trace.slave_position_m[last] - trace.proxy_position_m[last]).norm(), 0, 1e-4);
+  EXPECT_NEAR(trace.slave_orientation[last].angularDistance(trace.tool_orientation[last]), 0, 1e-4);
+  EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
+  EXPECT_EQ(trace.slave_torque_Nm[last], Vec3::Zero());
+}
+
+// The plate, which the hand holds level, lands on the tilted surface with its edge, so the surface turns it.
+TEST(SteeredTool, TheSurfaceTurnsTheSlave) {
+  const Trace trace = run({"feedback.force=none"});
+  double force_N = 0, torque_Nm = 0, turned = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    force_N = std::max(force_N, trace.slave_force_N[i].norm());
+    torque_Nm = std::max(torque_Nm, trace.slave_torque_Nm[i].norm());
+    turned = std::max(turned, trace.slave_orientation[i].angularDistance(Eigen::Quaterniond::Identity()));
+  }
+  EXPECT_GT(force_N, 5);
+  EXPECT_GT(torque_Nm, 0.01);
+  EXPECT_GT(turned, 0.05);
+  EXPECT_LT(turned, 0.3);
+}
+
+TEST(SteeredTool, RefusesWhatASlaveWithAToolDoesNotHave) {
+  const auto why = [](const std::string& setting) {
+    return refusal([&] { Experiment::load("steer-tool", {setting}); });
+  };
+  EXPECT_HAS(why("feedback.force=passive-slave-force"), "feedback.force = passive-slave-force");
+  EXPECT_HAS(why("slave.radius_m=0.01"), "slave.radius_m = 0.01");
+  EXPECT_HAS(refusal([] {
+               run({"haptic_rate_hz=100", "slave.mass_kg=1", "slave.contact_stiffness_N_per_m=4e5"});
+             }),
+             "slave.steps_per_tick = 10: expected more for this tool");
+}
+
+}  // namespace
+}  // namespace remote_touch::steered_tool_test
