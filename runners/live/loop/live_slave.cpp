@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_file.h"
 
 namespace remote_touch {
@@ -28,6 +29,9 @@ bool knows_surface(const Scenario& scenario) {
 LiveSlave::LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels)
     : touched_(depth == kSimulatedDepth ? experiment.build_simulated_scene(kernels) : nullptr),
       remote_(experiment.build_teleoperation(touched_.get(), Experiment::Hand::real)) {
+  if (const double least_m = experiment.frame_dead_band().least_motion_m; least_m > 0)
+    throw InputError("frame_link.least_motion_m = " + std::to_string(least_m),
+                     "expected 0 in a live session, which uses every frame");
   if (!remote_ || (touched_ && knows_surface(*touched_))) return;
   const std::string source =
       depth == kSimulatedDepth ? "this scenario, played in real time," : "the camera " + depth;

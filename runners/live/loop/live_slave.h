@@ -18,7 +18,7 @@ namespace remote_touch {
 // no operator. Passivity control then uses the published rule.
 class LiveSlave {
  public:
-  // depth: the address of the sensor.
+  // depth: the address of the sensor. Throws InputError for a dead-band of frames: the loop uses each frame.
   LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels);
   LiveSlave(const LiveSlave&) = delete;
   LiveSlave& operator=(const LiveSlave&) = delete;

@@ -69,6 +69,7 @@ void Servo::take_frame(LiveTick& row) {
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
   row.taken = taken.frame.index;
+  ++frames_taken_;
   row.hash = taken.hash;
 }
 
@@ -140,7 +141,7 @@ void Servo::one_tick() {
   const double time_s = static_cast<double>(row_.number) / rate_hz_;
   row_.out = links_.renderer.step(row_.device, time_s);
   row_.command = commanded_wrench(links_.remote, row_.device, row_.out, time_s);
-  if (links_.remote) row_.slave = links_.remote->state();
+  if (links_.remote) row_.slave = links_.remote->state(), row_.slave->frame_packets = frames_taken_;
   const double command_time_s = links_.clock.now_s();
   row_.step_s = static_cast<float>(command_time_s - read_s);
 

@@ -108,6 +108,7 @@ class Servo final : public DeviceCycle {
   SafetyGate gate_;
   Heartbeat heartbeat_;
   std::int64_t last_number_ = -1;
+  std::int32_t frames_taken_ = 0;
   std::int64_t last_tick_ns_ = 0;
   DeviceReading last_reading_;
   LiveTick row_;

@@ -85,6 +85,12 @@ TEST(LiveSlave, ARecordingGivesTheSameSlaveOffline) {
 }
 
 // A slave that stood still in the ticks that are missing would be farther from its command afterwards.
+TEST(LiveSlave, RefusesADeadBandOfFrames) {
+  const Experiment banded = experiment(shaken(R"(, "frame_link": {"least_motion_m": 0.002})"));
+  EXPECT_HAS(refusal([&] { LiveSlave(banded, "sim:", scenes::kernels()); }),
+             "frame_link.least_motion_m = 0.002000: expected 0 in a live session");
+}
+
 TEST(LiveSlave, TheSlaveMovesInTicksThatAreMissing) {
   const std::string far =
       R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"},
