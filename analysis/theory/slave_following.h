@@ -1,7 +1,7 @@
-// How far a slave is from what it is to follow, if nothing touches it. The slave is critically damped and its
-// drive knows the speed of its command: x'' = w^2 (c - x) + 2 w (c' - x'), so its response is
-// G(s) = (2 w s + w^2) / (s + w)^2, and a command that begins to move with the speed v leaves it behind by
-// v t e^(-w t). w is 2 pi times the natural frequency.
+// The distance of a slave from what it is to follow, if nothing touches it. The slave is critically damped
+// and its drive knows the speed of its command: x'' = w^2 (c - x) + 2 w (c' - x'), so its response is G(s) =
+// (2 w s + w^2) / (s + w)^2, and a command that begins to move with the speed v leaves it behind by v t e^(-w
+// t). w is 2 pi times the natural frequency.
 //
 // All positions are along one axis, in m. Precondition of all functions: the natural frequency is positive.
 #pragma once
@@ -22,8 +22,8 @@ double following_error_m(const FollowedShake& shake);
 // A command that starts from rest, approaches a surface with constant speed, and stops.
 struct Approach {
   double speed_m_per_s = 0;  // positive
-  double way_m = 0;          // from the start of the command to its end
-  double gap_m = 0;          // from the end to where the slave touches; negative: the end lies beyond
+  double way_m = 0;          // distance of the end of the command from its start
+  double gap_m = 0;          // distance from the end to the touch; negative: the end lies beyond
   double natural_frequency_hz = 0;
 };
 struct Impact {

@@ -74,8 +74,8 @@ class Slave {
   State state_;
   Vec3 reference_W_ = Vec3::Zero();
   double depth_m_ = 0;            // d after the last step; NaN: not known
-  std::optional<Vec3> normal_W_;  // of the surface, in this tick
-  double last_s_ = 0;   // time of the last call
+  std::optional<Vec3> normal_W_;  // normal of the surface in this tick
+  double last_s_ = 0;             // time of the last call
   bool is_placed_ = false;
 };
 

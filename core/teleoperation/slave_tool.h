@@ -13,7 +13,7 @@ namespace remote_touch {
 // Frame T is that of the tool: its origin is the centre of mass, as in VoxelTool.
 struct SlaveTool {
   std::vector<Vec3> points_T;
-  std::vector<double> areas_m2;  // of the part of the surface that each point stands for
+  std::vector<double> areas_m2;  // area of the part of the surface that each point stands for
   double gyration_m = 0;         // radius of gyration, sqrt(trace(I / m) / 3), of uniform density
   double reach_m = 0;            // largest distance of a point from the origin
 };

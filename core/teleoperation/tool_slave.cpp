@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kNegligible = 20;  // of x in exp(-x), a share of 2e-9
+constexpr double kNegligible = 20;  // value of x in exp(-x), a share of 2e-9
 
 Vec3 at_most(const Vec3& v, double max_length) {
   return max_length > 0 ? limited_length(v, max_length) : v;

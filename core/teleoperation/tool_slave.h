@@ -49,7 +49,7 @@ class ToolSlave {
   static constexpr double kSceneSpeed_m_per_s = 2;
 
   struct Pose {
-    Vec3 position_W = Vec3::Zero();  // of the tool's centre of mass
+    Vec3 position_W = Vec3::Zero();  // position of the tool's centre of mass
     Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   };
   // The position is that of the centre of mass. clearance_m is the least distance of a point of the tool. It
@@ -76,7 +76,7 @@ class ToolSlave {
   struct Touch {
     Vector6 normal;
     double weight, start_m;
-    double rate_m_per_s;  // of the surface, positive if it recedes
+    double rate_m_per_s;  // speed of the surface, positive if it recedes
     double depth_m;       // now
     Vec3 arm_W;           // from the centre of mass, at the start of the tick
   };

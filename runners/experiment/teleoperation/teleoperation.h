@@ -82,7 +82,7 @@ class Teleoperation {
   Vec3 passive_force(const Vec3& force_N, const Vec3& last_displacement_m);
 
   const TeleoperationSettings s_;
-  const RigidTransform X_registration_;  // from a position that is sent to where the slave goes
+  const RigidTransform X_registration_;  // turns a position that is sent into where the slave goes
   const double tick_s_;
   Slave slave_;
   std::optional<ToolSlave> tool_slave_;  // instead of slave_

@@ -53,7 +53,7 @@ struct TeleoperationSettings {
   RegistrationError registration;
   // Mass of hand and device, which passivity control uses to predict the motion of the hand; 0: not known.
   double hand_mass_kg = 0;
-  std::optional<SlaveTool> tool;  // of the slave; none: it is a ball
+  std::optional<SlaveTool> tool;  // tool of the slave; none: it is a ball
 };
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Which frames a dead-band sends: closed forms on planes, with noise, and what is seen by one frame only.
+// The frames that a dead-band sends: closed forms on planes, with noise, and what is seen by one frame only.
 #include "core/teleoperation/frame_dead_band.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ double motion(const Points& before, const Points& now, const Vec3& slave = Vec3(
 TEST(SurfaceMotion, IsTheDistanceOfParallelPlanes) {
   for (const double lift : {0.0, 0.0005, -0.003}) {
     EXPECT_NEAR(motion(plane(0), plane(lift)), std::abs(lift), 1e-4 * std::abs(lift) + 1e-15);
-    // On a slope, the distance of the planes is smaller than the lift.
+    // The distance of planes with a slope is smaller than the lift.
     EXPECT_NEAR(motion(plane(0, 0.5), plane(lift, 0.5)), std::abs(lift) / std::sqrt(1.25),
                 0.02 * std::abs(lift) + 1e-15);
   }

@@ -1,4 +1,4 @@
-// How long before the slave touches does the hand feel the contact.
+// The time by which the hand feels a contact before the slave touches.
 #include <cmath>
 #include <limits>
 

@@ -1,4 +1,4 @@
-// How many packets a perceptual dead-band leaves of the commands and forces of a slave that follows a
+// The packets that a perceptual dead-band leaves of the commands and forces of a slave that follows a
 // contour.
 #include <cmath>
 
@@ -15,8 +15,8 @@ namespace remote_touch {
 namespace {
 
 constexpr double kContourSlave_hz = 5;
-constexpr double kFractions[] = {0.05, 0.1, 0.2};                // of the force, Weber
-constexpr double kLengths_m[] = {0.0002, 0.0005, 0.001, 0.002};  // of the commands
+constexpr double kFractions[] = {0.05, 0.1, 0.2};                // Weber fractions of the force
+constexpr double kLengths_m[] = {0.0002, 0.0005, 0.001, 0.002};  // dead-bands of the commands
 
 // Packets per second that are left where publications report the largest reduction. Their signals are those
 // of people and of sensors with noise.

@@ -51,7 +51,7 @@ TEST(FrameLink, StepsTheRenderer) {
   FrameLink link({}, receiver, kernels_for(best_isa()));
   EXPECT_EQ(link.step({{1, 2, 3}}, 0).proxy_W, Vec3(1, 2, 3));
   for (int i = 0; i < 3; ++i) link.on_frame(frame(0, 0.03 * i));
-  EXPECT_EQ(receiver.frames.size(), 3u);  // without a dead-band every frame is passed on
+  EXPECT_EQ(receiver.frames.size(), 3u);  // every frame is passed on without a dead-band
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST(Teleoperation, TheSlaveMovesInTicksThatAreLeftOut) {
   EXPECT_EQ(some.command_packets, all.command_packets - 20);
 }
 
-// After a pause longer than kMaxMissedTicks the surface is elsewhere. Its motion in the pause is no approach.
+// The surface is elsewhere after a pause longer than kMaxMissedTicks. Its motion in the pause is no approach.
 TEST(Teleoperation, TheSlaveStandsStillInTheFirstPartOfALongPause) {
   TeleoperationSettings s = with(Feedback::none);
   s.slave.natural_frequency_hz = 0.1;
