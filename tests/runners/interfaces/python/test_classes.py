@@ -235,7 +235,7 @@ normals = key.normals("point_position", 4, len(clean))
 np.testing.assert_array_equal(clean + 0.0625 * normals, noisy)
 assert abs(normals.mean()) < 0.02 and abs(normals.std() - 1) < 0.02
 np.testing.assert_array_equal(key.normals("point_position", 4, 7), normals[:7])
-assert (key.normals(11, 4, 100) != key.normals(12, 4, 100)).all()
+assert (key.normals(12, 4, 100) != key.normals(13, 4, 100)).all()
 u = key.uniforms("motion", 0, 1000)
 assert u.shape == (1000, 4) and 0 < u.min() and u.max() < 1 and abs(u.mean() - 0.5) < 0.02
 ''')
