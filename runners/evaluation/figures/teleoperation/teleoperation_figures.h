@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-MakeFigure figure_anticipation, figure_device_wall, figure_slave_force_peak, figure_slave_lift,
-    figure_slave_packets, figure_slave_region_radius, figure_steer_robot;
+MakeFigure figure_anticipation, figure_device_wall, figure_device_width, figure_slave_force_peak,
+    figure_slave_lift, figure_slave_packets, figure_slave_region_radius, figure_steer_robot;
 
 }  // namespace remote_touch
