@@ -25,10 +25,12 @@ inline std::string validate(const FrameDeadBandSettings&) {
   return {};
 }
 
-// Returns by how much the surface of `now` is away from the surface of `before` near a position, m, along the
-// normal of `before`. For both, the points within near_m of a position q are averaged with the weights
-// (1 - (r / near_m)^2)^2. The normal is that of the plane fitted to the points of `before`, and q is the foot
-// of `near_W` on that plane. 0 if neither has 3 points there, infinity if only one has.
+// Returns the distance between the surfaces of two frames near a position, m, not negative. A first plane is
+// fitted to the points of `before` within near_m of near_W; q is the foot of near_W on it. For both frames
+// the points within near_m of q are averaged. The result is the distance of the two means along the normal of
+// the plane that is fitted to those points of `before`. A point at the distance r from near_W or q has the
+// weight (1 - (r / near_m)^2)^2. Returns 0 if neither frame has 3 points there, and infinity if only one has.
+// So motion farther than near_m from near_W is not noticed.
 double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& now, const Vec3& near_W,
                         double near_m, const Kernels& kernels);
 
@@ -37,9 +39,11 @@ class FrameDeadBand {
   // pre: validate(settings) is empty.
   explicit FrameDeadBand(const FrameDeadBandSettings& settings) : s_(settings) {}
 
-  // Returns true if a frame has to be sent, and keeps it as the newest that was sent. slave_W: position of
-  // the slave when the frame was captured; not finite: the slave has not started, and the frame is sent.
+  // Returns true if a frame has to be sent, and then keeps it as the newest that was sent. slave_W: position
+  // of the slave, world frame, when the frame was captured. If it is not finite, the slave has not started,
+  // and the frame is sent. The first frame is always sent.
   bool sends(std::shared_ptr<const NeighbourSearch> frame, const Vec3& slave_W, const Kernels& kernels);
+  // Returns the number of frames that had to be sent.
   int sent() const { return sent_; }
 
  private:

@@ -24,10 +24,9 @@ Vec3 direction(const NoiseKey& key, Drawn which) {
 
 Parameters parameters(RegistrationError& s) {
   return {
-      {"offset_m", &s.offset_m, 0, 1,
-       "distance by which the slave is beside its command, in a random direction"},
+      {"offset_m", &s.offset_m, 0, 1, "distance of the slave from its command, in a random direction"},
       {"rotation_deg", &s.rotation_deg, 0, 45,
-       "angle by which its frame is turned about the origin of the world, about a random axis"},
+       "rotation of the slave's frame about a random axis through the origin of the world"},
   };
 }
 

@@ -1,4 +1,4 @@
-// The error of the registration between the camera, in whose frame the operator works, and the slave.
+// The error of the registration of the slave to the camera, whose cloud the operator touches.
 #pragma once
 
 #include <string>
@@ -19,10 +19,10 @@ inline std::string validate(const RegistrationError&) {
   return {};
 }
 
-// Returns where the slave goes, in the world frame, when it is sent to a position of the camera's cloud:
-// X p = R p + t. R is a rotation by rotation_deg about the origin of the world. The direction of t, which has
-// the length offset_m, and the axis of R are random, independent, and the same for the whole run: they are
-// functions of the key, and uniform on the sphere.
+// Returns X with X p = R p + t, the position to which the slave moves if the command is p, both in the world
+// frame. R is a rotation by rotation_deg about an axis through the origin of the world, and t has the length
+// offset_m. The axis of R and the direction of t are random, independent, uniform on the sphere, and the same
+// for the whole run: they are functions of the key.
 RigidTransform registration_of(const RegistrationError& error, const NoiseKey& key);
 
 }  // namespace remote_touch

@@ -53,13 +53,13 @@ class Slave {
   struct State {
     Vec3 position_W = Vec3::Zero();
     Vec3 velocity_W = Vec3::Zero();
-    Vec3 force_N = Vec3::Zero();  // mean force of the scene on the ball in the last tick
+    Vec3 force_N = Vec3::Zero();  // mean force of the scene on the slave in the last tick, world frame
     double peak_force_N = 0;      // largest magnitude of the force in the last tick
-    double clearance_m = 0;  // distance of the ball from the surface; negative in contact; NaN: not known
+    double clearance_m = 0;  // distance of the slave from the surface; negative in contact; NaN: not known
   };
-  // Moves the slave from time_s - tick to time_s. command_W: the position that it has received last. In the
+  // Moves the slave from time_s - tick_s to time_s. command_W: the position that it has received last. In the
   // first call the slave is put at the command, at rest. If the last call was for an earlier time than
-  // time_s - tick, the slave stood still meanwhile, and the scene has no known speed of approach.
+  // time_s - tick_s, the slave stood still meanwhile, and the scene has no known speed of approach.
   const State& move(const Vec3& command_W, double time_s);
   const State& state() const { return state_; }
 

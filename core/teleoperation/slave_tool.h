@@ -1,4 +1,4 @@
-// The surface of a rigid tool as points that a slave robot touches the scene with.
+// The surface of a rigid tool as points with which a slave robot touches the scene.
 #pragma once
 
 #include <cmath>
@@ -14,27 +14,28 @@ namespace remote_touch {
 struct SlaveTool {
   std::vector<Vec3> points_T;
   std::vector<double> areas_m2;  // area of the part of the surface that each point stands for
-  double gyration_m = 0;         // radius of gyration, sqrt(trace(I / m) / 3), of uniform density
+  double gyration_m = 0;         // radius of gyration, sqrt(trace(I / m) / 3), for uniform density
   double reach_m = 0;            // largest distance of a point from the origin
 };
 
-// Samples the surface. The triangles are divided into parts that are not longer than a spacing, and the
-// corners of the parts share their area. Of all corners in a cube whose side is the spacing, that which is
-// farthest from the origin is kept with the area of all, so edges and corners of the tool are not lost. The
-// spacing is the smallest of a series that gives no more than max_points.
-// pre: mesh in frame T, with an area; inertia_m2: about the origin, divided by the mass.
+// Samples the surface. The triangles are divided into parts whose sides are not longer than a spacing, and
+// the area of each part is shared among its corners. Space is divided into cubes with this spacing as their
+// side. Each cube keeps the corner that is farthest from the origin, with the area of all its corners, so
+// edges and corners of the tool are not lost. The spacing is the smallest of a series that gives at most
+// max_points. pre: mesh in frame T, with an area; inertia_m2: about the origin, divided by the mass.
 SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inertia_m2, int max_points = 100);
 
-// Spheres around the points of a tool, so that few positions of the scene need to be asked.
+// A tree of spheres around the points of a tool. It reduces the number of queries of the scene.
 class SlaveToolTree {
  public:
   // pre: there is a point.
   explicit SlaveToolTree(const std::vector<Vec3>& points_T);
 
-  // Calls visitor(point, distance_m) at least for all points that are nearer to the surface than near_m or
-  // whose distance is not known. Returns the smallest distance of all points if it is less than near_m or
-  // exact_m. Otherwise returns +infinity or a larger distance, or NaN if no distance that it asked is known.
-  // pre: distance(p_T) returns the signed distance of a position, or NaN; it is Lipschitz with 1.
+  // Calls visitor(point, distance_m) for every point whose signed distance is less than near_m, and for some
+  // others; `point` is the index of the point, and distance_m is NaN if it is not known. Returns the smallest
+  // distance of all points if it is less than near_m or exact_m. Otherwise returns +infinity or the distance
+  // of some point. Returns NaN if there were calls and the distance was not known in any of them.
+  // pre: distance(p_T) returns the signed distance of a position in m, or NaN; its Lipschitz constant is 1.
   template <class Distance, class Visitor>
   double visit(double near_m, double exact_m, const Distance& distance, const Visitor& visitor) const {
     Search search{near_m, exact_m};

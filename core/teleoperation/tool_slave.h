@@ -10,14 +10,15 @@
 namespace remote_touch {
 
 // The centre of mass of the tool follows the commanded position as the ball of a Slave does, with the same
-// drive and limits. The orientation follows its command likewise, about every axis through the centre:
+// drive and limits. The orientation follows its command in the same way, about every axis through the centre:
 //
 //   w_dot = w_0^2 e + 2 zeta w_0 (w_c - w) + tau / (m r^2),
 //
 // where e is the rotation vector from the orientation to the reference, w and w_c are the angular velocities
-// of tool and reference, and w_0 = 2 pi natural_frequency_hz, all in the world frame. The moment of inertia
-// is m r^2 about every axis, with the mass m of the slave and the radius of gyration r of its tool. The
-// limits of rotation are max_speed_m_per_s / r and max_acceleration_m_per_s2 / r.
+// of tool and reference, tau is the torque of the contact, all in the world frame, and w_0 = 2 pi
+// natural_frequency_hz. The moment of inertia is m r^2 about every axis, with the mass m of the slave and the
+// radius of gyration r of its tool. The limits of rotation are max_speed_m_per_s / r and
+// max_acceleration_m_per_s2 / r.
 //
 // Contact: point i of the tool has the depth d_i, the distance behind the true surface, negative outside, the
 // normal n_i of the surface, and the weight a_i, its area divided by the mean area. The force is that of a
@@ -26,23 +27,25 @@ namespace remote_touch {
 //   g = s ln(sum a_i exp(d_i / s)), F = max(0, K g + B g') where g > 0, f_i = F q_i n_i,
 //   q_i = a_i exp(d_i / s) / sum a_j exp(d_j / s), s = kRounding_m.
 //
-// - g is a smooth maximum of the depths. A single point has g = d: K is the stiffness of a point, of an edge
-//   and of a face alike, and that of the ball. A face of n points has g = d + s ln n, so it is felt by 0.2 mm
-//   at most before it touches.
-// - The shares q_i are those with which g depends on each d_i. So the spring has the potential K g^2 / 2 and
-//   creates no energy, and the damper takes B g'^2. Force and torque are continuous while the contact moves
+// - g is a smooth maximum of the depths. A single point has g = d + s ln a, which is about d. So a point, an
+//   edge and a face have the same stiffness K as the ball. A face of n points with mean area has
+//   g = d + s ln n, so a tool of 100 points is pushed up to 0.23 mm before it touches.
+// - The share q_i is the derivative of g by d_i. So the spring has the potential K g^2 / 2 and creates no
+//   energy, and the damper removes the power B g'^2. Force and torque are continuous while the contact moves
 //   over the tool: the resultant of a face acts where the face is deepest, within F / K and s.
-// - Springs at all points instead would make a face as many times stiffer as it has points; if they shared K,
-//   the corner of a tool would be soft.
+// - With a spring at every point instead, a face would be stiffer than a point by the number of its points.
+// If
+//   these springs shared K, a corner of the tool would be soft.
 // There is no friction, and no contact where distance or normal are not known.
 //
-// Steps: the scene is asked once per tick, not in each of the steps_per_tick. At the start of a tick, points
-// that may touch in it have distance and normal of the surface, and its speed is the change of their distance
-// over the tick. In the steps each point sees its plane, and rotations since the start are small. The error
-// of a depth is of the order of x^2 / (2 R), where x is the path of the point in a tick and R the radius of
-// curvature of surface or path: 0.1 um for 0.1 m/s and 50 mm. A point may touch if it is nearer than
-// 2 speed T + kSceneSpeed T, with the largest speed of a point of the tool and the duration T of a tick, so
-// a surface that approaches faster than kSceneSpeed may be felt one tick late.
+// Steps: the scene is queried per tick, not in each of the steps_per_tick. At the start of a tick each point
+// that may touch in it finds the tangent plane at its nearest surface point. The speed of this plane is the
+// change of the distance of the initial position over the tick. In the steps the point touches this plane,
+// and the rotation since the start is treated as small. The error of a depth is of the order of x^2 / (2 R),
+// where x is the path of the point in a tick and R the radius of curvature of surface or path: 0.1 um for 0.1
+// m/s and 50 mm. A point may touch if it is nearer than 2 v T + kSceneSpeed_m_per_s T, where v is a bound of
+// the speed of the points and T the duration of a tick. So a surface that approaches faster than
+// kSceneSpeed_m_per_s may be felt one tick late.
 class ToolSlave {
  public:
   static constexpr double kRounding_m = 5e-5;
@@ -52,9 +55,10 @@ class ToolSlave {
     Vec3 position_W = Vec3::Zero();  // position of the tool's centre of mass
     Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   };
-  // The position is that of the centre of mass. clearance_m is the least distance of a point of the tool. It
-  // is exact below kExactClearance_m. Beyond, it is the distance of that point which leads against the normal
-  // at the centre, which is exact over a plane, or a lower bound if that normal is not known.
+  // The position is that of the centre of mass. clearance_m is the least distance of a point of the tool from
+  // the surface, exact below kExactClearance_m. Otherwise it is the distance of the point that is foremost
+  // against the normal at the centre of mass. This is exact over a plane. If that normal is not known, it is
+  // a lower bound. NaN: not known.
   struct State : Slave::State {
     Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
     Vec3 angular_velocity_W = Vec3::Zero();

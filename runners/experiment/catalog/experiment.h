@@ -90,7 +90,7 @@ class Experiment {
   // simulated. Then builds the scene that the camera saw, as build_simulated_scene() does: the session itself
   // has no true surface.
   std::unique_ptr<const Scenario> build_recorded_scene(const Kernels& kernels) const;
-  // Returns the settings that pass every frame on if there is no slave.
+  // Returns the dead-band of frames; without a slave, settings with which every frame is passed on.
   FrameDeadBandSettings frame_dead_band() const {
     return configuration_.frame_link.value_or(FrameDeadBandSettings{});
   }

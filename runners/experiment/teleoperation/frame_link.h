@@ -9,9 +9,10 @@
 
 namespace remote_touch {
 
-// Passes frames on to a renderer, which must outlive it. It decides about a frame with the position that the
-// slave had when the frame was captured. Latency, jitter and loss of the frames are those of the run: a frame
-// that is lost on its way was not compared, and the next one is compared with the last that arrived.
+// Passes frames on to a renderer, which must outlive it. The dead-band compares a frame near the position
+// that the slave had when the frame was captured. Latency, jitter and loss of the frames are those of the
+// run. A frame that is lost on its way does not reach the dead-band, so the next one is compared with the
+// last frame that was passed on.
 class FrameLink final : public Renderer {
  public:
   // pre: validate(settings) is empty.

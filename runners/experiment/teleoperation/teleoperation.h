@@ -17,38 +17,40 @@ class Teleoperation {
   Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
                 const SlaveScene& scene);
 
-  // Returns the position that is sent to the slave: the command of the renderer with rendered feedback, else
-  // the HIP.
+  // Returns the position that is sent to the slave, world frame: with rendered feedback the commanded
+  // position of the renderer, else the HIP.
   Vec3 command(const DeviceState& device, const RenderOutput& out) const;
-  // Returns the orientation that is sent with it: that of the same pose, with rendered feedback the
-  // renderer's tool, unless the commanded position is the HIP. A slave without a tool gets the identity. NaN
-  // if the device has no orientation.
+  // Returns the orientation that is sent with it: with rendered feedback that of the renderer's tool, if the
+  // commanded position is that of the tool; else that of the device. Returns the identity if the slave has no
+  // tool. NaN if the device has no orientation.
   Eigen::Quaterniond command_orientation(const DeviceState& device, const RenderOutput& out) const;
 
   // Must be called once per tick, after the renderer. Moves the slave to time_s with the command that it had
   // at the tick before, sends the new command and the slave's force, and receives what has arrived by
-  // time_s. Returns the wrench that the device is commanded to exert until the next tick. The slave starts,
-  // at rest, at the first command that is finite, whatever the delay. A command that is not finite is not
-  // sent, and a position of the device that is not finite counts as the one before.
+  // time_s. Returns the wrench that the device is commanded to exert until the next tick, world frame. The
+  // slave starts, at rest, at the first command that is finite, whatever the delay. A command that is not
+  // finite is not sent, and a position of the device that is not finite counts as the one before.
   //
-  // The slave has a clock of its own. If the caller has left out ticks, the slave makes up to kMaxMissedTicks
-  // of them first, at their times: it moves, receives commands that were under way, and sends its forces. It
-  // stands still in the part of a longer pause before that. Allocates nothing.
+  // The slave has a clock of its own. If the caller has skipped ticks, the slave first performs up to
+  // kMaxMissedTicks of them, at their times: it moves, receives commands that were in transit, and sends its
+  // forces. If more were skipped, it performs the last of them and stands still before. Allocates nothing,
+  // unless the scene does.
   Wrench tick(const DeviceState& device, const RenderOutput& out, double time_s);
 
   static constexpr int kMaxMissedTicks = 20;
 
-  // Returns the state after the last tick. Its peak force is that of the time since the tick before. Before
-  // the first command all its numbers are NaN, except the counts of packets.
+  // Returns the state after the last tick. Its peak force is the largest since the tick before, with the
+  // ticks that were skipped. Before the first command all its numbers are NaN, except the counts of packets.
+  // frame_packets is always 0: the caller counts the frames.
   const SlaveState& state() const { return state_; }
 
-  // The energies at both ports since the start; of passivity control only.
+  // The energies at both ports since the start. They are counted only with passivity control.
   const PortEnergy& hand_energy() const { return hand_port_.energy(); }
   const PortEnergy& slave_energy() const { return slave_port_.energy(); }
 
  private:
-  // A sample beside the energy that has entered the channel at its port, see passivity_control.h, and what
-  // belongs to the position or force of a tool. The dead-band compares only the sample.
+  // A sample (a position or a force), the energy that has entered the channel at its port, see
+  // passivity_control.h, and the orientation or torque of a tool. The dead-band compares only the sample.
   struct Packet {
     DeadBandSample sample = {};
     double in_J = 0;

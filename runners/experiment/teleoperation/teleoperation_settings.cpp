@@ -8,7 +8,7 @@ Parameters parameters(FeedbackSettings& s) {
   const Parameters own{
       {"force", choice(s.force, {"rendered", "none", "slave-force", "passive-slave-force"}), 0, 0,
        "what the hand feels: the renderer's force, nothing, the force of the scene on the slave, or this force with passivity control"},
-      {"gain", &s.gain, 0, 100, "factor on the force of the slave-force"},
+      {"gain", &s.gain, 0, 100, "factor on the force of the scene on the slave, for slave-force"},
   };
   return appended(own, parameters(s.passivity));
 }

@@ -15,12 +15,12 @@
 namespace remote_touch {
 
 // The force that the device exerts on the hand, and the position that is sent to the slave.
-//   rendered:     the force of the renderer, which it computes from the points of the newest frame. The slave
-//                 gets the commanded position of the renderer, which stays outside of forbidden regions. This
-//                 is teleoperation as in the dissertation, 3.2.
-//   none:         no force. The slave gets the position of the HIP, as in all architectures below.
-//   slave_force:  the force of the scene on the slave (position-force).
-//   passive_slave_force: the same force, with passivity control at the hand and at the slave, see
+//   rendered:     the force of the renderer, which it computes from the points of the newest frame. The
+//                 commanded position of the renderer is sent, which stays outside forbidden regions. This is
+//                 teleoperation as in the dissertation, 3.2.
+//   none:         no force. The position of the HIP is sent, as in all architectures below.
+//   slave_force:  the force of the scene on the slave, times `gain` (position-force).
+//   passive_slave_force: this force without a gain, with passivity control at the hand and at the slave, see
 //                 passivity_control.h.
 enum class Feedback { rendered, none, slave_force, passive_slave_force };
 

@@ -16,7 +16,8 @@ struct RemoteSide {
   double region_m = 0;  // radius of the forbidden region
 };
 
-// Settings of all tasks that a derivation uses; slave and operator have them by default.
+// The settings of steer-robot, with its defaults, that derivations use. No task changes them, except that
+// contour_task() has a softer contact.
 inline constexpr double kSlaveMass_kg = 2, kSlaveRadius_m = 0.005;
 inline constexpr double kSlaveStiffness_N_per_m = 30000;
 inline constexpr double kHandMass_kg = 0.5, kHandStiffness_N_per_m = 300, kHandDamping_Ns_per_m = 15;
@@ -26,17 +27,17 @@ inline constexpr double kPointSpacing_m = 0.0015, kSlaveFrameRate_hz = 30, kSlav
 inline constexpr double kSlaveFrequencies_hz[] = {1, 2, 4, 8};
 inline constexpr double kLinkDelays_s[] = {0, 0.05, 0.1, 0.2};
 
-// Returns the height of the command over a flat grid of points at which the region stops it: a ball of
-// region_m + r_c rests in the middle of four points.
+// Returns the height over a flat grid of points at which the command stops: a ball with the radius
+// region_m + r_c rests in the middle of four points. r_c is equal to kSlaveRadius_m.
 double stopped_height_m(double region_m);
 
 // The HIP moves straight down to a plane at rest, at kApproach_m_per_s from from_m above it, and stops 20 mm
-// below it. A hand with mass is pushed back by what it feels, up to 12 N, as much as an omega.3 gives; one
-// without is not.
+// below it. A hand with mass is pushed back by the force that it feels, up to 12 N, as much as an omega.3
+// exerts. A hand without mass follows its path exactly.
 inline constexpr double kApproach_m_per_s = 0.2, kApproachTo_m = -0.02;
 Experiment approach_task(const RemoteSide& remote, double from_m, bool has_mass);
 
-// The hand is lowered at kLowering_m_per_s into a plane, which then shakes by kOrgan_m.
+// The hand is lowered at kLowering_m_per_s into a plane, which then shakes with the amplitude kOrgan_m.
 inline constexpr double kOrgan_m = 0.02, kLowering_m_per_s = 0.1;
 Experiment organ_task(const RemoteSide& remote, double shake_hz, double noise_m,
                       std::vector<std::string> settings = {});
