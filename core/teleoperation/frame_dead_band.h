@@ -30,7 +30,7 @@ inline std::string validate(const FrameDeadBandSettings&) {
 // the points within near_m of q are averaged. The result is the distance of the two means along the normal of
 // the plane that is fitted to those points of `before`. A point at the distance r from near_W or q has the
 // weight (1 - (r / near_m)^2)^2. Returns 0 if neither frame has 3 points there, and infinity if only one has.
-// So motion farther than near_m from near_W is not noticed.
+// So a surface that stays farther than near_m from near_W does not count as moved.
 double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& now, const Vec3& near_W,
                         double near_m, const Kernels& kernels);
 

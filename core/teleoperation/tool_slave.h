@@ -33,9 +33,8 @@ namespace remote_touch {
 // - The share q_i is the derivative of g by d_i. So the spring has the potential K g^2 / 2 and creates no
 //   energy, and the damper removes the power B g'^2. Force and torque are continuous while the contact moves
 //   over the tool: the resultant of a face acts where the face is deepest, within F / K and s.
-// - With a spring at every point instead, a face would be stiffer than a point by the number of its points.
-// If
-//   these springs shared K, a corner of the tool would be soft.
+// - With a spring at every point instead, the stiffness of a face would grow with the number of its points.
+//   If these springs shared K, a corner of the tool would be soft.
 // There is no friction, and no contact where distance or normal are not known.
 //
 // Steps: the scene is queried per tick, not in each of the steps_per_tick. At the start of a tick each point

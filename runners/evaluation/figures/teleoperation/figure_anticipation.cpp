@@ -63,7 +63,7 @@ std::vector<Warnings> all_warnings(FigureContext& context) {
 
 Panel warning_panel(Figure& figure, const std::vector<Warnings>& all, const std::string& feedback,
                     const std::string& title) {
-  Panel panel{title, "delay in each direction (s)", "warning (s)"};
+  Panel panel{title, "delay in each direction (s)", "anticipation (s)"};
   for (const Warnings& warnings : all) {
     if (warnings.feedback != feedback) continue;
     const std::string name = table_name(feedback, warnings.frequency_hz);
@@ -92,11 +92,12 @@ double largest_error_s(const std::vector<Warnings>& all, const std::string& feed
 
 Figure figure_anticipation(FigureContext& context) {
   Figure figure{
-      "anticipation", "How long before the slave touches the hand feels the contact",
-      "A hand on a path approaches a plane at 0.2 m/s, from 40 mm above it. Time from the first force on "
-      "the hand to the first force on the slave, over the delay in each direction, for slaves of several "
-      "natural frequencies: measured (dots), and derived from delay, response of the slave and r_c / v "
-      "(lines). Negative: the hand feels the contact after the slave. No noise, no region. Simulated."};
+      "anticipation", "The time by which the hand feels a contact before the slave touches",
+      "A hand on a path approaches a plane at 0.2 m/s, from 40 mm above it. The panels show the time from "
+      "the first force on the hand to the first force on the slave, over the delay in each direction, for "
+      "slaves of several natural frequencies: measured (dots), and derived from delay, response of the slave "
+      "and r_c / v (lines). If it is negative, the hand feels the contact after the slave. There is no noise "
+      "and no region. Simulated."};
   figure.source = "the theory of a linear slave";
   const std::vector<Warnings> all = all_warnings(context);
   figure.panels = {warning_panel(figure, all, "rendered", "Rendered force"),

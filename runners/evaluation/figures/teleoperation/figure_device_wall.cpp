@@ -85,8 +85,8 @@ Figure figure_device_wall(FigureContext& context) {
   Figure figure{
       "device-wall", "The largest stable stiffness of a rendered plane",
       "A light hand without damping rests on a plane that a device renders; the device has a damper. "
-      "Drawn is the stiffness of the renderer up to which no oscillation grows (dots), by bisection, "
-      "and the limit of a linear wall (line). Points without noise at rest. Simulated."};
+      "The dots show the stiffness of the renderer up to which no oscillation grows, found by bisection; "
+      "the line is the limit of a linear wall. The points have no noise and rest. Simulated."};
   figure.source = "the theory of sampled walls";
   const std::vector<Wall> all = walls(context);
   figure.panels = {panel(figure, all, 0), panel(figure, all, 5)};

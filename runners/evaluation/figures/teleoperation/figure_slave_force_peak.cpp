@@ -33,17 +33,17 @@ struct Press {
   double derived_N = 0;
 };
 
-// Returns how the slave reaches the surface with the commands of the first three; the force of the slave does
-// not change its commands before it touches.
+// Returns how the slave reaches the surface. The force of the slave does not change the commands before the
+// slave touches, so the impact is that without a force.
 std::optional<Impact> impact_of(const Felt& felt, double frequency_hz) {
   const bool stops = felt.feedback == std::string("rendered");
   const double end_m = stops ? stopped_height_m(felt.region_m) : kApproachTo_m;
   return first_impact({kApproach_m_per_s, kHitFrom_m - end_m, end_m - kSlaveRadius_m, frequency_hz});
 }
 
-// Without a force the drive pushes with at most its spring at the end of the path and its damper while the
-// command still moves. A rendered command waits at the surface; the ball between four points lies a little
-// below it. For the force of the slave it is the force of the first impact if nothing pushes.
+// Without a force on the hand the drive pushes with at most its spring at the end of the path and its damper
+// while the command still moves. A rendered command waits at the surface; the ball between four points lies a
+// little below it. With the force of the slave the result is that of the first impact without a push.
 double derived_N(const Felt& felt, double frequency_hz) {
   const std::optional<Impact> touch = impact_of(felt, frequency_hz);
   if (!touch) return 0;
@@ -102,7 +102,7 @@ Panel press_panel(Figure& figure, const Felt& felt, const std::vector<Press>& li
   return panel;
 }
 
-// Largest or smallest peak as a fraction of the derived force, over delays from from_s on.
+// Returns the peaks as fractions of the derived forces, for delays of from_s and more.
 std::vector<double> ratios(const std::vector<Press>& list, double from_s) {
   std::vector<double> all;
   for (const Press& press : list)
@@ -131,10 +131,11 @@ double largest_change_with_delay_N(const std::vector<std::vector<Press>>& all) {
 Figure figure_slave_force_peak(FigureContext& context) {
   Figure figure{
       "slave-force-peak", "How hard a slave hits a surface at rest",
-      "A hand approaches a plane at 0.2 m/s and presses 20 mm below it; a slave of 2 kg follows. Largest "
-      "force of the scene on the slave over its natural frequency, with several delays in each direction "
-      "(dots), and F + (F^2 + K m v^2)^(1/2) with the speed v that the slave has by the derivation and "
-      "what its drive pushes with (dashed). No noise. Simulated."};
+      "A hand approaches a plane at 0.2 m/s and presses 20 mm below it; a slave of 2 kg follows. The dots "
+      "show the largest force of the scene on the slave over its natural frequency, for several delays in "
+      "each direction. The dashed line is F + (F^2 + K m v^2)^(1/2), with the derived speed v of the slave "
+      "at the surface and the largest force F of its drive; F is 0 behind a region and with the force of "
+      "the slave. There is no noise. Simulated."};
   figure.source = "the theory of a linear slave";
   const std::vector<std::vector<Press>> all = presses(context);
   for (std::size_t i = 0; i < std::size(kFelt); ++i)
@@ -142,19 +143,19 @@ Figure figure_slave_force_peak(FigureContext& context) {
   place_in_rows(figure, 2);
   const Claims claims(figure, "a slave that hits a plane: ");
   claims.at_most(
-      "with no force on the hand no impact is harder than F + (F^2 + K m v^2)^(1/2): largest ratio",
+      "without a force on the hand no impact is harder than F + (F^2 + K m v^2)^(1/2): largest ratio",
       max_of(ratios(all[kNone], 0)), 1, "1");
   claims.at_most("with the rendered force no impact is harder than that of the derived speed: largest ratio",
                  max_of(ratios(all[kRendered], 0)), 1.02, "1");
   claims.at_most("behind a region of 5 mm no impact is harder than that of the derived speed: largest ratio",
                  max_of(ratios(all[kRegion], 0)), 1.02, "1");
   claims.at_most(
-      "a region keeps every slave from touching whose derived overshoot is smaller than its radius: "
-      "largest force",
+      "a region keeps a slave from touching if its derived overshoot is smaller than the radius of the "
+      "region: largest force",
       largest_without_touch_N(all[kRegion]), 0, "N");
   claims.at_most(
-      "a delay does not make an impact on a plane at rest harder unless the hand feels the slave: largest "
-      "change of the force",
+      "a delay does not change the impact on a plane at rest unless the hand feels the force of the slave: "
+      "largest change of the force",
       largest_change_with_delay_N(all), 0.5, "N");
   claims.at_least(
       "the force of the slave comes too late to soften the first impact, from 50 ms in each direction on: "

@@ -1,5 +1,5 @@
-// Fig 4.12 with a slave: the surface lifts, the command follows it from frame to frame, and the slave, which
-// is behind, is pushed by the surface.
+// Fig 4.12 with a slave: the surface rises, the command follows it from frame to frame, and the surface
+// pushes the slave, whose command is late.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -36,9 +36,9 @@ double plane_m(const Trace& trace, double time_s) {
   return std::lerp(height_m(i), height_m(i + 1), ticks - static_cast<double>(i));
 }
 
-// Momentum of a slave that stays on the plane y while its command shows the plane as it was t_d before, with
-// t_d the delay and half a frame interval: m y'' = f + m w^2 (y_d - x) + 2 m w (y_d' - y'), on average over
-// the window. The contact is a spring as well, so x = y - f / K.
+// Returns the mean force f on a slave that stays on the plane y while its command shows the plane as it was
+// t_d before, y_d; t_d is the delay and half a frame interval. The momentum in the window gives
+// m y'' = f + m w^2 (y_d - x) + 2 m w (y_d' - y'). The contact is a spring as well, so x = y - f / K.
 double derived_force_N(const Trace& trace, const RemoteSide& remote) {
   const double w = 2 * std::numbers::pi * remote.frequency_hz, end_s = trace.time_s.back();
   const double begin_s = end_s - kLiftEnd_s, late_s = remote.delay_s + kFrame_s / 2;
@@ -136,13 +136,13 @@ void add_claims(Figure& figure, const std::vector<Lift>& all) {
     differences.push_back(std::abs(all[i].force_N / all[i].derived_N - 1));
     if (all[i].remote.delay_s == 0.1) growths.push_back(all[i].force_N / all[i - 2].force_N);
   }
-  const Claims claims(figure, "a surface that lifts a slave: ");
+  const Claims claims(figure, "a surface that rises under a slave: ");
   claims.at_most(
       "the command rests on the plane of the newest frame before each update: largest distance from it",
       max_of(errors_m), 0.0002, "m");
   claims.at_most(
-      "the mean force is that of the momentum of a slave that stays on the plane while its command is "
-      "late by the delay and half a frame interval: largest relative difference",
+      "the mean force is that on a slave that stays on the plane while its command is late by the delay "
+      "and half a frame interval: largest relative difference",
       max_of(differences), 0.15, "fraction");
   claims.at_least(
       "a delay of 0.1 s at least doubles the mean force at every natural frequency: smallest ratio",
@@ -153,11 +153,11 @@ void add_claims(Figure& figure, const std::vector<Lift>& all) {
 
 Figure figure_slave_lift(FigureContext& context) {
   Figure figure{
-      "slave-lift", "A surface that lifts under a slave",
+      "slave-lift", "A surface that rises under a slave",
       "Fig 4.12 with a slave and without noise: a plane rises at 0.1 m/s under a hand at rest and "
       "accelerates with 3 m/s^2 from 1 s on. The commanded position follows the plane from frame to "
-      "frame. Upper panel: what the slave does with it. Lower panel: the mean force of the plane on the "
-      "slave, measured (dots) and derived from momentum (lines). Simulated."};
+      "frame. The upper panel shows plane, command and slave in one run. The lower panel shows the mean "
+      "force of the plane on the slave, measured (dots) and derived from momentum (lines). Simulated."};
   figure.source = "the theory of a linear slave";
   const std::vector<Lift> all = lifts(context);
   figure.panels = {course_panel(figure, context), force_panel(figure, all)};

@@ -18,8 +18,8 @@ constexpr double kContourSlave_hz = 5;
 constexpr double kFractions[] = {0.05, 0.1, 0.2};                // Weber fractions of the force
 constexpr double kLengths_m[] = {0.0002, 0.0005, 0.001, 0.002};  // dead-bands of the commands
 
-// Packets per second that are left where publications report the largest reduction. Their signals are those
-// of people and of sensors with noise.
+// The fraction of the packets that is left with the largest reductions that publications report. Their
+// signals come from human hands and from sensors with noise.
 struct Published {
   const char *column, *label;
   double left;
@@ -42,9 +42,9 @@ Experiment run_of(const char* link, const char* setting, double band, bool predi
                        name + ".predicts=" + (predicts ? "true" : "false")});
 }
 
-// A value that is held is sent again after a path of at least log(1 + k) in units of its magnitude: straight
-// outwards the magnitude grows by 1 + k, every other way is longer. A contact that opens or closes is sent
-// too.
+// A value that is held is sent again after a path of at least log(1 + k) in units of its magnitude, with the
+// Weber fraction k. On a straight path outwards the magnitude grows by the factor 1 + k; every other path is
+// longer. A sample with which a contact begins or ends is sent too.
 double bound_of_forces_per_s(const Trace& trace, double fraction) {
   double packets = 1;
   for (std::size_t i = 1; i < trace.length(); ++i) {
@@ -156,24 +156,25 @@ Figure figure_slave_packets(FigureContext& context) {
       "A hand presses a slave of 5 Hz into a soft surface with waves of 3 mm, slides along it and back, "
       "and feels half of the force of the slave. Packets per second over the dead-band of the forces "
       "(Weber fraction) and of the commands (length), with values that are held and with linear "
-      "prediction (dots); the bound for held values from the path of the signal; and the largest "
-      "reductions that publications report for their own signals, of people. Without a dead-band there "
-      "are 1000 packets per second. Simulated."};
+      "prediction (dots); the bound for held values from the path of the signal (dashed); and the largest "
+      "reductions that publications report for the signals of human hands (dashed). Without a dead-band "
+      "there are 1000 packets per second. Simulated."};
   figure.source = "Hinterseer et al. 2008";
   const Trace whole = context.run(contour_task({kContourSlave_hz, 0, "slave-force"}, {}));
   const std::vector<Banded> forces = banded(context, whole, true), commands = banded(context, whole, false);
   figure.panels = {packet_panel(figure, forces, true), packet_panel(figure, commands, false)};
   place_in_rows(figure, 2);
   Claims(figure, "a slave on a contour: ", &Claim::set_up)
-      .at_least("the linear loop without a dead-band is stable: delay that it bears", stable_delay_s(), 0.001,
-                "s");
+      .at_least("the linear loop without a dead-band is stable: largest stable delay", stable_delay_s(),
+                0.001, "s");
   const Claims claims(figure, "a slave on a contour: ");
   claims.at_least("forces with a Weber fraction of 0.1, held, need at least 90 % fewer packets: reduction",
                   1 - forces[1].held_per_s * kSlaveTick_s, 0.9, "fraction", "up to 0.9");
-  claims.at_most("held forces need no more packets than the path of the signal asks for: largest ratio",
+  claims.at_most("held forces need no more packets than the bound from the path of the signal: largest ratio",
                  largest_ratio_to_bound(forces), 1, "1");
-  claims.at_most("held commands need no more packets than the path of the signal asks for: largest ratio",
-                 largest_ratio_to_bound(commands), 1, "1");
+  claims.at_most(
+      "held commands need no more packets than the bound from the path of the signal: largest ratio",
+      largest_ratio_to_bound(commands), 1, "1");
   claims.at_most(
       "linear prediction of commands needs no more packets than held commands at any dead-band: largest "
       "ratio",

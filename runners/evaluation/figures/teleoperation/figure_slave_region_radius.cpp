@@ -110,13 +110,14 @@ void add_claims(Figure& figure, const std::vector<NeededRegion>& all) {
       0.0005, "m");
   // The ball rests on the highest of many points, so noise moves the command away from the organ.
   claims.at_most(
-      "noise does not ask for a larger region: largest increase over that without noise, as a multiple of "
-      "the standard deviation",
+      "noise does not make a larger region necessary: largest increase as a multiple of the standard "
+      "deviation of the noise",
       largest(true, [](const NeededRegion& n,
                        const NeededRegion& without) { return (n.radius_m - without.radius_m) / n.noise_m; }),
       0.5, "1");
   claims.at_most(
-      "noise saves no more of the region than 3 standard deviations: largest decrease as a multiple of it",
+      "noise makes the needed region smaller by at most 3 standard deviations: largest decrease as a "
+      "multiple of it",
       largest(true, [](const NeededRegion& n,
                        const NeededRegion& without) { return (without.radius_m - n.radius_m) / n.noise_m; }),
       3, "1");
@@ -127,11 +128,12 @@ void add_claims(Figure& figure, const std::vector<NeededRegion>& all) {
 Figure figure_slave_region_radius(FigureContext& context) {
   Figure figure{
       "slave-region-radius", "The region that a slave of 2 Hz needs",
-      "A hand holds a slave over a plane that moves up and down by 20 mm. Radius of the forbidden region "
-      "at which the slave just does not touch (dots), over the delay of the commands, for three "
-      "frequencies of the organ, which has the largest speeds of the legend; and the bound A |1 - G(iu) "
-      "exp(-iu t_d)| for an organ that is seen at once and one frame interval late (bands). A slave that "
-      "is lowered at 0.1 m/s overshoots by v / (e w) before the organ moves (dashed). Simulated."};
+      "A hand holds a slave over an organ, a plane that moves up and down with an amplitude of 20 mm. The "
+      "dots show the radius of the forbidden region at which the slave just does not touch, over the delay "
+      "of the commands, for three frequencies of the organ; the legend shows its largest speeds. The bands "
+      "are the bounds A |1 - G(iu) exp(-iu t_d)| for an organ that is seen at once and one frame interval "
+      "late. A slave that is lowered at 0.1 m/s overshoots by v / (e w) before the organ moves (dashed). "
+      "Simulated."};
   figure.source = "the theory of a linear slave";
   const std::vector<NeededRegion> all = needed_regions(context);
   for (const double noise_m : kNoises_m) figure.panels.push_back(region_panel(figure, all, noise_m));

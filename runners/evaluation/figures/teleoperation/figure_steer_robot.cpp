@@ -1,5 +1,5 @@
 // A slow slave behind a delay over an organ that moves: which radius of a forbidden region keeps it from
-// touching, and what touches harder without one. Chapter 8 asks this and does not measure it.
+// touching, and how hard it touches without a region. Chapter 8 asks this and does not measure it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -193,20 +193,18 @@ void add_force_claims(Figure& figure, const std::vector<std::vector<Touch>>& all
   claims.at_most(
       "a region of 20 mm keeps the slave from touching up to 0.1 s in each direction: largest force",
       largest(0, 0, 0.1, &Touch::peak_force_N), 0, "N");
-  claims.at_least("without a region the rendered force alone does not: force at 0.1 s",
+  claims.at_least("without a region the rendered force does not keep the slave from touching: force at 0.1 s",
                   all[1][3].peak_force_N, 1, "N");
   claims.at_least(
       "the force of the slave after 0.1 s in each direction makes the loop unstable: energy given "
       "to the hand",
       all[3][3].energy_J, 1, "J");
   claims.at_most(
-      "passivity control lets the force of the slave give the hand little energy from 25 ms in each "
-      "direction on: largest energy",
+      "with passivity control the hand gains little energy from 25 ms in each direction on: largest energy",
       largest(4, 0.025, 1, &Touch::energy_J), 0.2, "J");
   // A stiff contact without delay is where a controller that acts once per tick is weakest.
   claims.at_least(
-      "passivity control does not keep the loop without delay from a limit cycle: energy given to the "
-      "hand",
+      "without a delay the loop has a limit cycle in spite of passivity control: energy given to the hand",
       all[4][0].energy_J, 1, "J");
 }
 
@@ -215,10 +213,10 @@ void add_force_claims(Figure& figure, const std::vector<std::vector<Touch>>& all
 Figure figure_steer_robot(FigureContext& context) {
   Figure figure{
       "steer-robot", "A slave behind a delay over an organ that moves",
-      "A hand holds a slave robot over a plane that moves up and down by 20 mm at 0.5 Hz, with 1 mm "
-      "of noise. Upper panel: the radius of the forbidden region at which the slave just does not "
-      "touch the plane (dots), and what delay, bandwidth and age of the frames ask for (bands). Lower "
-      "panel: the largest force on the slave with the rendered force and with what else the hand may "
+      "A hand holds a slave robot over a plane that moves up and down with an amplitude of 20 mm at 0.5 "
+      "Hz; the points have 1 mm of noise. Upper panel: the radius of the forbidden region at which the "
+      "slave just does not touch the plane (dots), and the bounds derived from delay, bandwidth and age of "
+      "the frames (bands). Lower panel: the largest force on the slave, for each force that the hand may "
       "feel. Simulated."};
   figure.source = "this project";
   const std::vector<Needed> needed = needed_radii(context);
