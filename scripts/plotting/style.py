@@ -68,6 +68,9 @@ METHODS = {
     "mls-surface": ("rose", 3, 5), "inner-spheres": ("truth", 3, 4),
     "tracked-sheet": ("estimate", 0, 3), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
     "continuous": ("lavender", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
+    "slave-none": ("truth", 0, 5), "slave-position-force": ("force", 0, 1), "slave-passivity": ("force", 2, 2),
+    "slave-rendered": ("proxy", 0, 1), "slave-rendered-registered": ("proxy", 3, 2), "slave-tracked": ("estimate", 2, 4),
+    "slave-region": ("region", 0, 0), "slave-region-registered": ("region", 3, 3), "slave-model-mediated": ("lavender", 2, 4),
 }
 OTHER_NAMES = {"as printed": "voxels", "proxy of chapter 4": "proxy", "tracked sheet": "tracked-sheet",
                "tracked sheets": "tracked-sheet", "tracked": "tracked-sheet", "penalty method": "penalty"}
