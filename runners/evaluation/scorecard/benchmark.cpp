@@ -299,6 +299,9 @@ const std::string& file_of(const std::string& line, const BenchmarkScene& scene,
   const Json tool = scene.tool.empty() ? Json::object() : parse_json(scene.tool, scene.name);
   for (const auto& item : tool.items())
     if (line.starts_with("renderer." + item.key() + " ")) return scene.file;
+  const Json sections = method.sections.empty() ? Json::object() : parse_json(method.sections, method.name);
+  for (const auto& item : sections.items())
+    if (line.starts_with(item.key())) return method.file;
   return line.starts_with("renderer") || line.starts_with("method ") ? method.file : scene.file;
 }
 

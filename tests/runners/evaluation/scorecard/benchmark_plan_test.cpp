@@ -106,6 +106,28 @@ std::vector<std::string> names(const auto& list) {
   return all;
 }
 
+TEST(Benchmark, SectionsOfAMethodComeIntoTheExperiment) {
+  const TestFolder folder("benchmark_sections");
+  const auto method = [&](const std::string& sections) {
+    const std::string text = R"({"title": "own", "renderer": {"name": "proxy"}, )" + sections + "}";
+    return chosen_methods({folder.write("own.json", text).string()}).front();
+  };
+  const BenchmarkScene scene = chosen_scenes({"slave-organ-50"}).front();
+  const Method region = method(R"("fixtures": [{"name": "everywhere", "radius_m": 0.01}])");
+  const Json run = parse_json(scene.sweep(region, 2).experiment(0, 0).to_json(), "run");
+  EXPECT_EQ(run["fixtures"][0]["radius_m"], 0.01);
+  EXPECT_HAS(refusal([&] { scene.sweep(method(R"("feedback": {"force": "moon"})"), 2); }),
+             "own.json: feedback.force");
+  EXPECT_HAS(refusal([&] { method(R"("slave": {})"); }),
+             "slave: unknown: expected title, renderer, feedback");
+  BenchmarkScene own = scene;
+  Json experiment = parse_json(scene.experiment, "scene");
+  experiment["feedback"] = {{"force", "none"}};
+  own.experiment = experiment.dump();
+  EXPECT_HAS(refusal([&] { own.sweep(method(R"("feedback": {"gain": 1})"), 2); }),
+             "method own: feedback: scene slave-organ-50 has its own");
+}
+
 TEST(Benchmark, ToolsAreComparedWithTools) {
   const auto chosen = [](std::vector<std::string> methods, std::vector<std::string> scenes) {
     return chosen_benchmark(methods, scenes, 2, "card");
