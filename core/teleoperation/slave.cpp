@@ -102,9 +102,10 @@ const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
   } else {
     const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
     state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
-    if (time_s - last_s_ > 1.5 * tick_s_) depth_m_ = std::numeric_limits<double>::quiet_NaN();
+    const bool has_paused = time_s - last_s_ > 1.5 * tick_s_;  // the scene may be anywhere
+    if (has_paused) depth_m_ = std::numeric_limits<double>::quiet_NaN();
     const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
-    const bool can_touch = !is_far(reference_velocity);
+    const bool can_touch = has_paused || !is_far(reference_velocity);
     if (!can_touch) depth_m_ = -state_.clearance_m;
     normal_W_.reset();
     for (int i = 0; i < s_.steps_per_tick; ++i)

@@ -75,7 +75,8 @@ TEST(SteeredTool, ForceAndTorqueComeBackAfterTheDelay) {
     Teleoperation remote(s, {}, kTick_s, ground());
     std::vector<SlaveState> states;
     for (int i = 0; i < 1000; ++i) {
-      const Wrench felt = remote.tick(device(std::max(0.02 - 0.05 * i * kTick_s, 0.0), {}), {}, i * kTick_s);
+      const Wrench felt =
+          remote.tick(device(std::max(0.02 - 0.05 * i * kTick_s, 0.0), Vec3::Zero()), {}, i * kTick_s);
       states.push_back(remote.state());
       if (i < delay) continue;
       const SlaveState& sent = states[static_cast<std::size_t>(i - delay)];
@@ -89,12 +90,12 @@ TEST(SteeredTool, ForceAndTorqueComeBackAfterTheDelay) {
 
 TEST(SteeredTool, WaitsForACommandWithAnOrientation) {
   Teleoperation remote(with(Feedback::none), {}, kTick_s, ground());
-  DeviceState hand = device(1, {});
+  DeviceState hand = device(1, Vec3::Zero());
   hand.orientation_W.coeffs().setZero();
   remote.tick(hand, {}, 0);
   ASSERT_TRUE(remote.state().tool);
   EXPECT_TRUE(std::isnan(remote.state().tool->orientation_W.w()));
-  remote.tick(device(1, {}), {}, kTick_s);
+  remote.tick(device(1, Vec3::Zero()), {}, kTick_s);
   EXPECT_EQ(remote.state().tool->orientation_W.w(), 1);
   remote.tick(hand, {}, 2 * kTick_s);
   EXPECT_EQ(remote.state().command_packets, 1);
