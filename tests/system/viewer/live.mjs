@@ -4,18 +4,19 @@ import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { test } from "node:test";
 import { picture } from "./browser.mjs";
-import { all, distance, dragMovesTheHand, limit, middle, newest, openLive, program, says, startLive, until } from "./live_driver.mjs";
+import { all, distance, dragMovesTheHand, limit, middle, newest, openLive, program, rests, says, startLive, until } from "./live_driver.mjs";
 
 // The keys move the hand by what the page says.
 async function stepsAreFineAndCoarse(page) {
   for (const [modifier, mm, text] of [["", 2, /^Step: 2 mm, 3° \(Shift: 0\.2 mm, 0\.3°; Alt: 10 mm, 15°\)$/],
     ["Shift", 0.2, /^Fine step: 0\.2 mm, 0\.3°$/], ["Alt", 10, /^Coarse step: 10 mm, 15°$/]]) {
+    await rests(page);
     const before = (await newest(page)).hip, moved = (now) => 1000 * distance(now.hip, before);
     if (modifier) await page.keyboard.down(modifier);
     await page.keyboard.press("ArrowLeft");
     await page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("footer .steps").textContent), text.source);
     if (modifier) await page.keyboard.up(modifier);
-    const after = await until(page, (now) => Math.abs(moved(now) - mm) < 0.01 * mm, async () => {});
+    const after = await until(page, (now) => Math.abs(moved(now) - mm) < 0.02 * mm, async () => {});
     assert.ok(Math.abs(moved(after) - mm) < 0.02 * mm, `${modifier}: ${moved(after)} mm, expected ${mm} mm`);
   }
 }

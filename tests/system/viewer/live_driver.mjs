@@ -78,6 +78,7 @@ export async function middle(page) {
 
 // The hand follows the mouse by as much as the picture moves, and in its plane.
 export async function dragMovesTheHand(page) {
+  await rests(page); // beside a load the hand may still follow an earlier motion
   const [x, y] = await middle(page), before = await newest(page);
   const [right, mm] = await page.evaluate((hip) => {
     const { scene } = window.remoteTouch, place = scene.directions()[0].clone().set(1000 * hip[0], 1000 * hip[1], 1000 * hip[2]);
