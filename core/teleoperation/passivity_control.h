@@ -39,7 +39,7 @@
 // signal + response x signal. The energy is then a quadratic form in the signal, and the controller projects
 // the delayed signal onto the ball of signals that the energy allows, which is the smallest possible change.
 // Without a response the ball is the half-space of the published rule. observe() records the tick as it was.
-// What a wrong prediction leaves missing is a negative balance, and later ticks repay it.
+// A wrong prediction leaves a negative balance, and later ticks repay it.
 #pragma once
 
 #include <string>

@@ -3,24 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
-#include "core/geometry/limited_length.h"
+#include "core/teleoperation/slave_drive.h"
 
 namespace remote_touch {
 
 namespace {
 
 constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
-
-Vec3 cut(const Vec3& v, double max_length) {
-  return max_length > 0 ? limited_length(v, max_length) : v;
-}
-
-double angular_frequency(const SlaveSettings& s) {
-  return 2 * std::numbers::pi * s.natural_frequency_hz;
-}
 
 }  // namespace
 
@@ -45,7 +36,7 @@ Parameters parameters(SlaveSettings& s) {
 
 std::string validate(const SlaveSettings& s) {
   // The rule is stable for w T < 2 without damping; half of that leaves room for the dampers.
-  const double w = angular_frequency(s);
+  const double w = natural_rate_per_s(s);
   const double stiffness = w * w + s.contact_stiffness_N_per_m / s.mass_kg;
   const double damping = 2 * s.damping_ratio * w + s.contact_damping_Ns_per_m / s.mass_kg;
   const double largest_step_s = 2 / (damping + std::sqrt(damping * damping + 4 * stiffness));
@@ -62,7 +53,7 @@ Slave::Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene)
 // either unless it is faster than 10 m/s.
 bool Slave::is_far(const Vec3& reference_velocity) const {
   constexpr double kSceneMotion_m = 0.01;
-  const double w = angular_frequency(s_);
+  const double w = natural_rate_per_s(s_);
   const double drive = w * w * (reference_W_ - state_.position_W).norm() +
                        2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W).norm();
   const double motion_m = tick_s_ * (state_.velocity_W.norm() + reference_velocity.norm() + tick_s_ * drive);
@@ -82,7 +73,7 @@ Vec3 Slave::contact_force(double before_s, double now_s) {
 }
 
 void Slave::step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s) {
-  const double w = angular_frequency(s_), step_s = tick_s_ / s_.steps_per_tick;
+  const double w = natural_rate_per_s(s_), step_s = tick_s_ / s_.steps_per_tick;
   const Vec3 drive = cut(w * w * (reference_W_ - state_.position_W) +
                              2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W),
                          s_.max_acceleration_m_per_s2);

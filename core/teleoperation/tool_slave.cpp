@@ -7,22 +7,14 @@
 #include <numeric>
 #include <utility>
 
-#include "core/geometry/limited_length.h"
 #include "core/geometry/rotation.h"
+#include "core/teleoperation/slave_drive.h"
 
 namespace remote_touch {
 
 namespace {
 
 constexpr double kNegligible = 20;  // value of x in exp(-x), a share of 2e-9
-
-Vec3 at_most(const Vec3& v, double max_length) {
-  return max_length > 0 ? limited_length(v, max_length) : v;
-}
-
-double natural_rate_per_s(const SlaveSettings& s) {
-  return 2 * std::numbers::pi * s.natural_frequency_hz;
-}
 
 // Returns exp(-x), within 3e-4 for x <= 8 and 2 % for x <= 20, with the same bits on every machine.
 // pre: 0 <= x <= kNegligible.
@@ -138,9 +130,9 @@ ToolSlave::Drive ToolSlave::start_drive(const Pose& command) {
   };
   Drive d;
   d.error << reference_.position_W - state_.position_W, turn(state_.orientation_W, reference_.orientation_W);
-  const Vec3 velocity = at_most((command.position_W - reference_.position_W) / tick_s_, s_.max_speed_m_per_s);
-  const Vec3 rate = at_most(turn(reference_.orientation_W, command.orientation_W) / tick_s_,
-                            s_.max_speed_m_per_s / tool_.gyration_m);
+  const Vec3 velocity = cut((command.position_W - reference_.position_W) / tick_s_, s_.max_speed_m_per_s);
+  const Vec3 rate = cut(turn(reference_.orientation_W, command.orientation_W) / tick_s_,
+                        s_.max_speed_m_per_s / tool_.gyration_m);
   d.rate_per_s << velocity, rate;
   reference_.position_W += tick_s_ * velocity;
   reference_.orientation_W = (rotation(tick_s_ * rate) * reference_.orientation_W).normalized();
@@ -154,8 +146,8 @@ ToolSlave::Vector6 ToolSlave::drive(const Drive& d, const Vector6& moved, const 
   const Vector6 wanted = w * w * (d.error + since_s * d.rate_per_s - moved) +
                          2 * s_.damping_ratio * w * (d.rate_per_s - velocity);
   Vector6 limited;
-  limited << at_most(wanted.head<3>(), s_.max_acceleration_m_per_s2),
-      at_most(wanted.tail<3>(), s_.max_acceleration_m_per_s2 / tool_.gyration_m);
+  limited << cut(wanted.head<3>(), s_.max_acceleration_m_per_s2),
+      cut(wanted.tail<3>(), s_.max_acceleration_m_per_s2 / tool_.gyration_m);
   return limited;
 }
 

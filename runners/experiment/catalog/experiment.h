@@ -48,7 +48,7 @@ class Experiment {
   // configuration, or the value of a change at 0 s. Returns null if there is none.
   nlohmann::ordered_json value_at_start(const std::string& path) const;
   // Returns the recordings that a run reads, as named in the configuration; the file system is not searched.
-  // With a slave and a recorded live session, reads the session and adds the files of its scene. except: keys
+  // Adds the files of the scene of a recorded live session if there is a slave, which it reads. except: keys
   // of sections that this run does not read.
   std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
 

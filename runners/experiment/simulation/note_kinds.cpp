@@ -49,7 +49,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"columns unused", "a measured contact has columns that are not used"},
       {"slave without surface", "the true surface is not known where the slave was"},
       {"slave without command", "the slave received no command after its first"},
-      {"slave loop gains energy", "the device gave much energy to the hand: hand, links and slave oscillate"},
+      {"slave loop gains energy",
+       "the device gave much energy to the hand: hand, links and slave may oscillate"},
   };
   return kinds;
 }

@@ -45,8 +45,8 @@ std::vector<Note> slave_notes(const Trace& trace) {
     char text[160];
     std::snprintf(
         text, sizeof text,
-        "the device gave the hand up to %.3g J, with a force of up to %.3g N: the loop of hand, links and "
-        "slave oscillates",
+        "the device gave the hand up to %.3g J, with a force of up to %.3g N: hand, links and slave "
+        "may oscillate",
         given_J, max_device_force_N(trace));
     notes.push_back({"slave loop gains energy", text});
   }

@@ -23,7 +23,7 @@ std::string plane(double frame_rate_hz) {
          std::to_string(frame_rate_hz) + "}";
 }
 
-// What varies in a curve, and the limit for each value.
+// The value of what varies in a curve, and the limit for it.
 struct Width {
   double value;
   WallLimit limit;
